@@ -36,7 +36,7 @@ class ProbeReport:
 
     @property
     def findings(self) -> list[dict[str, Any]]:
-        """Faults of the step, and facts without which its numbers mislead: ``kind``, ``is_fault``, ``text``. A clean step has none."""
+        """Faults of the step, and facts without which its numbers mislead: ``kind``, ``is_fault``, ``text``, and what to change as ``help``."""
         return list(self.results["findings"])
 
     @property

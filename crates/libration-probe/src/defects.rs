@@ -12,6 +12,9 @@ use crate::{BlackBoxError, EnergyDrift, Subject};
 /// Part of the scales by which the state is displaced.
 const DISPLACEMENT: f64 = 0.1;
 
+/// Roundings of the size of each factor of a step.
+const ROUNDINGS: f64 = 8.0;
+
 /// What a step does that the flow of a conservative system does not.
 #[derive(Clone, Debug, Serialize)]
 pub struct Defects {
@@ -40,6 +43,11 @@ impl Defects {
         let subject = prober.subject;
         let sizes = eigenvalues(&step.a).unwrap_or_default();
         let volume_rate = sizes.iter().map(|z| z.norm().ln()).sum::<f64>() / step.dt;
+        // A rate within its error is zero, as are those of modes.
+        let rounding = ROUNDINGS * f64::EPSILON * sizes.len() as f64 / step.dt;
+        let known = |rate: f64, error: f64| if rate.abs() <= error { 0.0 } else { rate };
+        let of_flow =
+            |flow: &Flow| known(flow.a.trace(), rounding.max(flow.a_errors.trace().abs()));
         let all_paired = pairs.filter(|pairs| pairs.len() * 2 == subject.state.len());
         let (mut reversibility, mut halved) = (None, None);
         if let Some(pairs) = all_paired {
@@ -50,8 +58,8 @@ impl Defects {
         }
         let energy = EnergyDrift::measure(prober, longest_period(flow))?;
         Ok(Defects {
-            volume_rate,
-            flow_volume_rate: flow.map(|flow| flow.a.trace()),
+            volume_rate: known(volume_rate, rounding),
+            flow_volume_rate: flow.map(of_flow),
             symplecticity: all_paired.and_then(|pairs| symplecticity(&step.a, pairs, subject)),
             reversibility,
             reversibility_halved: halved,

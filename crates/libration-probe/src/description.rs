@@ -127,7 +127,7 @@ fn matrix(
         true => Ok(Matrix::from_fn(count, columns, |i, j| rows[i][j])),
         false => Err(SubjectError {
             field,
-            value: format!("{} rows of {:?} numbers", rows.len(), rows.first().map(Vec::len)),
+            problem: format!("has {} rows of {:?} numbers", rows.len(), rows.first().map(Vec::len)),
             expected: format!("{count} × {columns} finite numbers"),
         }),
     }

@@ -56,20 +56,21 @@ fn findings(page: &mut Page, audit: &ProbeReport) {
 
 /// How much longer the step might be; empty if that is unknown.
 fn longer_step(audit: &ProbeReport) -> String {
-    let Some(limit) = &audit.largest_dt else { return String::new() };
-    match limit.dt.filter(|longest| *longest > audit.dt) {
-        Some(longest) => format!(
-            " The step might be up to {} times as long, {} s, and stay stable at this state; its errors grow with it.",
-            number(longest / audit.dt, 3),
-            number(longest, 4)
-        ),
-        None if limit.dt.is_none() && !limit.grows_always => format!(
-            " The step might be {} times as long, {} s, and stay stable at this state; its errors grow with it.",
-            number(limit.tried_up_to / audit.dt, 3),
-            number(limit.tried_up_to, 4)
-        ),
-        None => String::new(),
+    let Some(limit) = audit.largest_dt.as_ref().filter(|limit| !limit.grows_always) else {
+        return String::new();
+    };
+    let longest = limit.dt.unwrap_or(limit.tried_up_to);
+    if longest <= audit.dt {
+        return String::new();
     }
+    let is_exact = audit.order.as_ref().is_some_and(|order| order.is_exact);
+    format!(
+        " The step might be {}{} times as long, {} s, and stay stable at this state{}.",
+        if limit.dt.is_some() { "up to " } else { "at least " },
+        number(longest / audit.dt, 3),
+        number(longest, 4),
+        if is_exact { "" } else { "; its errors grow with it" }
+    )
 }
 
 fn modes(page: &mut Page, audit: &ProbeReport) {
@@ -173,11 +174,11 @@ fn latency(page: &mut Page, audit: &ProbeReport) {
     let mut table = Table::new("delays", &columns);
     for audit in &audit.delays {
         for (delay, count) in &audit.delays {
-            let first = audit.first_change.map(|step| Cell::from(step.to_string()));
+            let first = audit.first_change.map(|step| Cell::from(step as u64));
             table.push([
                 audit.input.clone().into(),
                 Cell::rounded(*delay, 6),
-                count.to_string().into(),
+                Cell::from(*count as u64),
                 first.unwrap_or_else(|| Cell::absent("none")),
             ]);
         }

@@ -1,6 +1,7 @@
 //! The simulator under audit, in names and numbers.
 
 use libration::linear::{MOST_STATES, Matrix, Signal};
+use libration_report::notation::plural;
 use serde::Deserialize;
 use thiserror::Error;
 
@@ -78,12 +79,12 @@ pub struct Reference {
 
 /// A value of a subject that is not allowed.
 #[derive(Clone, Debug, Error, PartialEq)]
-#[error("`{field}` is {value}; expected {expected}")]
+#[error("`{field}` {problem}; expected {expected}")]
 pub struct SubjectError {
     /// The field.
     pub field: &'static str,
-    /// Its value.
-    pub value: String,
+    /// What is wrong with it, with its value: `has 1 name`, `is 0 s`.
+    pub problem: String,
     /// What is allowed.
     pub expected: String,
 }
@@ -123,57 +124,66 @@ impl Subject {
     /// The first value that is not allowed.
     pub fn check(&self) -> Result<(), SubjectError> {
         let (n, m) = (self.state.len(), self.action.len());
-        let error =
-            |field, value: String, expected: String| Err(SubjectError { field, value, expected });
+        let error = |field, problem: String, expected: String| {
+            Err(SubjectError { field, problem, expected })
+        };
+        let has = |count: usize, thing: &str| format!("has {}", plural(count, thing));
+        let name = |signals: &[Signal], i: usize| {
+            signals.get(i).map_or_else(|| (i + 1).to_string(), |signal| signal.name.clone())
+        };
         if !(1..=MOST_STATES).contains(&n) {
-            return error("state", format!("{n} numbers"), format!("1 to {MOST_STATES} numbers"));
+            return error("state", has(n, "number"), format!("1 to {MOST_STATES} numbers"));
         }
         if m > MOST_STATES {
-            return error("action", format!("{m} numbers"), format!("at most {MOST_STATES}"));
+            return error("action", has(m, "number"), format!("at most {MOST_STATES}"));
         }
         if !(self.dt.is_finite() && self.dt > 0.0) {
-            return error("dt", format!("{} s", self.dt), "a finite number above 0".into());
+            return error("dt", format!("is {} s", self.dt), "a finite number above 0".into());
         }
         let finite = "finite numbers".to_owned();
-        for (field, values) in [("state", &self.state), ("action", &self.action)] {
-            if let Some(value) = values.iter().find(|x| !x.is_finite()) {
-                return error(field, format!("{value}"), finite);
+        for (field, values, names) in
+            [("state", &self.state, &self.states), ("action", &self.action, &self.inputs)]
+        {
+            if let Some(i) = values.iter().position(|x| !x.is_finite()) {
+                return error(field, format!("is {} for `{}`", values[i], name(names, i)), finite);
             }
         }
-        for (field, values, count) in
-            [("state_scale", &self.state_scale, n), ("action_scale", &self.action_scale, m)]
-        {
+        for (field, values, names, count) in [
+            ("state_scale", &self.state_scale, &self.states, n),
+            ("action_scale", &self.action_scale, &self.inputs, m),
+        ] {
             if values.len() != count {
-                return error(field, format!("{} numbers", values.len()), format!("{count}"));
+                return error(field, has(values.len(), "number"), format!("{count}"));
             }
-            if let Some(value) = values.iter().find(|x| !(x.is_finite() && **x > 0.0)) {
-                return error(field, format!("{value}"), "finite numbers above 0".into());
+            if let Some(i) = values.iter().position(|x| !(x.is_finite() && *x > 0.0)) {
+                let problem = format!("is {} for `{}`", values[i], name(names, i));
+                return error(field, problem, "finite numbers above 0".into());
             }
         }
         for (field, names, count) in [("states", &self.states, n), ("inputs", &self.inputs, m)] {
             if names.len() != count {
                 let expected = format!("{count}, one for each");
-                return error(field, format!("{} names", names.len()), expected);
+                return error(field, has(names.len(), "name"), expected);
             }
             for (i, name) in names.iter().enumerate() {
                 if names[..i].iter().any(|other| other.name == name.name) {
                     let expected = "different names".to_owned();
-                    return error(field, format!("`{}` twice", name.name), expected);
+                    return error(field, format!("has `{}` twice", name.name), expected);
                 }
             }
         }
         if let Some(&(i, j)) = self.pairs.iter().flatten().find(|(i, j)| *i >= n || *j >= n) {
-            return error("pairs", format!("({i}, {j})"), format!("numbers below {n}"));
+            return error("pairs", format!("has ({i}, {j})"), format!("numbers below {n}"));
         }
         if let (Some(mass), Some(pairs)) = (&self.mass, &self.pairs) {
             let size = pairs.len();
             if (mass.rows(), mass.columns()) != (size, size) {
-                let found = format!("{} × {}", mass.rows(), mass.columns());
+                let found = format!("is {} × {}", mass.rows(), mass.columns());
                 return error("mass", found, format!("{size} × {size}"));
             }
         }
         if !self.stated_delays.is_empty() && self.stated_delays.len() != m {
-            let found = format!("{} numbers", self.stated_delays.len());
+            let found = has(self.stated_delays.len(), "number");
             return error("stated_delays", found, format!("{m}, one for each action"));
         }
         for recording in &self.recordings {
@@ -181,7 +191,7 @@ impl Subject {
             for numbers in [&recording.first, &recording.second] {
                 if numbers.len() != count {
                     let expected = format!("{count}, the product of `shape`");
-                    return error("recordings", format!("{} numbers", numbers.len()), expected);
+                    return error("recordings", has(numbers.len(), "number"), expected);
                 }
             }
         }
@@ -189,7 +199,7 @@ impl Subject {
             && damping.len() != pairs.len()
         {
             let expected = format!("{}, one for each pair", pairs.len());
-            return error("joint_damping", format!("{} numbers", damping.len()), expected);
+            return error("joint_damping", has(damping.len(), "number"), expected);
         }
         Ok(())
     }

@@ -6,6 +6,7 @@ use libration::linear::{Matrix, Signal};
 use libration_probe::{
     BlackBox, ChildProcess, Description, Matrices, MatrixStep, ProbeReport, Subject, page, probe,
 };
+use libration_report::notation::plural;
 use libration_settings::linear_loop::read_plant;
 
 use super::advise::command_line;
@@ -147,7 +148,8 @@ fn matrices(args: &ProbeArgs, path: &Path) -> Result<(Box<dyn BlackBox>, Subject
     for (option, given, count) in [("state", state.len(), n), ("action", action.len(), m)] {
         if given != count {
             return Err(Failure::usage(format!(
-                "--{option} has {given} numbers; expected {count}"
+                "--{option} has {}; expected {count}",
+                plural(given, "number")
             )));
         }
     }

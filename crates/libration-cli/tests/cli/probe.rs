@@ -94,7 +94,22 @@ fn wrong_options_name_the_option_and_what_is_allowed() {
         (&["--command", "'cat", "--state", "0", "--dt", "1"], "quotation mark"),
         (
             &["--command", "cat", "--state", "0,1", "--dt", "1", "--state-names", "a"],
-            "--state-names is 1 names; expected 2",
+            "--state-names has 1 name; expected 2",
+        ),
+        (
+            &[
+                "--command",
+                "cat",
+                "--state",
+                "0,1",
+                "--dt",
+                "1",
+                "--state-names",
+                "a,b",
+                "--state-scale",
+                "1,0",
+            ],
+            "--state-scale is 0 for `b`; expected finite numbers above 0",
         ),
         (&["--mujoco", "nosuch.xml"], "there is no such file"),
         (&["--matrices", "nosuch.npz"], "--matrices"),
@@ -141,10 +156,10 @@ fn gains_hold_up_to_the_limit_of_theory_and_else_the_answer_says_what_holds_them
         .stderr(predicate::str::contains("unknown integrator; expected one of explicit-euler"));
     libration(&["gains", "--inertia", "1,2", "--kp", "1", "--dt", "0.01"])
         .code(2)
-        .stderr(predicate::str::contains("--kp is 1 numbers; expected 2"));
-    libration(&["gains", "--inertia=-1", "--kp", "1", "--dt", "0.01"])
+        .stderr(predicate::str::contains("--kp has 1 number; expected 2"));
+    libration(&["gains", "--inertia", "1,0", "--kp", "1,1", "--dt", "0.01"])
         .code(2)
-        .stderr(predicate::str::contains("--inertia"));
+        .stderr(predicate::str::contains("--inertia is 0 for `joint 2`; expected numbers above 0"));
 }
 
 #[test]

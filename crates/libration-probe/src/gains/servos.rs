@@ -2,8 +2,9 @@
 
 use libration::analysis::LinearStepper;
 use libration::linear::{
-    LinearPlant, MOST_STATES, Matrix, PlantError, Signal, cholesky, solve_matrix,
+    LinearPlant, MOST_STATES, Matrix, PlantError, Signal, cholesky, eigenvalues, solve_matrix,
 };
+use libration_report::notation::plural;
 use serde::Deserialize;
 use thiserror::Error;
 
@@ -56,18 +57,15 @@ enum Entries {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ServoError {
     /// A value is not allowed.
-    #[error("`{field}` is {value}; expected {expected}")]
+    #[error("`{field}` {problem}; expected {expected}")]
     Value {
         /// The field.
         field: &'static str,
-        /// Its value.
-        value: String,
+        /// What is wrong with it, with its value: `has 1 number`, `is 0 for `elbow``.
+        problem: String,
         /// What is allowed.
         expected: String,
     },
-    /// The inertia is no inertia.
-    #[error("`mass` is not symmetric and positive definite; expected the inertia of the joints")]
-    Mass,
     /// Names of joints repeat, or one is that of a rate.
     #[error("`joints`: {0}")]
     Names(PlantError),
@@ -86,7 +84,7 @@ impl ServosDescription {
         if !(1..=MOST_STATES / 2).contains(&n) {
             return Err(ServoError::Value {
                 field: "mass",
-                value: format!("that of {n} joints"),
+                problem: format!("is that of {}", plural(n, "joint")),
                 expected: format!("1 to {} joints", MOST_STATES / 2),
             });
         }
@@ -102,7 +100,7 @@ impl ServosDescription {
             Some(names) => {
                 return Err(ServoError::Value {
                     field: "joints",
-                    value: format!("{} names", names.len()),
+                    problem: format!("has {}", plural(names.len(), "name")),
                     expected: format!("{n}, one for each row of mass"),
                 });
             }
@@ -115,36 +113,63 @@ impl ServosDescription {
             stiffness: optional("stiffness", &self.stiffness)?,
             damping: optional("damping", &self.damping)?,
         };
-        let mass = &servos.mass;
-        let is_symmetric = (0..n)
-            .all(|i| (0..i).all(|j| (mass[(i, j)] - mass[(j, i)]).abs() <= 1e-9 * mass.largest()));
-        let factor = cholesky(mass);
-        if !(is_symmetric && (0..n).all(|i| factor[(i, i)] > 0.0)) {
-            return Err(ServoError::Mass);
-        }
+        check_inertia(&servos)?;
         servos.plant().map_err(ServoError::Names)?;
         Ok(servos)
     }
 }
 
+/// Checks that the inertia is symmetric and positive definite.
+fn check_inertia(servos: &Servos) -> Result<(), ServoError> {
+    let (mass, n) = (&servos.mass, servos.joints.len());
+    let wrong = |problem: String, expected: &str| {
+        Err(ServoError::Value { field: "mass", problem, expected: expected.into() })
+    };
+    if let Some(i) = (0..n).find(|&i| mass[(i, i)] <= 0.0) {
+        let problem = format!("is {} for `{}`", mass[(i, i)], servos.joints[i].name);
+        return wrong(problem, "numbers above 0");
+    }
+    for (i, j) in (0..n).flat_map(|i| (0..i).map(move |j| (i, j))) {
+        let (a, b) = (mass[(j, i)], mass[(i, j)]);
+        if (a - b).abs() > 1e-9 * mass.largest() {
+            let names = [j, i].map(|k| servos.joints[k].name.as_str());
+            let problem =
+                format!("is not symmetric: {a} and {b} for `{}` and `{}`", names[0], names[1]);
+            return wrong(problem, "a symmetric matrix");
+        }
+    }
+    let factor = cholesky(mass);
+    match (0..n).all(|i| factor[(i, i)] > 0.0) {
+        true => Ok(()),
+        false => {
+            let all = eigenvalues(mass).unwrap_or_default();
+            let least = all.iter().map(|s| s.re).fold(f64::INFINITY, f64::min);
+            let problem = format!("is not positive definite: its least eigenvalue is {least:.4}");
+            wrong(problem, "the inertia of the joints")
+        }
+    }
+}
+
 fn matrix(field: &'static str, entries: &Entries, n: usize) -> Result<Matrix, ServoError> {
-    let wrong = |value: String| {
+    let wrong = |problem: String| {
         let expected = format!("{n} numbers, or {n} × {n}, all finite");
-        Err(ServoError::Value { field, value, expected })
+        Err(ServoError::Value { field, problem, expected })
     };
     let rows: Vec<Vec<f64>> = match entries {
         Entries::Diagonal(values) if values.len() == n => {
             (0..n).map(|i| (0..n).map(|j| if i == j { values[i] } else { 0.0 }).collect()).collect()
         }
-        Entries::Diagonal(values) => return wrong(format!("{} numbers", values.len())),
+        Entries::Diagonal(values) => {
+            return wrong(format!("has {}", plural(values.len(), "number")));
+        }
         Entries::Matrix(rows) => rows.clone(),
     };
     if rows.len() != n || rows.iter().any(|row| row.len() != n) {
         let columns = rows.first().map_or(0, Vec::len);
-        return wrong(format!("{} × {columns}", rows.len()));
+        return wrong(format!("is {} × {columns}", rows.len()));
     }
     match rows.iter().flatten().find(|x| !x.is_finite()) {
-        Some(value) => wrong(format!("{value}")),
+        Some(value) => wrong(format!("has {value}")),
         None => Ok(Matrix::from_fn(n, n, |i, j| rows[i][j])),
     }
 }

@@ -65,10 +65,21 @@ fn the_fewest_substeps_are_those_of_the_limit() {
 #[test]
 fn servos_that_are_wrong_are_refused_with_the_name_of_the_field() {
     for (text, part) in [
-        (r#"{"mass": [[1, 2], [2, 1]], "kp": [1, 1]}"#, "positive definite"),
-        (r#"{"mass": [1, 1], "kp": [1]}"#, "`kp` is 1 numbers"),
+        (
+            r#"{"mass": [[1, 2], [2, 1]], "kp": [1, 1]}"#,
+            "is not positive definite: its least eigenvalue is -1.0000",
+        ),
+        (
+            r#"{"mass": [[1, 2], [0, 1]], "kp": [1, 1]}"#,
+            "is not symmetric: 2 and 0 for `joint 1` and `joint 2`",
+        ),
+        (
+            r#"{"mass": [1, 0], "kp": [1, 1]}"#,
+            "`mass` is 0 for `joint 2`; expected numbers above 0",
+        ),
+        (r#"{"mass": [1, 1], "kp": [1]}"#, "`kp` has 1 number;"),
         (r#"{"mass": [], "kp": []}"#, "1 to 50 joints"),
-        (r#"{"mass": [1], "kp": [1], "joints": ["a", "b"]}"#, "`joints` is 2 names"),
+        (r#"{"mass": [1], "kp": [1], "joints": ["a", "b"]}"#, "`joints` has 2 names"),
         (r#"{"mass": [1, 1], "kp": [1, 1], "joints": ["a", "a"]}"#, "have the name `a`"),
         (r#"{"mass": [1, 1], "kp": [1, 1], "joints": ["a", "a'"]}"#, "have the name `a'`"),
     ] {

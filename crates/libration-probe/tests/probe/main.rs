@@ -4,5 +4,6 @@
 
 mod faults;
 mod gains;
+mod pages;
 mod simulators;
 mod theory;

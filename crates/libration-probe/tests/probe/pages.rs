@@ -1,0 +1,44 @@
+//! Pages of audits, as a reader sees them.
+
+use crate::simulators::{Simulator, pendulum, pendulum_subject};
+
+/// Whether a text has a number such as `6.4e-1`.
+fn has_exponent(text: &str) -> bool {
+    let bytes = text.as_bytes();
+    bytes
+        .windows(3)
+        .any(|w| w[0].is_ascii_digit() && w[1] == b'e' && (w[2] == b'-' || w[2].is_ascii_digit()))
+}
+
+#[test]
+fn a_finding_says_what_to_change_and_the_page_has_one_notation_of_numbers() {
+    let mut long = pendulum_subject();
+    // ω dt = 2.1, beyond the limit of 2.
+    long.dt = 0.7;
+    let euler = Simulator::new(|x, _, dt| vec![x[0] + dt * x[1], x[1] - dt * 9.0 * x[0]]);
+    let exact = Simulator::new(|x, _, dt| {
+        let (s, c) = (3.0 * dt).sin_cos();
+        vec![c * x[0] + s / 3.0 * x[1], -3.0 * s * x[0] + c * x[1]]
+    });
+    let reports = [
+        (Simulator::new(pendulum).audit(&long), "use a step of at most 0.666"),
+        (euler.audit(&pendulum_subject()), "the mode of x2, x1 grows"),
+        (exact.audit(&pendulum_subject()), "the step is exact, and has no order"),
+        (
+            Simulator::new(pendulum).audit(&pendulum_subject()),
+            "The step might be up to 66.7 times as long, 0.6667 s",
+        ),
+    ];
+    for (report, part) in &reports {
+        let page = libration_probe::page(report);
+        let main = page.split_once("<main").unwrap().1.split_once("</main>").unwrap().0;
+        // Without data and figures.
+        let text: String =
+            main.split("<figure").map(|part| part.rsplit("</figure>").next().unwrap()).collect();
+        assert!(text.contains(part), "{part}: {text}");
+        assert!(!has_exponent(&text), "{text}");
+        assert!(report.findings.iter().all(|finding| !finding.help.is_empty()));
+    }
+    assert!(reports[0].0.findings[0].help.contains("2 substeps"), "{:?}", reports[0].0.findings);
+    assert_eq!(reports[0].0.answer.matches("the longest stable step").count(), 1);
+}
