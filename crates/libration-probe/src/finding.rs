@@ -3,7 +3,7 @@
 use libration_report::notation::number;
 use serde::Serialize;
 
-use crate::energy_finding::{damping, leaks};
+use crate::energy_finding::{energy_leak, negative_damping};
 use crate::report::ProbeReport;
 use crate::{Bits, Memory, Observed, Subject};
 
@@ -29,15 +29,15 @@ pub struct Finding {
 
 impl Finding {
     /// Without help, which requires the whole report.
-    pub(crate) fn new(kind: &'static str, is_fault: bool, text: String) -> Self {
+    fn new(kind: &'static str, is_fault: bool, text: String) -> Self {
         Finding { kind, is_fault, text, help: String::new() }
     }
 
-    pub(crate) fn fault(kind: &'static str, text: String) -> Self {
+    fn fault(kind: &'static str, text: String) -> Self {
         Finding::new(kind, true, text)
     }
 
-    pub(crate) fn warning(kind: &'static str, text: String) -> Self {
+    fn warning(kind: &'static str, text: String) -> Self {
         Finding::new(kind, false, text)
     }
 }
@@ -270,8 +270,18 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
             ),
         ));
     }
-    damping(report, found);
-    leaks(report, found);
+    // A step cannot tell whether its author wants a drive, unless the system conserves energy.
+    let is_fault = report.is_conservative;
+    found.extend(
+        report
+            .driven_velocities
+            .iter()
+            .map(|driven| Finding::new("negative-damping", is_fault, negative_damping(driven))),
+    );
+    if report.is_conservative {
+        let leak = energy_leak(report.defects.as_ref(), &report.modes);
+        found.extend(leak.map(|text| Finding::fault("energy-leak", text)));
+    }
     if let Some(limit) = &report.largest_dt {
         if limit.grows_always {
             found.push(Finding::warning(

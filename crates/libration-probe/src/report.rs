@@ -139,8 +139,9 @@ fn examine(prober: &mut Prober<'_>, memory: Memory) -> Result<ProbeReport, Black
         of_report(&report, subject, &mut findings);
     }
     report.memory = Some(memory);
+    let longest_dt = report.largest_dt.as_ref().and_then(|limit| limit.dt);
     for finding in &mut findings {
-        finding.help = help(finding.kind, &report);
+        finding.help = help(finding.kind, subject.dt, longest_dt);
     }
     report.findings = findings;
     report.calls = prober.calls;
@@ -149,7 +150,7 @@ fn examine(prober: &mut Prober<'_>, memory: Memory) -> Result<ProbeReport, Black
 }
 
 impl ProbeReport {
-    pub(crate) fn empty(subject: &Subject, bits: Bits) -> Self {
+    fn empty(subject: &Subject, bits: Bits) -> Self {
         let mut notes = subject.notes.clone();
         if let Some(integrator) = &subject.integrator {
             notes.insert(0, format!("the simulator calls its integrator {integrator}"));
