@@ -51,7 +51,7 @@ pub(crate) fn defects(page: &mut Page, audit: &ProbeReport) {
     page.heading("What does the step not conserve?");
     let mut table = Table::new("defects", &["quantity", "of the step", "for comparison"]);
     let beside = |what: &str, x: Option<f64>| {
-        x.map_or_else(String::new, |x| format!("{what}: {}", number(x, 4)))
+        x.map_or_else(|| "—".to_owned(), |x| format!("{what}: {}", number(x, 4)))
     };
     let mut row = |quantity: &str, value: Option<f64>, comparison: String| {
         if let Some(value) = value {
@@ -64,9 +64,12 @@ pub(crate) fn defects(page: &mut Page, audit: &ProbeReport) {
     let halved = beside("half the step", defects.reversibility_halved);
     row("defect of reversibility", defects.reversibility, halved);
     if let Some(energy) = &defects.energy {
-        let reason = [beside("half the step", energy.rate_halved), energy.reason.text().into()];
-        let reason: Vec<String> = reason.into_iter().filter(|part| !part.is_empty()).collect();
-        row("relative rate of the energy (1/s)", Some(energy.rate), reason.join("; "));
+        let reason = energy.reason.text();
+        let reason = match energy.rate_halved {
+            Some(_) => format!("{}; {reason}", beside("half the step", energy.rate_halved)),
+            None => reason.to_owned(),
+        };
+        row("relative rate of the energy (1/s)", Some(energy.rate), reason);
     }
     page.table(&table, 4);
 }

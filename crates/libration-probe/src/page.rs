@@ -77,8 +77,11 @@ fn modes(page: &mut Page, audit: &ProbeReport) {
     if audit.modes.is_empty() {
         return;
     }
-    page.heading("How do the modes of the step differ from those of the system?");
     let has_flow = audit.modes.iter().any(|mode| mode.flow.is_some());
+    page.heading(match has_flow {
+        true => "How do the modes of the step differ from those of the system?",
+        false => "Which modes has the step?",
+    });
     page.paragraph(match has_flow {
         true => {
             "The system is the limit of small steps. Numerical damping is the damping ratio that the step adds; where it is negative, the \
@@ -132,12 +135,22 @@ fn latency(page: &mut Page, audit: &ProbeReport) {
         return;
     }
     page.heading("Which latency is hidden in the step?");
-    let is_late = audit.hidden_latency.iter().any(|latency| latency.late_steps != 0.0);
+    let is_late = !audit.delays.is_empty()
+        || audit.hidden_latency.iter().any(|latency| latency.late_steps != 0.0);
+    let is_known = audit.hidden_latency.iter().any(|latency| latency.integrator_delay.is_some());
     page.paragraph(format!(
-        "{} The integrator itself delays the effect of a command: beyond the exact motion under the same held command, by the phase of the \
-         state that responds most. A negative delay is an early effect.",
-        if is_late { "A command is used late." } else { "Each command is used in the step that receives it." }
+        "{} {}",
+        if is_late { "Some commands are used late." } else { "Each command is used in the step that receives it." },
+        if is_known {
+            "The integrator itself delays the effect of a command: beyond the exact motion under the same held command, by the phase of \
+             the state that responds most. A negative delay is an early effect."
+        } else {
+            "The delay of the integrator is unknown."
+        }
     ));
+    if !is_late && !is_known {
+        return;
+    }
     let of_integrator = ["input", "delay of the integrator (s)", "by the phase of"];
     let of_both = [
         &of_integrator[..1],

@@ -131,9 +131,16 @@ pub fn render_html(text: &str) -> String {
     pieces
         .map(|(i, piece)| match i % 2 {
             0 => html(piece),
+            // Browsers break lines at hyphens, and so within `--dt`.
+            _ if is_option(piece) => format!("<code class=\"word\">{}</code>", escape(piece)),
             _ => format!("<code>{}</code>", escape(piece)),
         })
         .collect()
+}
+
+/// Whether code is a short word with a hyphen, such as an option.
+fn is_option(code: &str) -> bool {
+    code.len() <= 24 && code.contains('-') && !code.contains(' ')
 }
 
 /// Renders text without markup, as for the title of a window: `10⁻³`, `E₀`.
@@ -201,6 +208,14 @@ mod tests {
     #[test]
     fn plain_text_has_no_markup() {
         assert_eq!(plain("off by 1.1·10^{-9} m, `E_0`"), "off by 1.1·10⁻⁹ m, E₀");
+    }
+
+    #[test]
+    fn an_option_is_not_broken_at_its_hyphens() {
+        assert_eq!(
+            render_html("`--dt` of `a - b`"),
+            "<code class=\"word\">--dt</code> of <code>a - b</code>"
+        );
     }
 
     #[test]
