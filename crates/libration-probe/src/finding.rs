@@ -1,6 +1,6 @@
 //! Findings of an audit: what a user of the step should know or mend.
 
-use libration_report::notation::number;
+use libration_report::notation::{number, plural};
 use serde::Serialize;
 
 use crate::energy_finding::{energy_leak, negative_damping};
@@ -50,7 +50,8 @@ pub(crate) fn of_bits(bits: &Bits, found: &mut Vec<Finding>) {
             true => Finding::fault(
                 "not-reproducible",
                 format!(
-                    "the same call gives different results (standard deviation {size:.2e}): random numbers, a clock, or a state that the step hides"
+                    "the same call gives different results (standard deviation {}): random numbers, a clock, or a state that the step hides",
+                    number(size, 3)
                 ),
             ),
             false => Finding::fault(
@@ -92,8 +93,8 @@ pub(crate) fn of_bits(bits: &Bits, found: &mut Vec<Finding>) {
         [whole] if whole == "the step" => found.push(Finding::fault(
             "single-precision",
             format!(
-                "the step computes in single precision: its rounding is {:.1e} of its results, that of f64 is 1e-16",
-                rounding.results
+                "the step computes in single precision: its rounding is {} of its results, that of f64 is 10⁻¹⁶",
+                number(rounding.results, 2)
             ),
         )),
         parts => found.push(Finding::fault(
@@ -105,8 +106,8 @@ pub(crate) fn of_bits(bits: &Bits, found: &mut Vec<Finding>) {
         found.push(Finding::warning(
             "rough",
             format!(
-                "the step is rough: along a line of points 10⁻⁶ apart its results jump by {:.1e} of their size",
-                rounding.results
+                "the step is rough: along a line of points 10⁻⁶ apart its results jump by {} of their size",
+                number(rounding.results, 2)
             ),
         ));
     }
@@ -153,10 +154,11 @@ pub(crate) fn of_memory(memory: &Memory, subject: &Subject, found: &mut Vec<Find
         found.push(Finding::fault(
             "late-command",
             format!(
-                "a command of `{}` acts {:.3} steps late ({:.4} s) on average{beside}: the first result that responds is {first} calls later",
+                "a command of `{}` acts {:.3} steps late ({:.4} s) on average{beside}: the first result that responds is {} later",
                 input.of,
                 input.mean,
-                input.mean * dt
+                input.mean * dt,
+                plural(first, "call")
             ),
         ));
     }

@@ -31,6 +31,9 @@ pub(crate) fn help(kind: &str, dt: f64, longest_dt: Option<f64>) -> String {
             "use the command in the call that receives it, or design the controller for this latency (`report.advise` in Python adds it)"
         }
         "late-state" => "return the state at the end of the call, not one of an earlier call",
+        "constant-observation" => {
+            "compute the observation from the state, and check that the function is given the right one"
+        }
         "stale-observation" => "compute the observation from the state after the step",
         "irregular-delay" => {
             "count the delay in whole steps; a comparison of rounded times requires a margin of half a step"
@@ -98,13 +101,13 @@ mod tests {
     fn every_kind_of_finding_has_help() {
         let source = include_str!("finding.rs");
         let docs = include_str!("../../../docs/probe.md");
-        // A kind is the only literal in lower case with hyphens that is an argument or a field on its own.
-        let is_kind = |word: &&str| {
-            !word.is_empty() && word.chars().all(|c| c.is_ascii_lowercase() || c == '-')
-        };
-        let literals = source.split('"').skip(1).step_by(2).filter(is_kind);
-        let kinds: Vec<&str> = literals.collect();
-        assert!(kinds.len() >= 21, "{kinds:?}");
+        // The first argument of each constructor.
+        let literal = |rest: &'static str| rest.trim_start().strip_prefix('"')?.split('"').next();
+        let kinds: Vec<&str> = ["Finding::fault(", "Finding::warning(", "Finding::new("]
+            .into_iter()
+            .flat_map(|constructor| source.split(constructor).skip(1).filter_map(literal))
+            .collect();
+        assert!(kinds.len() >= 20, "{kinds:?}");
         for kind in kinds {
             let text = help(kind, 0.1, None);
             assert!(!text.is_empty() && !text.ends_with('.'), "{kind}: {text}");

@@ -40,7 +40,8 @@ pub(crate) fn match_matrices(
     let update = pairs.and_then(|pairs| joint_damping_step(&flow.a, step.dt, pairs, subject));
     add(euler.name(), euler.title(), update);
     let errors = largest(&flow.a_errors) * step.dt + largest(&step.a_errors);
-    Some(Match::new(candidates, ERRORS * errors + ROUNDING))
+    let change = largest(&step.a.plus(&Matrix::identity(step.a.rows()).scaled(-1.0)));
+    Some(Match::new(candidates, ERRORS * errors + ROUNDING, change))
 }
 
 /// `v' = v + h (M + hD)⁻¹ M a`, `q' = q + h v'` with the damping `D` of joints, and the accelerations `a` of all forces.

@@ -98,12 +98,14 @@ impl Match {
             }
         }
         let allowed = ERRORS * error * dt + ROUNDING;
-        Ok(Match::new(candidates, allowed))
+        let moved = (0..start.len()).map(|i| ((next[i] - start[i]) / subject.state_scale[i]).abs());
+        Ok(Match::new(candidates, allowed, moved.fold(0.0, f64::max)))
     }
 
-    pub(crate) fn new(mut candidates: Vec<Candidate>, allowed: f64) -> Self {
+    /// `change` is that of the step itself, in units of the scales: errors of its size say nothing, even if a candidate diverges.
+    pub(crate) fn new(mut candidates: Vec<Candidate>, allowed: f64, change: f64) -> Self {
         candidates.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-        let farthest = candidates.last().map_or(0.0, |last| last.distance);
+        let farthest = candidates.last().map_or(0.0, |last| last.distance.min(change));
         let methods = candidates
             .iter()
             .filter(|found| found.distance <= allowed && allowed < CLEAR * farthest)
