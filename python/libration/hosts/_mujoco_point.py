@@ -105,12 +105,22 @@ def state_of(model: Any, data: Any) -> Array:
 
 def copy_of(model: Any, data: Any) -> Any:
     """Return new data with the same state, and without messages of instability."""
-    own = mujoco.MjData(model)
+    own = silent_data(model)
     mujoco.mj_setState(model, own, state_of(model, data), INTEGRATION)
-    # MuJoCo prints and logs only the first warning of a kind.
+    return own
+
+
+def silent_data(model: Any) -> Any:
+    """Return new data without messages of instability: MuJoCo prints and logs only the first warning of a kind."""
+    own = mujoco.MjData(model)
     for warning in own.warning:
         warning.number = 1
     return own
+
+
+def has_warned(data: Any) -> bool:
+    """Return whether silent data has had a warning."""
+    return any(warning.number > 1 for warning in data.warning)
 
 
 def space_queues(model: Any, data: Any, dt: float, values: Array | None = None) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from mujoco import rollout
 from numpy.typing import NDArray
 
-from ._mujoco_point import INTEGRATION, copy_of
+from ._mujoco_point import INTEGRATION, copy_of, has_warned, silent_data
 from .host import Recording
 
 Array = NDArray[np.float64]
@@ -21,30 +21,35 @@ _PHYSICS = int(mujoco.mjtState.mjSTATE_FULLPHYSICS)
 
 
 def recordings_of(model: Any, point: Any) -> tuple[Recording, ...]:
-    """Return pairs of recordings from near the point: with states restored between steps, and over threads."""
-    plain, restored = _trajectory(model, point, restore=False), _trajectory(model, point, restore=True)
-    starts = np.stack([_start(model, point, number) for number in range(_ENVIRONMENTS)])
-    alone, threads = _rollout(model, point, starts, 1), _rollout(model, point, starts, _THREADS)
-    return (
-        (f"{_STEPS} steps with the state restored between steps", plain, restored),
-        (f"{_ENVIRONMENTS} environments on {_THREADS} threads", alone, threads),
-    )
+    """Return pairs of recordings from near the point: with states restored between steps, and over threads.
+
+    A run that diverges is not repeated over threads, where each would print its warnings.
+    """
+    (plain, diverges), (restored, _) = (_trajectory(model, point, restore) for restore in (False, True))
+    found: list[Recording] = [(f"{_STEPS} steps with the state restored between steps", plain, restored)]
+    if not diverges:
+        starts = np.stack([_start(model, point, number) for number in range(_ENVIRONMENTS)])
+        alone, threads = _rollout(model, point, starts, 1), _rollout(model, point, starts, _THREADS)
+        found.append((f"{_ENVIRONMENTS} environments on {_THREADS} threads", alone, threads))
+    return tuple(found)
 
 
-def _trajectory(model: Any, point: Any, restore: bool) -> Array:
-    """Return the physics state after each step, steps × components."""
+def _trajectory(model: Any, point: Any, restore: bool) -> tuple[Array, bool]:
+    """Return the physics state after each step, steps × components, and whether MuJoCo warned."""
     data = copy_of(model, point)
     data.qvel[:] += 0.01
     found = np.empty((_STEPS, mujoco.mj_stateSize(model, _PHYSICS)))
     state = np.empty(mujoco.mj_stateSize(model, INTEGRATION))
+    diverges = False
     for row in found:
         if restore:
             mujoco.mj_getState(model, data, state, INTEGRATION)
-            data = mujoco.MjData(model)
+            data = silent_data(model)
             mujoco.mj_setState(model, data, state, INTEGRATION)
         mujoco.mj_step(model, data)
+        diverges = diverges or has_warned(data)
         mujoco.mj_getState(model, data, row, _PHYSICS)
-    return found
+    return found, diverges
 
 
 def _start(model: Any, point: Any, number: int) -> Array:
