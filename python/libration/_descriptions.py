@@ -32,6 +32,7 @@ def description_of(host: Host) -> dict[str, Any]:
     if host.reference_A is not None and host.reference_B is not None:
         described["reference"] = {
             "source": host.reference_source,
+            "exact": host.reference_is_exact,
             "a": host.reference_A.tolist(),
             "b": host.reference_B.tolist(),
         }

@@ -115,7 +115,8 @@ class ProbeReport:
         if found is None:
             return None
         n = len(self.results["states"])
-        return np.array(found[name], dtype=np.float64).reshape(n, -1)
+        matrix = np.array(found[name], dtype=np.float64)
+        return matrix.reshape(n, matrix.size // n)
 
     @property
     def plant(self) -> LinearPlant:

@@ -166,3 +166,9 @@ def test_a_function_of_jax_gives_the_same_bits_in_several_threads():
     report = probe.jax(pendulum(jnp), [0.0, 0.0], [0.0], 0.01, threads=4)
     assert report.findings == [] and report.bits["checks"][-1]["name"] == "4 threads at once against one"
     assert jax.config.jax_enable_x64 == before
+
+
+def test_the_jacobian_of_jax_is_the_matrix_of_the_step():
+    report = probe.jax(pendulum(jnp), [0.0, 0.0], [0.0], 0.01)
+    host = jax_host(pendulum(jnp), [0.0, 0.0], [0.0], 0.01)
+    assert np.array_equal(report.step["a"], host.reference_A) and report.jacobian_error <= 8 * EPS

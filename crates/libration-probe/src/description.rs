@@ -50,6 +50,8 @@ pub struct Description {
 #[serde(deny_unknown_fields)]
 struct ReferenceDescription {
     source: String,
+    #[serde(default)]
+    exact: bool,
     a: Vec<Vec<f64>>,
     b: Vec<Vec<f64>>,
 }
@@ -97,9 +99,9 @@ impl Description {
         if let Some(mass) = &self.mass {
             subject.mass = Some(matrix("mass", mass, (mass.len(), mass.len()))?);
         }
-        if let Some(ReferenceDescription { source, a, b }) = self.reference {
+        if let Some(ReferenceDescription { source, exact, a, b }) = self.reference {
             let (a, b) = (matrix("reference.a", &a, (n, n))?, matrix("reference.b", &b, (n, m))?);
-            subject.reference = Some(Reference { source, a, b });
+            subject.reference = Some(Reference { source, is_exact: exact, a, b });
         }
         subject.has_fixed_dt = self.fixed_dt;
         subject.equilibrium = self.equilibrium;

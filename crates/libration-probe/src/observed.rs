@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
+use crate::BlackBoxError;
 use crate::convergence::displaced;
 use crate::prober::Prober;
-use crate::{BlackBoxError, Memory};
 
 /// The state that observations show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -19,17 +19,13 @@ pub enum Observed {
 }
 
 impl Observed {
-    /// None without observations.
+    /// `responds`: whether observations respond to the given states at all.
     ///
     /// An observation that does not depend on the state that is asked for is one that the simulator has stored. That of a returned state
     /// depends on the length of the step or on the action, as the state does; that of a given state does not.
-    pub(crate) fn of(
-        prober: &mut Prober<'_>,
-        memory: &Memory,
-    ) -> Result<Option<Self>, BlackBoxError> {
-        let Some(response) = &memory.observation else { return Ok(None) };
-        if response.first.is_none() {
-            return Ok(Some(Observed::Nothing));
+    pub(crate) fn of(prober: &mut Prober<'_>, responds: bool) -> Result<Self, BlackBoxError> {
+        if !responds {
+            return Ok(Observed::Nothing);
         }
         let subject = prober.subject;
         let (dt, u) = (subject.dt, &subject.action);
@@ -37,7 +33,7 @@ impl Observed {
         let (next, seen) = after(prober, &x, u, dt)?;
         let is_stored = prober.observe(&other)? == seen;
         if !is_stored || subject.has_fixed_dt {
-            return Ok(Some(Observed::Asked));
+            return Ok(Observed::Asked);
         }
         let mut changed = u.clone();
         changed.iter_mut().zip(&subject.action_scale).for_each(|(u, scale)| *u += scale / 64.0);
@@ -47,7 +43,7 @@ impl Observed {
         let is_of_given = seen_of_half == seen && seen_of_changed == seen;
         // Else an observation of what never changes would be one of a given state.
         let shows_changes = of_half != next && seen_later != seen;
-        Ok(Some(if is_of_given && shows_changes { Observed::Given } else { Observed::Asked }))
+        Ok(if is_of_given && shows_changes { Observed::Given } else { Observed::Asked })
     }
 }
 

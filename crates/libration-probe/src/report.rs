@@ -4,14 +4,14 @@ use libration::analysis::positions_and_velocities;
 use serde::Serialize;
 
 use crate::driven_velocity::{DrivenVelocity, driven_velocities};
-use crate::finding::{Finding, of_bits, of_memory, of_report};
+use crate::finding::{Finding, of_bits, of_report};
 use crate::flow::Flow;
 use crate::held_action::HeldAction;
-use crate::help::help;
 use crate::hidden_latency::{HiddenLatency, hidden_latencies};
 use crate::linear_candidates::match_matrices;
 use crate::linearised_step::LinearisedStep;
 use crate::matrices::{Matrices, modified_flow};
+use crate::memory_finding::of_memory;
 use crate::modes::{ProbedMode, modes};
 use crate::prober::Prober;
 use crate::reference_check::ReferenceCheck;
@@ -141,7 +141,7 @@ fn examine(prober: &mut Prober<'_>, memory: Memory) -> Result<ProbeReport, Black
     report.memory = Some(memory);
     let longest_dt = report.largest_dt.as_ref().and_then(|limit| limit.dt);
     for finding in &mut findings {
-        finding.help = help(finding.kind, subject.dt, longest_dt);
+        finding.help = finding.kind.help(subject.dt, longest_dt);
     }
     report.findings = findings;
     report.calls = prober.calls;
@@ -203,7 +203,7 @@ impl ProbeReport {
             self.ignores_dt = ignores_dt(prober)?;
             self.ignores_dt
         };
-        let step = LinearisedStep::at(prober, subject.dt)?;
+        let mut step = LinearisedStep::at(prober, subject.dt)?;
         self.jacobian_error = step.relative_error(subject);
         if !step.is_finite() {
             return Ok(());
@@ -215,6 +215,10 @@ impl ProbeReport {
             self.delays.extend(audit.filter(|audit| is_late || audit.first_change.is_some()));
         }
         self.reference = ReferenceCheck::of(subject, &step);
+        if let Some(reference) = &self.reference {
+            reference.refine(subject, &mut step);
+            self.jacobian_error = step.relative_error(subject);
+        }
         let flow = if has_fixed_dt { None } else { Flow::of(prober, &step)? };
         let detected = flow.as_ref().and_then(|flow| positions_and_velocities(&flow.cleaned()));
         let pairs = subject.pairs.clone().or(detected);

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::BlackBoxError;
-use crate::memory::{MOST_CALLS, distance, moved};
+use crate::impulse::{MOST_CALLS, distance, moved};
 use crate::prober::Prober;
 
 /// Calls until the influence must be gone.

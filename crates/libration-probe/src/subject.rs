@@ -71,6 +71,8 @@ pub struct Recording {
 pub struct Reference {
     /// The function that computed them.
     pub source: String,
+    /// Whether they have rounding errors only, as those of automatic differentiation do.
+    pub is_exact: bool,
     /// States × states.
     pub a: Matrix,
     /// States × inputs.

@@ -2,8 +2,8 @@
 
 use libration_report::notation::{number, plural};
 
-use crate::ProbeReport;
 use crate::modes::ProbedMode;
+use crate::{FindingKind, ProbeReport};
 
 impl ProbeReport {
     /// The answer in a few sentences: faults first.
@@ -31,7 +31,8 @@ impl ProbeReport {
                     .into(),
             );
         }
-        let validity = self.findings.iter().filter(|finding| finding.kind == "limited-validity");
+        let validity =
+            self.findings.iter().filter(|finding| finding.kind == FindingKind::LimitedValidity);
         sentences.extend(validity.map(|finding| format!("{}.", capitalised(&finding.text))));
         if faults.is_empty() && self.step.is_some() && self.is_differentiable() {
             sentences.push(match self.findings.len() {
@@ -60,7 +61,8 @@ impl ProbeReport {
             (false, _) => format!("With dt = {dt} s the step is stable at this state"),
         };
         // The fault comes first, and has the limit.
-        let is_known = self.findings.iter().any(|finding| finding.kind == "unstable-step");
+        let is_known =
+            self.findings.iter().any(|finding| finding.kind == FindingKind::UnstableStep);
         let limit = self.largest_dt.as_ref().filter(|_| !is_known);
         match limit {
             Some(limit) if limit.grows_always => {

@@ -56,6 +56,8 @@ class Host:
     """The derivative of the step by the actions that the simulator itself computes."""
     reference_source: str = ""
     """The function that computes these derivatives: ``"mjd_transitionFD"``, ``"jax.jacfwd"``; empty without them."""
+    reference_is_exact: bool = False
+    """Whether they have rounding errors only, as those of automatic differentiation do: an audit then uses them."""
     joint_damping: tuple[float, ...] = ()
     """The damping of each velocity that the integrator may treat implicitly, besides that of actuators."""
     delays: tuple[float, ...] = ()

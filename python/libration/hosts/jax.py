@@ -92,6 +92,7 @@ def jax_host(
         reference_A=reference_a,
         reference_B=reference_b,
         reference_source="" if reference_a is None else "jax.jacfwd",
+        reference_is_exact=reference_a is not None,
     )
 
 

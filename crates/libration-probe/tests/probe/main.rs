@@ -4,6 +4,7 @@
 
 mod faults;
 mod gains;
+mod memory;
 mod pages;
 mod simulators;
 mod theory;

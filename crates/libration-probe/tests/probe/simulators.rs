@@ -90,5 +90,5 @@ pub(crate) fn pendulum_subject() -> Subject {
 
 /// Kinds of the findings.
 pub(crate) fn kinds(report: &ProbeReport) -> Vec<&'static str> {
-    report.findings.iter().map(|finding| finding.kind).collect()
+    report.findings.iter().map(|finding| finding.kind.name()).collect()
 }

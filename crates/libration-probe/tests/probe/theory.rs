@@ -1,7 +1,7 @@
 //! Audits of integrators whose theory is known.
 
-use libration::linear::Complex64;
-use libration_probe::{ProbeReport, Subject};
+use libration::linear::{Complex64, Matrix};
+use libration_probe::{ProbeReport, Reference, Subject};
 
 use crate::simulators::{Simulator, damped_pendulum, pendulum, pendulum_energy, pendulum_subject};
 
@@ -190,8 +190,34 @@ fn the_limit_of_explicit_euler_on_weakly_damped_oscillators_is_that_of_theory() 
             let report = Simulator::new(step).audit(&subject);
             let limit = report.largest_dt.as_ref().unwrap();
             close(limit.dt.unwrap() / zeta, 1.0, 1e-5);
-            let kinds: Vec<&str> = report.findings.iter().map(|finding| finding.kind).collect();
+            let kinds: Vec<&str> =
+                report.findings.iter().map(|finding| finding.kind.name()).collect();
             assert_eq!(kinds.contains(&"unstable-step"), dt > zeta, "{kinds:?}");
         }
     }
+}
+
+#[test]
+fn exact_derivatives_replace_differences_that_agree_with_them_and_no_others() {
+    let (h, mut subject) = (0.01, pendulum_subject());
+    let a = [[1.0 - 9.0 * h * h, h], [-9.0 * h, 1.0]];
+    let exact = |spoil: f64| Reference {
+        source: "theory".into(),
+        is_exact: true,
+        a: Matrix::from_fn(2, 2, |i, j| a[i][j] * (1.0 + spoil)),
+        b: Matrix::from_fn(2, 1, |i, _| [h * h, h][i]),
+    };
+    subject.reference = Some(exact(0.0));
+    let report = Simulator::new(pendulum).audit(&subject);
+    assert_eq!(report.step.as_ref().unwrap().a, exact(0.0).a);
+    // Eight roundings of 2⁻⁵².
+    assert!(
+        report.jacobian_error <= 8.0 * f64::EPSILON && report.findings.is_empty(),
+        "{report:?}"
+    );
+    // Far below the error of other derivatives that are allowed, far above that of a difference.
+    subject.reference = Some(exact(1e-8));
+    let report = Simulator::new(pendulum).audit(&subject);
+    assert_eq!(report.findings[0].kind.name(), "derivatives-differ");
+    close(report.step.unwrap().a[(1, 0)], -9.0 * h, 1e-11);
 }
