@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
+from ._complex_step import complex_step as derivatives_of
 from ._descriptions import described_recordings, description_of
 from ._keywords import check_keywords
 from ._settings import positive
@@ -44,6 +45,7 @@ class Probe:
         action_scale: ArrayLike | None = None,
         mass: ArrayLike | None = None,
         pairs: Sequence[tuple[int, int]] | None = None,
+        complex_step: bool = False,
         fixed_dt: bool = False,
         equilibrium: bool | None = None,
         conservative: bool = False,
@@ -79,6 +81,9 @@ class Probe:
             Inertia of the velocities of ``pairs``, or its diagonal, for the defect of symplecticity.
         pairs:
             Pairs of the numbers of a position and of its velocity (default: found in the rates).
+        complex_step:
+            Whether the step also computes with complex numbers, whose imaginary parts then are its derivatives with rounding errors
+            only. Differences of the step confirm them; if these differ, that is a finding.
         fixed_dt:
             Whether the simulator has this step only.
         equilibrium:
@@ -105,11 +110,17 @@ class Probe:
         number_of_threads = thread_count(threads)
         point, command = vector("state", state), vector("action", action)
         n, m = len(point), len(command)
+        timestep = positive("dt", dt)
+        a, b = derivatives_of(step, point, command, timestep, batched) if complex_step else (None, None)
         host = Host(
             step=rows_of_step(step, n, batched),
             state=point,
             action=command,
-            dt=positive("dt", dt),
+            dt=timestep,
+            reference_A=a,
+            reference_B=b,
+            reference_source="complex steps" if complex_step else "",
+            reference_is_exact=bool(complex_step),
             states=tuple(f"x{i + 1}" for i in range(n)) if states is None else tuple(names("states", states)),
             inputs=tuple(f"u{i + 1}" for i in range(m)) if inputs is None else tuple(names("inputs", inputs)),
             title=str(title or getattr(step, "__name__", type(step).__name__)),

@@ -399,3 +399,21 @@ def test_a_host_with_rows_that_depend_on_each_other_is_found():
 
     host = Host(mixed, np.zeros(2), np.zeros(1), DT, ("q", "v"), ("u",), "mixed", "")
     assert "bits-differ" in kinds(probe.host(host)) and libration.probe is probe
+
+
+def test_the_complex_step_is_the_matrix_of_the_step_unless_differences_differ():
+    def pendulum(x, u, dt):
+        v = x[1] + dt * (-9 * np.sin(x[0]) + u[0])
+        return np.array([x[0] + dt * v, v])
+
+    h = 0.01
+    report = probe(pendulum, [0.0, 0.0], [0.0], h, complex_step=True)
+    assert report.findings == []
+    # Eight roundings.
+    assert np.allclose(report.A, [[1 - 9 * h * h, h], [-9 * h, 1]], rtol=8 * 2.0**-52, atol=0) and report.jacobian_error < 2e-15
+    # The absolute value drops the imaginary part.
+    report = probe(lambda x, u, dt: pendulum(x, u, dt) - dt * np.abs(x - 3), [0.0, 0.0], [0.0], h, complex_step=True, equilibrium=False)
+    assert [finding["kind"] for finding in report.findings] == ["derivatives-differ"]
+    assert abs(report.A[1, 1] - (1 + h)) < 1e-10
+    with pytest.raises(TypeError, match="step returned float64 for complex numbers"):
+        probe(lambda x, u, dt: pendulum(x.real, u.real, dt), [0.0, 0.0], [0.0], h, complex_step=True)
