@@ -110,6 +110,11 @@ class ProbeReport:
         """States × inputs of the step."""
         return self._matrix("step", "b")
 
+    @property
+    def jacobian_error(self) -> float:
+        """The largest estimated error of an entry of :attr:`A` and :attr:`B`, in parts of the largest entry of its row in units of the scales."""
+        return float(self.results["jacobian_error"])
+
     def _matrix(self, of: str, name: str) -> Array | None:
         found = self.results[of]
         if found is None:

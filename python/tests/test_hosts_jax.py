@@ -171,4 +171,4 @@ def test_a_function_of_jax_gives_the_same_bits_in_several_threads():
 def test_the_jacobian_of_jax_is_the_matrix_of_the_step():
     report = probe.jax(pendulum(jnp), [0.0, 0.0], [0.0], 0.01)
     host = jax_host(pendulum(jnp), [0.0, 0.0], [0.0], 0.01)
-    assert np.array_equal(report.step["a"], host.reference_A) and report.jacobian_error <= 8 * EPS
+    assert np.array_equal(report.A, host.reference_A) and report.jacobian_error <= 8 * EPS
