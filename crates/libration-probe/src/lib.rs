@@ -3,6 +3,7 @@
 //! [`probe()`] calls a [`BlackBox`] and measures: the matrices of its step and of the flow that it approximates, modes with their numerical
 //! damping, the longest stable step, hidden latency, order, integrator, defects and bits. A [`Subject`] names states and actions.
 
+mod audit;
 mod bits;
 mod black_box;
 mod child_process;
@@ -17,6 +18,7 @@ mod energy_drift;
 mod energy_finding;
 mod finding;
 mod finding_kind;
+mod findings;
 mod first_difference;
 mod flow;
 mod gains;
@@ -46,6 +48,7 @@ mod settling;
 mod subject;
 mod summary;
 
+pub use audit::probe;
 pub use bits::{BitCheck, Bits, Randomness};
 pub use black_box::{BlackBox, BlackBoxError};
 pub use child_process::ChildProcess;
@@ -75,7 +78,7 @@ pub use observed::Observed;
 pub use page::page;
 pub use recognition::{Candidate, Match, Recognition};
 pub use reference_check::ReferenceCheck;
-pub use report::{ProbeReport, probe};
+pub use report::ProbeReport;
 pub use rest::Rest;
 pub use rounding::Rounding;
 pub use settling::Settling;

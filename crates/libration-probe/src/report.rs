@@ -4,21 +4,19 @@ use libration::analysis::positions_and_velocities;
 use serde::Serialize;
 
 use crate::driven_velocity::{DrivenVelocity, driven_velocities};
-use crate::finding::{Finding, of_bits, of_report};
+use crate::finding::Finding;
 use crate::flow::Flow;
-use crate::held_action::HeldAction;
 use crate::hidden_latency::{HiddenLatency, hidden_latencies};
 use crate::linear_candidates::match_matrices;
 use crate::linearised_step::LinearisedStep;
 use crate::matrices::{Matrices, modified_flow};
-use crate::memory_finding::of_memory;
 use crate::modes::{ProbedMode, modes};
 use crate::prober::Prober;
 use crate::reference_check::ReferenceCheck;
 use crate::rest::Rest;
 use crate::{
-    Bits, BlackBox, BlackBoxError, Confirmation, Convergence, Defects, DelayAudit, LargestStep,
-    Match, Memory, Recognition, Settling, Subject,
+    Bits, BlackBoxError, Confirmation, Convergence, Defects, DelayAudit, LargestStep, Match,
+    Memory, Recognition, Subject,
 };
 
 /// Largest relative error of a row at which the step counts as differentiable.
@@ -92,65 +90,8 @@ pub struct ProbeReport {
     pub repeat_command: String,
 }
 
-/// Audits the step of a simulator.
-///
-/// # Errors
-/// The simulator fails or returns numbers that are not finite.
-pub fn probe(
-    black_box: &mut dyn BlackBox,
-    subject: &Subject,
-) -> Result<ProbeReport, BlackBoxError> {
-    let mut prober = Prober::new(black_box, subject);
-    // Fails early where the simulator does.
-    prober.step_one(&subject.state, &subject.action, subject.dt)?;
-    let memory = Memory::measure(&mut prober)?;
-    let calls = prober.calls;
-    let filters_commands = |settling: &Settling| settling.is_of_commands && settling.is_settled;
-    if memory.settling.as_ref().is_some_and(filters_commands) {
-        let held = subject.with_held_action();
-        let mut black_box = HeldAction { black_box, action: &subject.action };
-        let mut report = examine(&mut Prober::new(&mut black_box, &held), memory)?;
-        report.calls += calls;
-        return Ok(report);
-    }
-    examine(&mut prober, memory)
-}
-
-/// The audit of a black box whose memory is known.
-fn examine(prober: &mut Prober<'_>, memory: Memory) -> Result<ProbeReport, BlackBoxError> {
-    let subject = prober.subject;
-    let is_held = memory.settling.is_some() && subject.inputs.is_empty();
-    // A delay that grows later, by a step or two, is flushed as well.
-    let calls = if is_held { 0 } else { memory.calls.unwrap_or(memory.tried) };
-    prober.memory = if calls == 0 { 0 } else { calls + 2 };
-    prober.has_state_memory = memory.state.last.unwrap_or(0) > 0;
-    let mut findings = Vec::new();
-    let bits = Bits::check(prober)?;
-    // What is remembered explains differences of bits.
-    if memory.settling.is_none() || is_held {
-        of_bits(&bits, &mut findings);
-    }
-    let mut report = ProbeReport::empty(subject, bits);
-    if report.bits.randomness.is_none() || memory.settling.is_some() {
-        of_memory(&memory, subject, &mut findings);
-    }
-    if report.bits.randomness.is_none() && (is_held || memory.calls.is_some()) {
-        report.audit(prober, &memory)?;
-        of_report(&report, subject, &mut findings);
-    }
-    report.memory = Some(memory);
-    let longest_dt = report.largest_dt.as_ref().and_then(|limit| limit.dt);
-    for finding in &mut findings {
-        finding.help = finding.kind.help(subject.dt, longest_dt);
-    }
-    report.findings = findings;
-    report.calls = prober.calls;
-    report.answer = report.summary();
-    Ok(report)
-}
-
 impl ProbeReport {
-    fn empty(subject: &Subject, bits: Bits) -> Self {
+    pub(crate) fn empty(subject: &Subject, bits: Bits) -> Self {
         let mut notes = subject.notes.clone();
         if let Some(integrator) = &subject.integrator {
             notes.insert(0, format!("the simulator calls its integrator {integrator}"));
@@ -196,7 +137,11 @@ impl ProbeReport {
     }
 
     /// All measurements of a step that is reproducible.
-    fn audit(&mut self, prober: &mut Prober<'_>, memory: &Memory) -> Result<(), BlackBoxError> {
+    pub(crate) fn audit(
+        &mut self,
+        prober: &mut Prober<'_>,
+        memory: &Memory,
+    ) -> Result<(), BlackBoxError> {
         let subject = prober.subject;
         self.equilibrium = Rest::measure(prober)?;
         let has_fixed_dt = subject.has_fixed_dt || {

@@ -1,0 +1,64 @@
+//! The audit of a step: its order, and what ends it early.
+
+use crate::findings::{of_bits, of_report};
+use crate::held_action::HeldAction;
+use crate::memory_finding::of_memory;
+use crate::prober::Prober;
+use crate::{Bits, BlackBox, BlackBoxError, Memory, ProbeReport, Settling, Subject};
+
+/// Audits the step of a simulator.
+///
+/// # Errors
+/// The simulator fails or returns numbers that are not finite.
+pub fn probe(
+    black_box: &mut dyn BlackBox,
+    subject: &Subject,
+) -> Result<ProbeReport, BlackBoxError> {
+    let mut prober = Prober::new(black_box, subject);
+    // Fails early where the simulator does.
+    prober.step_one(&subject.state, &subject.action, subject.dt)?;
+    let memory = Memory::measure(&mut prober)?;
+    let calls = prober.calls;
+    let filters_commands = |settling: &Settling| settling.is_of_commands && settling.is_settled;
+    if memory.settling.as_ref().is_some_and(filters_commands) {
+        let held = subject.with_held_action();
+        let mut black_box = HeldAction { black_box, action: &subject.action };
+        let mut report = examine(&mut Prober::new(&mut black_box, &held), memory)?;
+        report.calls += calls;
+        return Ok(report);
+    }
+    examine(&mut prober, memory)
+}
+
+/// The audit of a black box whose memory is known.
+fn examine(prober: &mut Prober<'_>, memory: Memory) -> Result<ProbeReport, BlackBoxError> {
+    let subject = prober.subject;
+    let is_held = memory.settling.is_some() && subject.inputs.is_empty();
+    // A delay that grows later, by a step or two, is flushed as well.
+    let calls = if is_held { 0 } else { memory.calls.unwrap_or(memory.tried) };
+    prober.memory = if calls == 0 { 0 } else { calls + 2 };
+    prober.has_state_memory = memory.state.last.unwrap_or(0) > 0;
+    let mut findings = Vec::new();
+    let bits = Bits::check(prober)?;
+    // What is remembered explains differences of bits.
+    if memory.settling.is_none() || is_held {
+        of_bits(&bits, &mut findings);
+    }
+    let mut report = ProbeReport::empty(subject, bits);
+    if report.bits.randomness.is_none() || memory.settling.is_some() {
+        of_memory(&memory, subject, &mut findings);
+    }
+    if report.bits.randomness.is_none() && (is_held || memory.calls.is_some()) {
+        report.audit(prober, &memory)?;
+        of_report(&report, subject, &mut findings);
+    }
+    report.memory = Some(memory);
+    let longest_dt = report.largest_dt.as_ref().and_then(|limit| limit.dt);
+    for finding in &mut findings {
+        finding.help = finding.kind.help(subject.dt, longest_dt);
+    }
+    report.findings = findings;
+    report.calls = prober.calls;
+    report.answer = report.summary();
+    Ok(report)
+}
