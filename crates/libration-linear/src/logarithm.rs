@@ -1,5 +1,6 @@
 //! The logarithm of a matrix.
 
+use crate::hessenberg::balance;
 use crate::{Matrix, exponential, solve_matrix};
 
 /// Most square roots. Each halves the logarithm, and doubles its rounding.
@@ -16,7 +17,16 @@ const TOLERANCE: f64 = 1e-7;
 ///
 /// Square roots by the product form of the iteration of E. Denman and A. Beavers until the matrix is near the identity, then the series
 /// of the inverse hyperbolic tangent (N. Higham, *Functions of Matrices*, 2008, sections 6.3 and 11.5).
+/// In coordinates of powers of two that balance its rows and columns, so that units do not count.
 pub fn logarithm(matrix: &Matrix) -> Option<Matrix> {
+    let n = matrix.rows();
+    let mut balanced = matrix.clone();
+    let scales = balance(&mut balanced);
+    let found = logarithm_of_balanced(&balanced)?;
+    Some(Matrix::from_fn(n, n, |i, j| found[(i, j)] * scales[i] / scales[j]))
+}
+
+fn logarithm_of_balanced(matrix: &Matrix) -> Option<Matrix> {
     let n = matrix.rows();
     let identity = Matrix::identity(n);
     let mut root = matrix.clone();

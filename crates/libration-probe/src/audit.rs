@@ -19,7 +19,8 @@ pub fn probe(
     prober.step_one(&subject.state, &subject.action, subject.dt)?;
     let memory = Memory::measure(&mut prober)?;
     let calls = prober.calls;
-    let filters_commands = |settling: &Settling| settling.is_of_commands && settling.is_settled;
+    let filters_commands =
+        |settling: &Settling| settling.is_of_commands == Some(true) && settling.is_settled;
     if memory.settling.as_ref().is_some_and(filters_commands) {
         let held = subject.with_held_action();
         let mut black_box = HeldAction { black_box, action: &subject.action };
@@ -31,7 +32,7 @@ pub fn probe(
 }
 
 /// The audit of a black box whose memory is known.
-fn examine(prober: &mut Prober<'_>, memory: Memory) -> Result<ProbeReport, BlackBoxError> {
+fn examine(prober: &mut Prober<'_>, mut memory: Memory) -> Result<ProbeReport, BlackBoxError> {
     let subject = prober.subject;
     let is_held = memory.settling.is_some() && subject.inputs.is_empty();
     // A delay that grows later, by a step or two, is flushed as well.
@@ -45,11 +46,15 @@ fn examine(prober: &mut Prober<'_>, memory: Memory) -> Result<ProbeReport, Black
         of_bits(&bits, &mut findings);
     }
     let mut report = ProbeReport::empty(subject, bits);
-    if report.bits.randomness.is_none() || memory.settling.is_some() {
+    let is_repeatable = report.bits.randomness.is_none();
+    let is_audited = is_repeatable && (is_held || memory.calls.is_some());
+    if is_audited {
+        report.audit(prober, &mut memory)?;
+    }
+    if is_repeatable || memory.settling.is_some() {
         of_memory(&memory, subject, &mut findings);
     }
-    if report.bits.randomness.is_none() && (is_held || memory.calls.is_some()) {
-        report.audit(prober, &memory)?;
+    if is_audited {
         of_report(&report, subject, &mut findings);
     }
     report.memory = Some(memory);

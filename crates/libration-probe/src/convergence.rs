@@ -65,6 +65,8 @@ impl Convergence {
         let significant = differences.iter().take_while(|d| **d > ROUNDING).count();
         let estimates: Vec<f64> =
             differences[..significant].windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
+        // Of runs that diverge nothing is known.
+        let is_exact = !differences.is_empty() && differences.iter().all(|d| *d <= ROUNDING);
         // The shortest steps are nearest to the limit, until rounding is.
         let near = |x: f64, order: f64, most: f64| (x - order).abs() < most && order >= 1.0;
         let order = match estimates[..] {
@@ -76,7 +78,7 @@ impl Convergence {
             [only] => near(only, only.round(), SETTLED[1]).then_some(only.round() as u32),
             [] => None,
         };
-        Convergence { order, estimates, is_exact: significant == 0, differences }
+        Convergence { order, estimates, is_exact, differences }
     }
 }
 
@@ -85,10 +87,13 @@ fn end(prober: &mut Prober<'_>, halvings: usize) -> Result<Vec<f64>, BlackBoxErr
     let subject = prober.subject;
     let dt = subject.dt * 2.0_f64.powi(-(halvings as i32));
     let mut x = displaced(prober, 0.1);
+    // A method may be exact while no force acts.
+    let scales = subject.action.iter().zip(&subject.action_scale);
+    let action: Vec<f64> = scales.map(|(u, scale)| u + scale / 64.0).collect();
     // Earlier calls are forgotten.
-    prober.step_one(&x, &subject.action, dt)?;
+    prober.step_one(&x, &action, dt)?;
     for _ in 0..STEPS << halvings {
-        match prober.advance(&x, &subject.action, dt) {
+        match prober.advance(&x, &action, dt) {
             Ok(next) => x = next,
             Err(BlackBoxError::NotFinite { .. }) => return Ok(vec![f64::NAN; x.len()]),
             Err(error) => return Err(error),
@@ -124,5 +129,6 @@ mod tests {
         assert_eq!(Convergence::of(vec![1e-1, 2.5e-2, 6.2e-3, 2e-3, 8e-4]).order, None);
         assert_eq!(Convergence::of(vec![1e-9, 6.2e-11, 1e-14]).order, Some(4));
         assert!(Convergence::of(vec![0.0; 6]).is_exact);
+        assert!(!Convergence::of(vec![f64::NAN; 6]).is_exact);
     }
 }

@@ -39,6 +39,7 @@ impl Defects {
         step: &LinearisedStep,
         flow: Option<&Flow>,
         pairs: Option<&[(usize, usize)]>,
+        is_at_rest: bool,
     ) -> Result<Self, BlackBoxError> {
         let subject = prober.subject;
         let sizes = eigenvalues(&step.a).unwrap_or_default();
@@ -56,7 +57,7 @@ impl Defects {
                 halved = Some(irreversibility(prober, pairs, subject.dt / 2.0)?);
             }
         }
-        let energy = EnergyDrift::measure(prober, longest_period(flow))?;
+        let energy = EnergyDrift::measure(prober, longest_period(flow), is_at_rest)?;
         Ok(Defects {
             volume_rate: known(volume_rate, rounding),
             flow_volume_rate: flow.map(of_flow),

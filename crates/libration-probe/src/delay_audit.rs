@@ -10,8 +10,12 @@ use crate::prober::Prober;
 
 /// Steps of the audit of a command that is late, and of one that is not.
 const STEPS: [usize; 2] = [100_000, 2_000];
-/// Steps after which the ramp begins anew, longer than any delay that a memory can have.
-const RAMP: usize = 128;
+/// Steps after which the ramp begins anew.
+const RAMP: usize = 256;
+/// Its first ones, in which commands of the ramp before may act: any delay that a memory can have.
+const SKIPPED: usize = 64;
+/// Calls between measurements of the responses, so that a fault now and then is no part of most of them.
+const PAUSES: [usize; 5] = [0, 1, 2, 4, 7];
 /// Parts of a step to which delays are rounded.
 const PARTS: f64 = 1000.0;
 
@@ -29,9 +33,10 @@ pub struct DelayAudit {
 }
 
 impl DelayAudit {
-    /// The delay of most steps.
-    pub fn typical(&self) -> f64 {
-        self.delays.iter().max_by_key(|(_, count)| *count).map_or(0.0, |(delay, _)| *delay)
+    /// The mean delay in steps.
+    pub fn mean(&self) -> f64 {
+        let total: f64 = self.delays.iter().map(|(delay, count)| delay * *count as f64).sum();
+        total / self.steps as f64
     }
 
     /// Commands one input by a ramp. The state is the same at each step, so that the result shows the command that was used.
@@ -53,19 +58,30 @@ impl DelayAudit {
             action
         };
         // The response to each command of the ramp, which need not be linear.
-        let responses: Vec<f64> = (0..RAMP)
-            .map(|phase| Ok(prober.step_one(x, &ramp(phase), dt)?[shown]))
-            .collect::<Result<_, BlackBoxError>>()?;
+        let mut measured = vec![Vec::new(); RAMP];
+        for pause in PAUSES {
+            for _ in 0..pause {
+                prober.call_one(x, u, dt)?;
+            }
+            for (phase, all) in measured.iter_mut().enumerate() {
+                all.push(prober.step_one(x, &ramp(phase), dt)?[shown]);
+            }
+        }
+        let responses: Vec<f64> = measured.into_iter().map(median).collect();
         let mut counts: BTreeMap<i64, usize> = BTreeMap::new();
         let (mut start, mut first_change) = (None, None);
         let steps = if is_late { STEPS[0] } else { STEPS[1] };
-        for k in 0..RAMP + steps {
+        let mut audited = 0;
+        for k in 0.. {
+            if audited == steps {
+                break;
+            }
             let phase = k % RAMP;
             let response = prober.call_one(x, &ramp(phase), dt)?[shown];
-            // In the first half of a ramp commands of the ramp before may act.
-            if k < RAMP || phase < RAMP / 2 {
+            if k < RAMP || phase < SKIPPED {
                 continue;
             }
+            audited += 1;
             let Some(used) = place(&responses, response) else { return Ok(None) };
             let delay = ((phase as f64 - used) * PARTS).round() as i64;
             *counts.entry(delay).or_default() += 1;
@@ -73,12 +89,16 @@ impl DelayAudit {
                 first_change.get_or_insert(k);
             }
         }
-        let steps = counts.values().sum();
         let delays =
             counts.into_iter().map(|(delay, count)| (delay as f64 / PARTS, count)).collect();
         let input = subject.inputs[input].name.clone();
         Ok(Some(DelayAudit { input, steps, delays, first_change }))
     }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
 }
 
 /// Where a response lies between those of the ramp, in samples; none if these neither rise nor fall throughout.

@@ -21,7 +21,7 @@ const ROUNDING: f64 = 1e-13;
 /// The drift of the energy.
 #[derive(Clone, Debug, Serialize)]
 pub struct EnergyDrift {
-    /// Rate of the energy relative to that of the displacement, in 1/s.
+    /// Rate of the energy in 1/s, relative to that of a displacement from an equilibrium; else to the energy itself.
     pub rate: f64,
     /// The same with half the step.
     pub rate_halved: Option<f64>,
@@ -73,6 +73,7 @@ impl EnergyDrift {
     pub(crate) fn measure(
         prober: &mut Prober<'_>,
         longest_period: f64,
+        is_at_rest: bool,
     ) -> Result<Option<Self>, BlackBoxError> {
         let subject = prober.subject;
         let start = displaced(prober, DISPLACEMENT);
@@ -84,7 +85,8 @@ impl EnergyDrift {
         let wanted = PERIODS * longest_period / subject.dt;
         let steps = least.max((wanted as usize).min(MOST_STEPS)) / 2 * 2;
         let is_short = wanted > 2.0 * steps as f64;
-        let size = (energy - rest).abs().max(f64::MIN_POSITIVE);
+        let size = if is_at_rest { energy - rest } else { energy };
+        let size = size.abs().max(f64::MIN_POSITIVE);
         let Some(full) = rate(prober, &start, subject.dt, steps, size)? else {
             return Ok(Some(EnergyDrift {
                 rate: f64::INFINITY,

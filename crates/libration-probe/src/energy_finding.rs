@@ -17,7 +17,13 @@ pub(crate) fn negative_damping(driven: &DrivenVelocity) -> String {
 }
 
 /// Energy that the system itself gains or loses, in words.
-pub(crate) fn energy_leak(defects: Option<&Defects>, modes: &[ProbedMode]) -> Option<String> {
+///
+/// Modes show it at an equilibrium only, and not against a trajectory that would have shown it.
+pub(crate) fn energy_leak(
+    defects: Option<&Defects>,
+    modes: &[ProbedMode],
+    is_at_rest: bool,
+) -> Option<String> {
     let drift = defects.and_then(|defects| defects.energy.as_ref());
     if let Some(drift) = drift.filter(|drift| drift.reason == DriftReason::System) {
         return Some(format!(
@@ -25,8 +31,13 @@ pub(crate) fn energy_leak(defects: Option<&Defects>, modes: &[ProbedMode]) -> Op
             signed(drift.rate)
         ));
     }
-    let (mode, flow) = modes.iter().find_map(|mode| {
+    let unseen =
+        drift.filter(|drift| drift.reason == DriftReason::None).map(|drift| drift.resolution);
+    let (mode, flow) = modes.iter().filter(|_| is_at_rest).find_map(|mode| {
         let flow = mode.flow?;
+        if unseen.is_some_and(|resolution| 2.0 * flow.growth_rate.abs() > 3.0 * resolution) {
+            return None;
+        }
         let size = core::f64::consts::TAU * flow.frequency;
         (flow.frequency > 0.0 && flow.growth_rate.abs() > (LEAK * size).max(3.0 * mode.error))
             .then_some((mode, flow))

@@ -132,7 +132,7 @@ impl FindingKind {
                 "compute in f64 (JAX: `jax_enable_x64`, PyTorch: `torch.float64`), or compare results to six digits only"
             }
             FindingKind::Rough => {
-                "tighten the tolerance of iterative solvers or fix the number of their iterations, and interpolate tables smoothly"
+                "tighten the tolerance of iterative solvers or fix the number of their iterations, interpolate tables smoothly, and print 17 digits"
             }
             FindingKind::LateCommand => {
                 "use the command in the call that receives it, or design the controller for this latency (`report.advise` in Python adds it)"
@@ -172,7 +172,7 @@ impl FindingKind {
                 "audit at an equilibrium (MuJoCo: `--settle`); if the motion is meant, add `--moving` (Python: `equilibrium=False`)"
             }
             FindingKind::NotDifferentiable => {
-                "audit at a state off the contact, the limit or the standstill of friction"
+                "audit at a state off the contact, the limit or the standstill of friction; a program must print 17 digits, and scales must be typical deviations (`--state-scale`)"
             }
             FindingKind::Nonlinear => {
                 "use the modes for smaller deviations only, and audit again at the other states of the motion"

@@ -98,9 +98,15 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
         found.push(Finding::warning(
             NotDifferentiable,
             format!(
-                "the step has no derivative at this state (relative error {}): a contact, a limit or dry friction changes there",
+                "the step has no derivative at this state (relative error {}): a contact, a limit, dry friction or another switch changes there, or its results are coarse",
                 number(report.jacobian_error, 2)
             ),
+        ));
+    }
+    for input in &report.unclear_inputs {
+        found.push(Finding::warning(
+            NotDifferentiable,
+            format!("the step has no derivative by `{input}` at this action: a limit or a dead zone begins there"),
         ));
     }
     let equilibrium = &report.equilibrium;
@@ -168,8 +174,19 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
             .map(|driven| Finding::new(NegativeDamping, is_fault, negative_damping(driven))),
     );
     if report.is_conservative {
-        let leak = energy_leak(report.defects.as_ref(), &report.modes);
+        let leak = energy_leak(report.defects.as_ref(), &report.modes, equilibrium.holds);
         found.extend(leak.map(|text| Finding::fault(EnergyLeak, text)));
+    }
+    let grows = report.spectral_radius > 1.0 + COARSE;
+    if report.flow.is_none() && grows && !subject.has_fixed_dt && !report.ignores_dt {
+        found.push(Finding::warning(
+            UnstableStep,
+            format!(
+                "a mode of the step of {} s grows by a factor of {} per step; whether it grows in the system, too, is unknown: shorter steps have no limit",
+                number(report.dt, 6),
+                number(report.spectral_radius, 6)
+            ),
+        ));
     }
     if let Some(limit) = &report.largest_dt {
         if limit.grows_always {
@@ -181,10 +198,11 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
                 ),
             ));
         } else if limit.dt.is_some_and(|dt| dt < report.dt) {
-            found.push(Finding::fault(
+            found.push(Finding::new(
                 UnstableStep,
+                equilibrium.holds,
                 format!(
-                    "the step of {} s is unstable though the system is stable; the longest stable step is {} s, limited by the mode of {}",
+                    "the step of {} s is unstable: a mode grows that does not grow so in the system; the longest stable step is {} s, limited by the mode of {}",
                     number(report.dt, 6),
                     number(limit.dt.unwrap_or(0.0), 6),
                     limit.mode

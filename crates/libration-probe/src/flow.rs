@@ -1,17 +1,17 @@
 //! The system in continuous time that a step approximates: the limit of small steps.
 
-use libration::linear::{Matrix, logarithm};
+use libration::linear::{Matrix, eigenvalues, logarithm};
 
+use crate::BlackBoxError;
 use crate::linearised_step::LinearisedStep;
 use crate::prober::Prober;
-use crate::{BlackBoxError, Subject};
 
 /// Halvings of the step that are tried until it is short beside all motions.
-const MOST_HALVINGS: usize = 24;
+const MOST_HALVINGS: usize = 40;
 /// Steps from which the limit is extrapolated, each half of the one before.
 const LEVELS: usize = 5;
-/// Distance of the matrix of a short step from the identity, in units of the scales.
-const SHORT: f64 = 0.5;
+/// Distance of all factors of a short step from 1.
+const SHORT: f64 = 0.2;
 
 /// The rates of small deviations, `ẋ = A x + B u`.
 #[derive(Clone, Debug)]
@@ -48,7 +48,7 @@ impl Flow {
             if !step.is_finite() {
                 return Ok(None);
             }
-            match rates(step, subject) {
+            match rates(step) {
                 Some(level) => levels.push(level),
                 // A longer step may be short where this one is not, if its matrix is close to the identity by chance.
                 None => levels.clear(),
@@ -85,15 +85,11 @@ impl Flow {
 }
 
 /// The rates whose exact flow a short step is, and their errors.
-fn rates(step: &LinearisedStep, subject: &Subject) -> Option<(Matrix, Matrix)> {
-    let scale = [&subject.state_scale[..], &subject.action_scale].concat();
+fn rates(step: &LinearisedStep) -> Option<(Matrix, Matrix)> {
     let whole = step.augmented();
     let size = whole.rows();
-    let off = Matrix::from_fn(size, size, |i, j| {
-        (whole[(i, j)] - f64::from(u8::from(i == j))) * scale[j] / scale[i]
-    });
     let n = step.a.rows();
-    if off.block((0, 0), (n, n)).row_sum_norm() > SHORT {
+    if eigenvalues(&step.a)?.iter().any(|z| (z - 1.0).norm() > SHORT) {
         return None;
     }
     let rates = logarithm(&whole)?.scaled(step.dt.recip());

@@ -7,6 +7,8 @@ use crate::prober::Prober;
 
 /// Calls after which a black box should have forgotten what was before.
 pub(crate) const MOST_CALLS: usize = 64;
+/// Part of the sum of all sizes below which the parts of a response cancel.
+const CANCELS: f64 = 0.1;
 
 /// When results respond to a change that lasts for one call.
 #[derive(Clone, Debug, Serialize)]
@@ -21,22 +23,45 @@ pub struct Lateness {
     pub mean: f64,
 }
 
-/// Sizes of the responses to one changed call, from its own.
+/// The responses to one changed call, from its own: differences of the states in units of the scales, and of the observations.
 #[derive(Default)]
 pub(crate) struct Response {
-    pub(crate) states: Vec<f64>,
-    pub(crate) observations: Option<Vec<f64>>,
+    pub(crate) states: Vec<Vec<f64>>,
+    pub(crate) observations: Option<Vec<Vec<f64>>>,
 }
 
 impl Lateness {
-    pub(crate) fn of(name: &str, sizes: &[f64]) -> Self {
-        let first = sizes.iter().position(|size| *size > 0.0);
-        let last = sizes.iter().rposition(|size| *size > 0.0);
-        let total: f64 = sizes.iter().sum();
-        let moment: f64 = sizes.iter().enumerate().map(|(k, size)| k as f64 * size).sum();
-        let mean = if total > 0.0 { moment / total } else { 0.0 };
-        Lateness { of: name.to_owned(), first, last, mean }
+    pub(crate) fn of(name: &str, responses: &[Vec<f64>]) -> Self {
+        let responds = |response: &Vec<f64>| response.iter().any(|x| *x != 0.0);
+        let first = responses.iter().position(responds);
+        let last = responses.iter().rposition(responds);
+        Lateness { of: name.to_owned(), first, last, mean: mean_delay(responses) }
     }
+
+    /// That of the component of observations that is the latest.
+    pub(crate) fn of_latest(name: &str, responses: &[Vec<f64>]) -> Self {
+        let count = responses.first().map_or(0, Vec::len);
+        let component = |i: usize| responses.iter().map(|x| vec![x[i]]).collect::<Vec<_>>();
+        let all = (0..count).map(|i| Lateness::of(name, &component(i)));
+        let latest = all.filter(|found| found.first.is_some());
+        latest.max_by(|a, b| a.mean.total_cmp(&b.mean)).unwrap_or_else(|| Lateness::of(name, &[]))
+    }
+}
+
+/// The mean delay of a response to one changed call, weighted with its parts along the whole response; with its sizes if these cancel.
+fn mean_delay(responses: &[Vec<f64>]) -> f64 {
+    let count = responses.first().map_or(0, Vec::len);
+    let whole: Vec<f64> = (0..count).map(|i| responses.iter().map(|x| x[i]).sum()).collect();
+    let along = |x: &[f64]| x.iter().zip(&whole).map(|(a, b)| a * b).sum::<f64>();
+    let size = |x: &[f64]| x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let weighted = |weight: &dyn Fn(&[f64]) -> f64| {
+        let weights: Vec<f64> = responses.iter().map(|x| weight(x)).collect();
+        let total: f64 = weights.iter().sum();
+        let moment: f64 = weights.iter().enumerate().map(|(k, weight)| k as f64 * weight).sum();
+        if total > 0.0 { moment / total } else { 0.0 }
+    };
+    let total: f64 = responses.iter().map(|x| size(x)).sum();
+    if size(&whole) > CANCELS * total { weighted(&along) } else { weighted(&size) }
 }
 
 /// All states of the subject, moved by different parts of their scales.
@@ -46,7 +71,7 @@ pub(crate) fn moved(prober: &Prober<'_>) -> Vec<f64> {
     subject.state.iter().enumerate().map(|(i, x)| x + shift(i)).collect()
 }
 
-/// Responses to one call with another state or action, after an even and after an odd number of calls; the larger of both.
+/// The responses to one call with another state or action, after an even and after an odd number of calls: their sums.
 pub(crate) fn respond(
     prober: &mut Prober<'_>,
     x: &[f64],
@@ -55,12 +80,12 @@ pub(crate) fn respond(
     let mut first = respond_now(prober, x, u)?;
     // One call that counts: the next change comes at the other parity.
     let second = respond_now(prober, x, u)?;
-    let merge = |a: &mut Vec<f64>, b: &[f64]| {
-        a.iter_mut().zip(b).for_each(|(a, b)| *a = a.max(*b));
+    let add = |a: &mut [Vec<f64>], b: &[Vec<f64>]| {
+        a.iter_mut().flatten().zip(b.iter().flatten()).for_each(|(a, b)| *a += b);
     };
-    merge(&mut first.states, &second.states);
+    add(&mut first.states, &second.states);
     if let (Some(a), Some(b)) = (&mut first.observations, &second.observations) {
-        merge(a, b);
+        add(a, b);
     }
     Ok(first)
 }
@@ -75,9 +100,9 @@ fn respond_now(prober: &mut Prober<'_>, x: &[f64], u: &[f64]) -> Result<Response
     for k in 0..=MOST_CALLS + 1 {
         let (x, u) = if k == 0 { (x, u) } else { (&base_x[..], &base_u[..]) };
         let (next, observation) = observed(prober, x, u)?;
-        response.states.push(distance(&next, &base.0, Some(scale)));
+        response.states.push(differences(&next, &base.0, Some(scale)));
         if let (Some(seen), Some(base)) = (&observation, &base.1) {
-            response.observations.get_or_insert_default().push(distance(seen, base, None));
+            response.observations.get_or_insert_default().push(differences(seen, base, None));
         }
     }
     Ok(response)
@@ -91,12 +116,21 @@ fn observed(prober: &mut Prober<'_>, x: &[f64], u: &[f64]) -> Result<Seen, Black
     Ok((next, observation))
 }
 
-/// The distance of two results; any difference of bits counts.
-pub(crate) fn distance(a: &[f64], b: &[f64], scale: Option<&[f64]>) -> f64 {
+/// The differences of two results; any difference of bits counts.
+fn differences(a: &[f64], b: &[f64], scale: Option<&[f64]>) -> Vec<f64> {
     let size = |i: usize| scale.map_or(1.0, |scale| scale[i]);
-    let apart = |i: usize| match a[i].to_bits() == b[i].to_bits() {
-        true => 0.0,
-        false => ((a[i] - b[i]) / size(i)).abs().max(f64::MIN_POSITIVE),
+    let apart = |i: usize| {
+        let difference = (a[i] - b[i]) / size(i);
+        match a[i].to_bits() == b[i].to_bits() {
+            true => 0.0,
+            false if difference == 0.0 => f64::MIN_POSITIVE,
+            false => difference,
+        }
     };
-    (0..a.len().min(b.len())).map(apart).fold(0.0, f64::max)
+    (0..a.len().min(b.len())).map(apart).collect()
+}
+
+/// The distance of two results in units of the scales.
+pub(crate) fn distance(a: &[f64], b: &[f64], scale: &[f64]) -> f64 {
+    differences(a, b, Some(scale)).iter().fold(0.0, |most, x| most.max(x.abs()))
 }

@@ -13,18 +13,26 @@ use crate::prober::Prober;
 const OUTSIDE: f64 = 1e-12;
 /// Errors of a factor that count as outside, too. The two factors of a free mass, both 1, are off by the root of a rounding.
 const ERRORS: f64 = 10.0;
+/// Growth of a mode that counts as carried out by the flow, in units of its own: a step may be inaccurate before it is unstable.
+const OWN_GROWTH: f64 = 2.0;
+/// On a motion the rates change within a step, which looks like growth of slow modes. There only modes that are fast beside the step
+/// count, by the distance of their factors from 1, and growth beyond this per step.
+const FAST: f64 = 0.5;
+const GROWTH_ON_A_MOTION: f64 = 0.01;
 /// Part of the growth beyond a limit that remains at half the step where a mode grows with every step: that by methods of orders 1 to 4
 /// falls by 4 to 32. Where a factor leaves the circle at a limit, nothing remains.
 const REMAINS: f64 = 0.02;
 /// Ratio of successive trial steps.
 const RATIO: f64 = 1.25;
-/// Longest and shortest trial relative to the step of the subject.
+/// Longest and shortest trial, at least: relative to the step of the subject, and relative to the time of the fastest mode.
 const RANGE: f64 = 1e4;
+const RANGE_OF_FASTEST: [f64; 2] = [0.01, 10.0];
 const BISECTIONS: usize = 40;
 /// Relative width of the bracket at which bisection ends.
 const RESOLUTION: f64 = 1e-7;
 
-/// The longest step until a mode leaves the unit circle that the flow does not carry out.
+/// The longest step until a mode leaves the unit circle that the flow does not carry out. A mode that grows in the system, too, leaves
+/// when it grows twice as fast.
 #[derive(Clone, Debug, Serialize)]
 pub struct LargestStep {
     /// In s; none if no limit was found.
@@ -42,9 +50,14 @@ pub struct LargestStep {
 }
 
 impl LargestStep {
-    pub(crate) fn search(prober: &mut Prober<'_>, flow: &Flow) -> Result<Self, BlackBoxError> {
+    /// `is_at_rest`: whether the state is an equilibrium.
+    pub(crate) fn search(
+        prober: &mut Prober<'_>,
+        flow: &Flow,
+        is_at_rest: bool,
+    ) -> Result<Self, BlackBoxError> {
         let start = prober.subject.dt;
-        let rates = eigenvalues(&flow.a).unwrap_or_default();
+        let rates = FlowRates::of(flow, is_at_rest);
         let mut found = LargestStep {
             dt: None,
             tried_up_to: start,
@@ -61,10 +74,13 @@ impl LargestStep {
             found.mode = name_mode(&own.step, z, prober.subject);
         }
         let mut dt = start;
+        let fastest = if rates.fastest > 0.0 { rates.fastest.recip() } else { start };
+        let range = (start / RANGE).min(RANGE_OF_FASTEST[0] * fastest)
+            ..=(start * RANGE).max(RANGE_OF_FASTEST[1] * fastest);
         // Up from a stable step, down from an unstable one.
         loop {
             let next = if is_unstable { dt / RATIO } else { dt * RATIO };
-            if !(start / RANGE..=start * RANGE).contains(&next) {
+            if !range.contains(&next) {
                 found.tried_up_to = dt;
                 found.grows_always = is_unstable;
                 return Ok(found);
@@ -87,7 +103,7 @@ impl LargestStep {
     fn bisect(
         mut self,
         prober: &mut Prober<'_>,
-        rates: &[Complex64],
+        rates: &FlowRates,
         mut low: f64,
         mut high: f64,
     ) -> Result<Self, BlackBoxError> {
@@ -121,42 +137,70 @@ impl LargestStep {
     }
 }
 
+/// Growth rates of the flow, the fastest first, with their errors.
+struct FlowRates {
+    rates: Vec<(f64, f64)>,
+    /// The largest `|s|`.
+    fastest: f64,
+    is_at_rest: bool,
+}
+
+impl FlowRates {
+    fn of(flow: &Flow, is_at_rest: bool) -> Self {
+        let values = eigenvalues(&flow.a).unwrap_or_default();
+        let errors = eigenvalue_errors(&flow.a, &flow.a_errors, &values);
+        let mut rates: Vec<(f64, f64)> = values.iter().map(|s| s.re).zip(errors).collect();
+        rates.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let fastest = values.iter().map(|s| s.norm()).fold(0.0, f64::max);
+        FlowRates { rates, fastest, is_at_rest }
+    }
+}
+
 /// A step of a trial length.
 struct Trial {
     step: LinearisedStep,
-    /// The largest growth of a mode per step beyond that of the flow.
+    /// The growth per step of the mode that leaves most clearly beyond that of the flow.
     excess: f64,
-    /// The estimated error of its factor.
+    /// The growth beyond which it leaves.
     error: f64,
-    /// The factor of the mode that leaves the circle though the flow does not carry it out.
+    /// Its factor.
     leaving: Option<Complex64>,
     is_unknown: bool,
 }
 
 impl Trial {
-    fn at(prober: &mut Prober<'_>, rates: &[Complex64], dt: f64) -> Result<Self, BlackBoxError> {
+    fn at(prober: &mut Prober<'_>, flow: &FlowRates, dt: f64) -> Result<Self, BlackBoxError> {
         let step = LinearisedStep::of_states(prober, dt)?;
         let mut factors = match step.a.is_finite() {
             true => eigenvalues(&step.a).unwrap_or_default(),
             false => Vec::new(),
         };
-        let is_unknown = factors.is_empty();
         factors.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
-        // The modes that the flow carries out, the fastest first, account for as many of the step.
-        let growing = rates.iter().filter(|s| (s.re * dt).exp() > 1.0 + OUTSIDE).count();
-        let leaving = factors.get(growing).copied();
-        let excess = leaving.map_or(0.0, |z| z.norm() - 1.0);
         let errors = eigenvalue_errors(&step.a, &step.a_errors, &factors);
         // At least that of an entry: errors of a solver of constraints are not independent.
-        let error = errors
-            .get(growing)
-            .copied()
-            .unwrap_or(0.0)
-            .max(largest_scaled(&step.a_errors, prober.subject) / ERRORS);
-        Ok(Trial { step, excess, error, leaving, is_unknown })
+        let of_entries = largest_scaled(&step.a_errors, prober.subject) / ERRORS;
+        let mut found =
+            Trial { step, excess: 0.0, error: 0.0, leaving: None, is_unknown: factors.is_empty() };
+        // The modes of the step and of the flow in the order of their growth: what the fastest of the flow carry out is theirs.
+        for (k, (z, error)) in factors.iter().zip(errors).enumerate() {
+            let (rate, rate_error) = flow.rates.get(k).copied().unwrap_or((0.0, 0.0));
+            let own = (rate + ERRORS * rate_error).max(0.0);
+            let excess = z.norm().ln() - OWN_GROWTH * own * dt;
+            let mut error = OUTSIDE.max(ERRORS * error.max(of_entries));
+            if !flow.is_at_rest {
+                error = error.max(GROWTH_ON_A_MOTION);
+                if (z - 1.0).norm() < FAST {
+                    continue;
+                }
+            }
+            if found.leaving.is_none() || excess - error > found.excess - found.error {
+                (found.excess, found.error, found.leaving) = (excess, error, Some(*z));
+            }
+        }
+        Ok(found)
     }
 
     fn is_unstable(&self) -> bool {
-        self.is_unknown || self.excess > OUTSIDE.max(ERRORS * self.error)
+        self.is_unknown || (self.leaving.is_some() && self.excess > self.error)
     }
 }

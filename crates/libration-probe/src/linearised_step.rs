@@ -6,6 +6,11 @@ use crate::differences::{Jacobian, jacobian};
 use crate::prober::Prober;
 use crate::{BlackBoxError, Subject};
 
+/// Largest relative error of a derivative.
+const UNCLEAR: f64 = 0.01;
+/// Errors in units of the scales that may be roundings.
+const ROUNDING: f64 = 1e-9;
+
 /// The matrices of a step of small deviations, `x' = A x + B u`, with estimated absolute errors.
 #[derive(Clone, Debug)]
 pub(crate) struct LinearisedStep {
@@ -72,6 +77,15 @@ impl LinearisedStep {
 
     /// The largest estimated error of an entry, in units of the scales and relative to the largest entry of its row.
     pub(crate) fn relative_error(&self, subject: &Subject) -> f64 {
+        self.error_of(subject, true)
+    }
+
+    /// The same of derivatives by states only.
+    pub(crate) fn relative_error_of_states(&self, subject: &Subject) -> f64 {
+        self.error_of(subject, false)
+    }
+
+    fn error_of(&self, subject: &Subject, with_inputs: bool) -> f64 {
         let scaled = |matrix: &Matrix, i: usize, j: usize, scale: &[f64]| {
             (matrix[(i, j)] * scale[j] / subject.state_scale[i]).abs()
         };
@@ -83,9 +97,26 @@ impl LinearisedStep {
         (0..self.a.rows())
             .map(|i| {
                 let size = largest(i, &self.a, &self.b).max(f64::MIN_POSITIVE);
-                largest(i, &self.a_errors, &self.b_errors) / size
+                let none = Matrix::zeros(self.a.rows(), 0);
+                let b_errors = if with_inputs { &self.b_errors } else { &none };
+                largest(i, &self.a_errors, b_errors) / size
             })
             .fold(0.0, f64::max)
+    }
+
+    /// The inputs by which the step has no derivative: the error of their column is no small part of it, and no rounding.
+    pub(crate) fn unclear_inputs(&self, subject: &Subject) -> Vec<usize> {
+        let largest = |matrix: &Matrix, j: usize| {
+            let scaled = |i: usize| {
+                (matrix[(i, j)] * subject.action_scale[j] / subject.state_scale[i]).abs()
+            };
+            (0..matrix.rows()).map(scaled).fold(0.0, f64::max)
+        };
+        let is_unclear = |j: &usize| {
+            let error = largest(&self.b_errors, *j);
+            error > UNCLEAR * largest(&self.b, *j) && error > ROUNDING
+        };
+        (0..self.b.columns()).filter(is_unclear).collect()
     }
 
     /// The matrices on states and held actions, `[[A, B], [0, 1]]`.

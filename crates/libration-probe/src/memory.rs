@@ -47,15 +47,19 @@ impl Memory {
         }
         let response = respond(prober, &moved(prober), u)?;
         let state = Lateness::of("state", &response.states);
-        let observation =
-            response.observations.as_ref().map(|sizes| Lateness::of("observation", sizes));
-        let all = || inputs.iter().chain([&state]).chain(observation.iter());
-        let calls = all().filter_map(|lateness| lateness.last).max().unwrap_or(0);
+        let seen = response.observations.as_deref();
+        let observation = seen.map(|seen| Lateness::of_latest("observation", seen));
+        let last_seen = seen.and_then(|seen| Lateness::of("observation", seen).last);
+        // Observations that vary on and on say nothing about the states.
+        let observation_varies = last_seen.is_some_and(|last| last >= MOST_CALLS);
+        let last = inputs.iter().chain([&state]).filter_map(|lateness| lateness.last);
+        let calls = last.chain(last_seen.filter(|_| !observation_varies)).max().unwrap_or(0);
         // The last call that was tried still responds: the end of the memory is beyond it.
         let calls = (calls < MOST_CALLS).then_some(calls);
         let settling = if calls.is_none() { Settling::measure(prober)? } else { None };
         let observed = match &observation {
             None => None,
+            Some(_) if observation_varies => Some(Observed::Varying),
             Some(response) => Some(Observed::of(prober, response.first.is_some())?),
         };
         Ok(Memory { calls, tried: MOST_CALLS, inputs, state, observation, observed, settling })
@@ -68,7 +72,8 @@ impl Memory {
 
     /// Steps by which observations are later than the states.
     pub fn staleness(&self) -> f64 {
-        let late = self.observation.as_ref().filter(|found| found.first.is_some());
+        let varies = self.observed == Some(Observed::Varying);
+        let late = self.observation.as_ref().filter(|found| found.first.is_some() && !varies);
         let late = late.map_or(0.0, |observation| observation.mean - self.state.mean);
         late + if self.observed == Some(Observed::Given) { 1.0 } else { 0.0 }
     }

@@ -13,13 +13,15 @@ pub(crate) fn of_memory(memory: &Memory, subject: &Subject, found: &mut Vec<Find
     let dt = subject.dt;
     if let Some(settling) = &memory.settling {
         let (of, held) = match settling.is_of_commands {
-            true => ("commands", "; the audit holds them"),
-            false => ("states", ""),
+            Some(true) if settling.is_settled => ("the commands of ", "; the audit holds them"),
+            Some(true) => ("the commands of ", ""),
+            Some(false) => ("the states of ", ""),
+            None => ("", ""),
         };
         found.push(Finding::fault(
             HiddenState,
             format!(
-                "results depend on the {of} of many calls ago, as those of a filter do: their influence falls by {:.4} per call (time constant {:.4} s), and the step does not return that state{held}",
+                "results depend on {of}many calls ago, as those of a filter do: their influence falls by {:.4} per call (time constant {:.4} s), and the step does not return that state{held}",
                 settling.factor, settling.time_constant
             ),
         ));
@@ -38,7 +40,9 @@ pub(crate) fn of_memory(memory: &Memory, subject: &Subject, found: &mut Vec<Find
     for (j, input) in memory.inputs.iter().enumerate() {
         let stated = subject.stated_delays.get(j).copied().unwrap_or(0.0) / dt;
         // A delay that the simulator states is none that it hides.
-        if (input.mean - stated).abs() < DELAY {
+        // Between two steps a queue that holds its commands is read at the later one.
+        let held = (stated - DELAY).ceil();
+        if (input.mean - stated).abs() < DELAY || (input.mean - held).abs() < DELAY {
             continue;
         }
         let first = input.first.unwrap_or(0);
@@ -71,10 +75,16 @@ pub(crate) fn of_memory(memory: &Memory, subject: &Subject, found: &mut Vec<Find
             ConstantObservation,
             "observations do not respond to the states".into(),
         )),
+        Some(Observed::Varying) => found.push(Finding::fault(
+            NotReproducible,
+            "observations of the same state vary on and on: by random numbers, or by a filter that the state does not have".into(),
+        )),
         Some(Observed::Given) => found.push(Finding::fault(
             StaleObservation,
             format!(
-                "observations are those of the given states and not of the returned ones, one step ({dt:.4} s) older: the simulator stores them before its update"
+                "observations are those of the given states and not of the returned ones, {:.3} steps ({:.4} s) older: the simulator stores them before its update",
+                memory.staleness(),
+                memory.staleness() * dt
             ),
         )),
         _ => {}

@@ -16,6 +16,8 @@ pub enum Observed {
     Given,
     /// None: all observations are the same.
     Nothing,
+    /// Unknown: observations of the same state vary on and on.
+    Varying,
 }
 
 impl Observed {
@@ -31,8 +33,8 @@ impl Observed {
         let (dt, u) = (subject.dt, &subject.action);
         let (x, other) = (displaced(prober, 0.1), displaced(prober, 0.2));
         let (next, seen) = after(prober, &x, u, dt)?;
-        let is_stored = prober.observe(&other)? == seen;
-        if !is_stored || subject.has_fixed_dt {
+        let seen_of_other = prober.observe(&other)?;
+        if subject.has_fixed_dt {
             return Ok(Observed::Asked);
         }
         let mut changed = u.clone();
@@ -40,10 +42,15 @@ impl Observed {
         let (of_half, seen_of_half) = after(prober, &x, u, dt / 2.0)?;
         let (_, seen_of_changed) = after(prober, &x, &changed, dt)?;
         let (_, seen_later) = after(prober, &next, u, dt)?;
-        let is_of_given = seen_of_half == seen && seen_of_changed == seen;
-        // Else an observation of what never changes would be one of a given state.
-        let shows_changes = of_half != next && seen_later != seen;
-        Ok(if is_of_given && shows_changes { Observed::Given } else { Observed::Asked })
+        let value = |of: &Option<Vec<f64>>, i: usize| of.as_ref().map(|of| of[i]);
+        let is_of_given = |i: usize| {
+            let is = |other: &Option<Vec<f64>>| value(other, i) == value(&seen, i);
+            // An observation of what never changes is none of a given state.
+            is(&seen_of_other) && is(&seen_of_half) && is(&seen_of_changed) && !is(&seen_later)
+        };
+        let count = seen.as_ref().map_or(0, Vec::len);
+        let shows_given = of_half != next && (0..count).any(is_of_given);
+        Ok(if shows_given { Observed::Given } else { Observed::Asked })
     }
 }
 

@@ -53,6 +53,11 @@ pub struct ProbeReport {
     pub step: Option<Matrices>,
     /// The largest estimated error of an entry, relative to the largest entry of its row in units of the scales.
     pub jacobian_error: f64,
+    /// That of derivatives by states only.
+    #[serde(skip)]
+    pub(crate) state_error: f64,
+    /// Inputs by which the step has no derivative at the action.
+    pub unclear_inputs: Vec<String>,
     /// The rates in the limit of small steps; none if the step has one length only.
     pub flow: Option<Matrices>,
     /// The system in continuous time whose exact flow the step is, with all its numerical damping: the logarithm of the step. None if a
@@ -116,6 +121,8 @@ impl ProbeReport {
             ignores_dt: false,
             step: None,
             jacobian_error: f64::INFINITY,
+            state_error: f64::INFINITY,
+            unclear_inputs: Vec::new(),
             flow: None,
             modified_flow: None,
             confirmation: None,
@@ -140,7 +147,7 @@ impl ProbeReport {
     pub(crate) fn audit(
         &mut self,
         prober: &mut Prober<'_>,
-        memory: &Memory,
+        memory: &mut Memory,
     ) -> Result<(), BlackBoxError> {
         let subject = prober.subject;
         self.equilibrium = Rest::measure(prober)?;
@@ -150,13 +157,22 @@ impl ProbeReport {
         };
         let mut step = LinearisedStep::at(prober, subject.dt)?;
         self.jacobian_error = step.relative_error(subject);
+        self.state_error = step.relative_error_of_states(subject);
         if !step.is_finite() {
             return Ok(());
         }
-        for (j, input) in memory.inputs.iter().enumerate().take(subject.inputs.len()) {
+        let unclear = step.unclear_inputs(subject).into_iter();
+        self.unclear_inputs = unclear.map(|j| subject.inputs[j].name.clone()).collect();
+        for (j, input) in memory.inputs.iter_mut().enumerate().take(subject.inputs.len()) {
             let is_late = input.last.unwrap_or(0) > 0;
             let audit = DelayAudit::run(prober, &step, j, is_late)?;
             // A command that is always in time needs no table.
+            if let Some(audit) =
+                audit.as_ref().filter(|audit| is_late && audit.first_change.is_some())
+            {
+                // Of more steps than two changes reach.
+                input.mean = audit.mean();
+            }
             self.delays.extend(audit.filter(|audit| is_late || audit.first_change.is_some()));
         }
         self.reference = ReferenceCheck::of(subject, &step);
@@ -172,7 +188,7 @@ impl ProbeReport {
         self.spectral_radius = self.modes.iter().map(|mode| mode.radius).fold(0.0, f64::max);
         self.confirmation = Some(Confirmation::run(prober, &step)?);
         if let Some(flow) = &flow {
-            self.largest_dt = Some(LargestStep::search(prober, flow)?);
+            self.largest_dt = Some(LargestStep::search(prober, flow, self.equilibrium.holds)?);
             self.driven_velocities = driven_velocities(flow, pairs, subject);
         }
         self.hidden_latency = hidden_latencies(&step, flow.as_ref(), memory, pairs, subject);
@@ -186,16 +202,17 @@ impl ProbeReport {
                 .and_then(|flow| match_matrices(&step, flow, &flow.cleaned(), pairs, subject));
             self.recognition = Some(Recognition { by_results, by_matrix });
         }
-        self.defects = Some(Defects::measure(prober, &step, flow.as_ref(), pairs)?);
+        self.defects =
+            Some(Defects::measure(prober, &step, flow.as_ref(), pairs, self.equilibrium.holds)?);
         self.modified_flow = modified_flow(&step);
         self.flow = flow.map(|flow| Matrices { a: flow.a, b: flow.b, a_errors: flow.a_errors });
         self.step = Some(Matrices { a: step.a, b: step.b, a_errors: step.a_errors });
         Ok(())
     }
 
-    /// Whether the step has a derivative at the state.
+    /// Whether the step has a derivative by the states.
     pub fn is_differentiable(&self) -> bool {
-        self.jacobian_error <= DIFFERENTIABLE
+        self.state_error <= DIFFERENTIABLE
     }
 
     /// Whether the step has no fault.

@@ -20,6 +20,8 @@ const CLOSE: usize = 24;
 const DISTANCES: [i32; 3] = [-20, -22, -40];
 /// Least roundings at the second distance, in parts of those at the first: a kink has a fourth, a smooth function far less.
 const AS_ROUGH: f64 = 1.0 / 3.0;
+/// Roundings of an action or a length must be so far above those of the results, which else look like them where the effect is weak.
+const ABOVE: f64 = 100.0;
 
 /// Roundings of a step.
 #[derive(Clone, Debug, Serialize)]
@@ -48,18 +50,24 @@ impl Rounding {
         let mut found = Rounding { results: 0.0, single_precision: Vec::new() };
         let is_single = |x: &f64| f64::from(*x as f32).to_bits() == x.to_bits();
         let is_whole = results.entries().iter().all(is_single);
-        let (rounding, is_coarse) = Line::States.is_single(prober)?;
+        let nothing = vec![0.0; subject.state.len()];
+        let (rounding, is_coarse) = Line::States.is_single(prober, &nothing)?;
         found.results = rounding;
         if is_whole || is_coarse {
             found.single_precision.push("the step".into());
             return Ok(found);
         }
+        let far = Line::States.results(prober, DISTANCES[0])?;
+        let noises = Line::States.noises(&far);
+        let rounded = |i: usize| f64::EPSILON * far[(0, i)].abs().max(far[(CLOSE - 1, i)].abs());
+        let floor: Vec<f64> =
+            (0..noises.len()).map(|i| ABOVE * noises[i].max(rounded(i))).collect();
         for (j, input) in subject.inputs.iter().enumerate() {
-            if Line::Action(j).is_single(prober)?.1 {
+            if Line::Action(j).is_single(prober, &floor)?.1 {
                 found.single_precision.push(format!("`{}`", input.name));
             }
         }
-        if !subject.has_fixed_dt && Line::Length.is_single(prober)?.1 {
+        if !subject.has_fixed_dt && Line::Length.is_single(prober, &floor)?.1 {
             found.single_precision.push("dt".into());
         }
         Ok(found)
@@ -67,14 +75,23 @@ impl Rounding {
 }
 
 impl Line {
-    /// The rounding along the line, and whether it is that of single precision.
-    fn is_single(self, prober: &mut Prober<'_>) -> Result<(f64, bool), BlackBoxError> {
+    /// The rounding along the line in units of its sizes, and whether it is that of single precision. Noise below `floor` is none.
+    fn is_single(
+        self,
+        prober: &mut Prober<'_>,
+        floor: &[f64],
+    ) -> Result<(f64, bool), BlackBoxError> {
         let far = self.results(prober, DISTANCES[0])?;
         let sizes = self.sizes(prober, &far);
-        let rounding = self.roughness(&far, &sizes);
+        let relative = |results: &Matrix| {
+            let noises = self.noises(results);
+            let known = (0..sizes.len()).filter(|i| sizes[*i] > 0.0 && noises[*i] > floor[*i]);
+            known.map(|i| noises[i] / sizes[i]).fold(0.0, f64::max)
+        };
+        let rounding = relative(&far);
         let is_single = SINGLE.contains(&rounding)
-            && self.roughness(&self.results(prober, DISTANCES[1])?, &sizes) > rounding * AS_ROUGH
-            && self.roughness(&self.results(prober, DISTANCES[2])?, &sizes) < SINGLE.start / 10.0;
+            && relative(&self.results(prober, DISTANCES[1])?) > rounding * AS_ROUGH
+            && relative(&self.results(prober, DISTANCES[2])?) < SINGLE.start / 10.0;
         Ok((rounding, is_single))
     }
 
@@ -127,9 +144,9 @@ impl Line {
         (0..far.columns()).map(size).collect()
     }
 
-    /// The fourth differences along the line, over the root of the sum of their squared coefficients: for states the largest, since
+    /// The fourth differences of each state along the line, over the root of the sum of their squared coefficients: for states the largest, since
     /// rounding inside may show seldom; else one that is exceeded by few.
-    fn roughness(self, results: &Matrix, sizes: &[f64]) -> f64 {
+    fn noises(self, results: &Matrix) -> Vec<f64> {
         let fourth = |k: usize, i: usize| {
             [1.0, -4.0, 6.0, -4.0, 1.0]
                 .iter()
@@ -142,9 +159,8 @@ impl Line {
             all.sort_by(f64::total_cmp);
             // A single jump or kink is in five of the differences.
             let typical = if matches!(self, Line::States) { all.len() - 1 } else { all.len() - 6 };
-            all[typical] / 70.0_f64.sqrt() / sizes[i]
+            all[typical] / 70.0_f64.sqrt()
         };
-        let known = (0..sizes.len()).filter(|i| sizes[*i] > 0.0);
-        known.map(of_state).fold(0.0, f64::max)
+        (0..results.columns()).map(of_state).collect()
     }
 }

@@ -12,14 +12,16 @@ const PATIENCE: usize = 4096;
 const GONE: f64 = 1e-20;
 /// Largest root mean square of the residuals of a decay in the logarithm, far below that of noise, which is about 1.
 const RESIDUAL: f64 = 0.3;
+/// Largest factor by which a slow decay may be off its prediction over all calls.
+const FADED: f64 = 3.0;
 /// Least decay of distances that are no single exponential, from their first to their last quarter.
 const DECAY: f64 = 1.0 / 3.0;
 
 /// The influence of earlier calls that fades as that of a filter does.
 #[derive(Clone, Debug, Serialize)]
 pub struct Settling {
-    /// Whether it is that of earlier commands alone.
-    pub is_of_commands: bool,
+    /// Whether it is that of earlier commands alone, or that of earlier states; none if it lasts too long to tell them apart.
+    pub is_of_commands: Option<bool>,
     /// Its factor per call.
     pub factor: f64,
     /// Its time constant in s, if it fades with the time of the steps.
@@ -35,14 +37,18 @@ impl Settling {
         let scales = subject.action.iter().zip(&subject.action_scale);
         let changed: Vec<f64> = scales.map(|(u, scale)| u + scale / 64.0).collect();
         let Some(factor) = disturb(prober, &moved(prober), &changed)? else { return Ok(None) };
-        let is_of_commands =
-            settle(prober)? && disturb(prober, &moved(prober), &subject.action)?.is_none();
-        Ok(Some(Settling {
-            is_of_commands,
-            factor,
-            time_constant: -subject.dt / factor.ln(),
-            is_settled: settle(prober)?,
-        }))
+        let (is_settled, change) = settle(prober)?;
+        // What does not fade as predicted is no filter but a clock, for example.
+        if !is_settled && change > FADED * factor.powi(PATIENCE as i32).max(GONE) {
+            return Ok(None);
+        }
+        let is_of_commands = match is_settled {
+            true => Some(disturb(prober, &moved(prober), &subject.action)?.is_none()),
+            false => None,
+        };
+        let time_constant = -subject.dt / factor.ln();
+        let (is_settled, _) = settle(prober)?;
+        Ok(Some(Settling { is_of_commands, factor, time_constant, is_settled }))
     }
 }
 
@@ -50,21 +56,23 @@ fn is_gone(distance: f64) -> bool {
     distance < GONE
 }
 
-/// Calls with the subject's state and action until the results of four in a row are the same.
-fn settle(prober: &mut Prober<'_>) -> Result<bool, BlackBoxError> {
+/// Calls with the subject's state and action until the results of four in a row are the same: whether they are in the end, and how far
+/// the last two are apart, in parts of the first two.
+fn settle(prober: &mut Prober<'_>) -> Result<(bool, f64), BlackBoxError> {
     let subject = prober.subject;
-    let mut same = 0;
-    let mut last = vec![f64::INFINITY; subject.state.len()];
+    let (mut same, mut first, mut change) = (0, None, 0.0);
+    let mut last = prober.call_one(&subject.state, &subject.action, subject.dt)?;
     for _ in 0..PATIENCE {
         let next = prober.call_one(&subject.state, &subject.action, subject.dt)?;
-        same =
-            if is_gone(distance(&next, &last, Some(&subject.state_scale))) { same + 1 } else { 0 };
+        change = distance(&next, &last, &subject.state_scale);
+        first.get_or_insert(change);
+        same = if is_gone(change) { same + 1 } else { 0 };
         if same == 3 {
-            return Ok(true);
+            return Ok((true, 0.0));
         }
         last = next;
     }
-    Ok(false)
+    Ok((false, change / first.unwrap_or(1.0).max(f64::MIN_POSITIVE)))
 }
 
 /// The factor per call by which results settle after calls with another state or action; none if they do not, or do at once.
@@ -77,7 +85,7 @@ fn disturb(prober: &mut Prober<'_>, x: &[f64], u: &[f64]) -> Result<Option<f64>,
     for _ in 0..MOST_CALLS {
         results.push(prober.call_one(&subject.state, &subject.action, subject.dt)?);
     }
-    let apart = |pair: &[Vec<f64>]| distance(&pair[0], &pair[1], Some(&subject.state_scale));
+    let apart = |pair: &[Vec<f64>]| distance(&pair[0], &pair[1], &subject.state_scale);
     Ok(decay(&results.windows(2).map(apart).collect::<Vec<_>>()))
 }
 

@@ -31,6 +31,12 @@ fn an_action_or_a_length_in_single_precision_is_found_and_named() {
     let length = audit(|x, u, dt| pendulum(x, u, single(dt)));
     assert_eq!(length, ["the step rounds dt to single precision"]);
     // A weak action is no rounded one, nor is a limit.
+    for weak in [0.1, 1e-3, 3e-4, 1e-4] {
+        assert_eq!(
+            audit(|x, u, dt| pendulum(&[x[0], x[1] + weak * dt * u[0]], &[0.0], dt)),
+            [""; 0]
+        );
+    }
     assert_eq!(audit(|x, u, dt| pendulum(x, &[1e-6 * u[0]], dt)), [""; 0]);
     assert_eq!(audit(|x, u, dt| pendulum(x, &[u[0].min(0.013 + 3e-6)], dt)), [""; 0]);
 }
@@ -156,4 +162,52 @@ fn a_step_that_diverges_is_audited_and_called_unstable() {
     let report = stiff.audit(&libration_probe::Subject::new("stiff", vec![0.0, 0.0], vec![], 0.01));
     assert!(kinds(&report).contains(&"unstable-step"), "{:?}", report.findings);
     assert!((report.largest_dt.unwrap().dt.unwrap() - 2e-6).abs() < 1e-11);
+}
+
+#[test]
+fn an_action_at_its_limit_has_no_derivative_there() {
+    for step in [|u: f64| u.abs(), |u: f64| u.clamp(0.0, 1.0)] {
+        let report =
+            Simulator::new(|x, u, dt| pendulum(x, &[step(u[0])], dt)).audit(&pendulum_subject());
+        assert_eq!(kinds(&report), ["not-differentiable"]);
+        assert!(
+            report.findings[0].text.contains("by `u1`") && report.holds(),
+            "{:?}",
+            report.findings
+        );
+    }
+}
+
+#[test]
+fn a_clean_motion_of_a_conservative_system_has_no_fault() {
+    let energy = |x: &[f64]| x[1] * x[1] / 2.0 - 9.0 * x[0].cos();
+    for (angle, speed) in [(1.2, 0.0), (0.4, 2.0), (2.5, -1.0)] {
+        let mut subject = pendulum_subject();
+        (subject.state, subject.equilibrium) = (vec![angle, speed], Some(false));
+        subject.is_conservative = true;
+        let rk4 = |x: &[f64], u: &[f64], dt: f64| {
+            let rate = |x: &[f64]| [x[1], -9.0 * x[0].sin() + u[0]];
+            let at = |k: [f64; 2], h: f64| vec![x[0] + h * k[0], x[1] + h * k[1]];
+            let a = rate(x);
+            let b = rate(&at(a, dt / 2.0));
+            let c = rate(&at(b, dt / 2.0));
+            let d = rate(&at(c, dt));
+            (0..2).map(|i| x[i] + dt / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i])).collect()
+        };
+        for simulator in [Simulator::new(rk4), Simulator::new(pendulum)] {
+            let report = simulator.with_energy(energy).audit(&subject);
+            assert_eq!(report.findings, [], "{angle} {}", report.answer);
+        }
+    }
+}
+
+#[test]
+fn a_step_far_beyond_all_limits_is_unstable() {
+    let mut subject = pendulum_subject();
+    for dt in [1.0, 1e3, 1e6] {
+        subject.dt = dt;
+        let report = Simulator::new(pendulum).audit(&subject);
+        assert!(kinds(&report).contains(&"unstable-step"), "{dt} {:?}", report.findings);
+        assert!((report.largest_dt.unwrap().dt.unwrap() - 2.0 / 3.0).abs() < 1e-5);
+    }
 }

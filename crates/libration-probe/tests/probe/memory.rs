@@ -92,7 +92,7 @@ fn a_hidden_state_of_states_is_no_filter_of_commands() {
     })
     .audit(&pendulum_subject());
     assert_eq!(kinds(&report), ["hidden-state"], "{:?}", report.findings);
-    assert!(!report.memory.unwrap().settling.unwrap().is_of_commands);
+    assert_eq!(report.memory.unwrap().settling.unwrap().is_of_commands, Some(false));
     assert!(report.modes.is_empty());
 }
 
@@ -188,4 +188,61 @@ fn a_command_that_is_late_now_and_then_is_found() {
         pendulum(x, &[if calls.get() % 997 == 0 { before } else { u[0] }], dt)
     });
     assert!(kinds(&late.audit(&pendulum_subject())).contains(&"irregular-delay"));
+}
+
+#[test]
+fn one_stale_component_of_an_observation_is_enough() {
+    let before = RefCell::new(vec![0.0, 0.0]);
+    let mut simulator = Simulator::new(|x, u, dt| {
+        *before.borrow_mut() = x.to_vec();
+        pendulum(x, u, dt)
+    });
+    simulator.observe = Some(Box::new(|x| vec![x[0], before.borrow()[1]]));
+    assert_eq!(kinds(&simulator.audit(&pendulum_subject())), ["stale-observation"]);
+}
+
+#[test]
+fn observations_that_vary_are_found_and_do_not_end_the_audit() {
+    let draws = Cell::new(1_u64);
+    let mut simulator = Simulator::new(pendulum);
+    simulator.observe = Some(Box::new(|x| {
+        draws.set(draws.get().wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1));
+        vec![x[0] + (draws.get() >> 11) as f64 * 1e-20]
+    }));
+    let report = simulator.audit(&pendulum_subject());
+    assert_eq!(kinds(&report), ["not-reproducible"]);
+    assert!(report.largest_dt.is_some());
+}
+
+#[test]
+fn a_command_that_is_late_in_each_seventh_call_is_found() {
+    for period in [5, 7, 50, 128] {
+        let (calls, held) = (Cell::new(0), Cell::new(0.0));
+        let late = Simulator::new(|x, u, dt| {
+            calls.set(calls.get() + 1);
+            let before = held.replace(u[0]);
+            pendulum(x, &[if calls.get() % period == 0 { before } else { u[0] }], dt)
+        });
+        let found = kinds(&late.audit(&pendulum_subject()));
+        assert!(found.contains(&"irregular-delay"), "{period} {found:?}");
+    }
+}
+
+#[test]
+fn a_command_that_acts_and_takes_half_back_is_early() {
+    let held = Cell::new(0.0);
+    let lead = Simulator::new(|x, u, dt| pendulum(x, &[2.0 * u[0] - held.replace(u[0])], dt));
+    let report = lead.audit(&pendulum_subject());
+    // (0·2 + 1·(−1))/(2 − 1).
+    assert!((report.hidden_latency[0].late_steps + 1.0).abs() < 1e-9, "{report:?}");
+}
+
+#[test]
+fn a_force_of_time_is_no_filter() {
+    let now = Cell::new(0.0);
+    let driven = Simulator::new(|x, u, dt| {
+        now.set(now.get() + dt);
+        pendulum(x, &[u[0] + 0.1 * f64::sin(now.get())], dt)
+    });
+    assert_eq!(kinds(&driven.audit(&pendulum_subject())), ["not-reproducible"]);
 }

@@ -221,3 +221,26 @@ fn exact_derivatives_replace_differences_that_agree_with_them_and_no_others() {
     assert_eq!(report.findings[0].kind.name(), "derivatives-differ");
     close(report.step.unwrap().a[(1, 0)], -9.0 * h, 1e-11);
 }
+
+#[test]
+fn the_limit_of_undamped_systems_and_of_those_that_grow_slowly_is_that_of_the_fastest_mode() {
+    // Two masses on springs, ω² = 15 ± 5√5 and 2/ω, anywhere at rest.
+    let fastest = (15.0 + 125.0_f64.sqrt()).sqrt();
+    for rest in [[0.0, 0.0], [1.0, 2.0], [-0.3, 0.7]] {
+        let force = |q: [f64; 2]| [-20.0 * q[0] + 10.0 * q[1], 10.0 * q[0] - 10.0 * q[1]];
+        let offset = force(rest);
+        // 0 and 10⁻⁹ of negative damping, and a pendulum's.
+        for gamma in [0.0, -1e-9, -0.1] {
+            let step = |x: &[f64], _: &[f64], dt: f64| {
+                let f = force([x[0], x[1]]);
+                let v = [2, 3].map(|i| x[i] + dt * (f[i - 2] - offset[i - 2] - gamma * x[i]));
+                vec![x[0] + dt * v[0], x[1] + dt * v[1], v[0], v[1]]
+            };
+            let subject = Subject::new("masses", vec![rest[0], rest[1], 0.0, 0.0], vec![], 0.01);
+            let report = Simulator::new(step).audit(&subject);
+            // (ωh)² < 4 − 2γh to first order.
+            let wanted = 2.0 / fastest * (1.0 - gamma / (2.0 * fastest));
+            close(report.largest_dt.unwrap().dt.unwrap(), wanted, 1e-3 * gamma.abs() + 1e-5);
+        }
+    }
+}
