@@ -49,6 +49,8 @@ pub enum DriftReason {
     Divergence,
     /// The simulator has one step only.
     Unknown,
+    /// The rate changes little with the step, but is not the same.
+    Unclear,
     /// The trajectory has few periods of the slowest mode, and its oscillation looks like a drift.
     Short,
 }
@@ -62,6 +64,9 @@ impl DriftReason {
             DriftReason::System => "the system itself: the rate does not depend on the step",
             DriftReason::Rounding => "rounding: the rate grows when the step is halved",
             DriftReason::Divergence => "the trajectory diverges",
+            DriftReason::Unclear => {
+                "unknown: the rate neither falls with the step nor stays the same"
+            }
             DriftReason::Short => "unknown: the trajectory has few periods of the slowest mode",
             DriftReason::Unknown => "unknown: the simulator has one step only",
         }
@@ -109,9 +114,10 @@ impl EnergyDrift {
             Some(half) => {
                 let ratio = full.rate.abs() / half.rate.abs().max(f64::MIN_POSITIVE);
                 match ratio {
-                    0.8..=1.25 => DriftReason::System,
+                    0.97..=1.03 => DriftReason::System,
                     ratio if ratio > 1.25 => DriftReason::Truncation,
-                    _ => DriftReason::Rounding,
+                    ratio if ratio < 0.8 => DriftReason::Rounding,
+                    _ => DriftReason::Unclear,
                 }
             }
         };

@@ -103,7 +103,8 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
             ),
         ));
     }
-    for input in &report.unclear_inputs {
+    let known = report.unclear_inputs.iter().filter(|_| report.is_differentiable());
+    for input in known {
         found.push(Finding::warning(
             NotDifferentiable,
             format!("the step has no derivative by `{input}` at this action: a limit or a dead zone begins there"),
@@ -178,7 +179,12 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
         found.extend(leak.map(|text| Finding::fault(EnergyLeak, text)));
     }
     let grows = report.spectral_radius > 1.0 + COARSE;
-    if report.flow.is_none() && grows && !subject.has_fixed_dt && !report.ignores_dt {
+    if report.flow.is_none()
+        && grows
+        && report.is_differentiable()
+        && !subject.has_fixed_dt
+        && !report.ignores_dt
+    {
         found.push(Finding::warning(
             UnstableStep,
             format!(

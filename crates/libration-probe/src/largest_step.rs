@@ -161,7 +161,7 @@ struct Trial {
     step: LinearisedStep,
     /// The growth per step of the mode that leaves most clearly beyond that of the flow.
     excess: f64,
-    /// The growth beyond which it leaves.
+    /// The growth that errors explain.
     error: f64,
     /// Its factor.
     leaving: Option<Complex64>,
@@ -186,7 +186,7 @@ impl Trial {
             let (rate, rate_error) = flow.rates.get(k).copied().unwrap_or((0.0, 0.0));
             let own = (rate + ERRORS * rate_error).max(0.0);
             let excess = z.norm().ln() - OWN_GROWTH * own * dt;
-            let mut error = OUTSIDE.max(ERRORS * error.max(of_entries));
+            let mut error = ERRORS * error.max(of_entries);
             if !flow.is_at_rest {
                 error = error.max(GROWTH_ON_A_MOTION);
                 if (z - 1.0).norm() < FAST {
@@ -201,6 +201,6 @@ impl Trial {
     }
 
     fn is_unstable(&self) -> bool {
-        self.is_unknown || (self.leaving.is_some() && self.excess > self.error)
+        self.is_unknown || (self.leaving.is_some() && self.excess > OUTSIDE.max(self.error))
     }
 }

@@ -55,6 +55,12 @@ impl ProbeReport {
             (true, true) => {
                 format!("With dt = {dt} s a mode {}, as in the system itself ({names})", growth())
             }
+            (true, false) if !self.equilibrium.holds => {
+                format!(
+                    "With dt = {dt} s a mode of deviations from the motion {} ({names})",
+                    growth()
+                )
+            }
             (true, false) => {
                 format!("With dt = {dt} s the step is unstable: a mode {} ({names})", growth())
             }
