@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
+from ._json import json_text
 from ._keywords import check_keywords
 from ._settings import count, positive
 from ._step_functions import names, numbers_of
@@ -73,8 +74,8 @@ class GainReport:
         return list(self.results["integrators"])
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write the HTML page, or with the suffix ``.json`` all numbers."""
-        text = json.dumps(self.results, indent=2) if str(path).endswith(".json") else self._page
+        """Write the HTML page, or with the suffix ``.json`` all numbers; one that is not finite is null."""
+        text = json_text(self.results) if str(path).endswith(".json") else self._page
         Path(path).write_text(text, encoding="utf-8")
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ._json import json_text
 from .analysis import Advice, advise
 from .linear import LinearPlant
 
@@ -56,8 +57,9 @@ class ProbeReport:
 
     @property
     def spectral_radius(self) -> float:
-        """The largest factor of a mode per step."""
-        return float(self.results["spectral_radius"])
+        """The largest factor of a mode per step; NaN if the step was not linearised."""
+        found = self.results["spectral_radius"]
+        return float("nan") if found is None else float(found)
 
     @property
     def largest_dt(self) -> float | None:
@@ -112,8 +114,12 @@ class ProbeReport:
 
     @property
     def jacobian_error(self) -> float:
-        """The largest estimated error of an entry of :attr:`A` and :attr:`B`, in parts of the largest entry of its row in units of the scales."""
-        return float(self.results["jacobian_error"])
+        """The largest estimated error of an entry of :attr:`A` and :attr:`B`, in parts of the largest entry of its row in units of the scales.
+
+        Infinite if the step was not linearised.
+        """
+        found = self.results["jacobian_error"]
+        return float("inf") if found is None else float(found)
 
     def _matrix(self, of: str, name: str) -> Array | None:
         found = self.results[of]
@@ -132,16 +138,26 @@ class ProbeReport:
         ValueError
             If there is none: a mode changes its sign from step to step, or the step was not linearised. :attr:`sampled_plant` may exist.
         """
+        self._check_linearised()
         if self.results["modified_flow"] is None:
             raise ValueError("the step is no exact step of a plant in continuous time; use sampled_plant, with latencies of whole steps")
         return self._plant("modified_flow", None)
 
     @property
     def sampled_plant(self) -> LinearPlant:
-        """The plant of a step."""
+        """The plant of a step.
+
+        Raises
+        ------
+        ValueError
+            If the step was not linearised.
+        """
+        self._check_linearised()
+        return self._plant("step", float(self.results["dt"]))
+
+    def _check_linearised(self) -> None:
         if self.results["step"] is None:
             raise ValueError("the step was not linearised; see findings")
-        return self._plant("step", float(self.results["dt"]))
 
     def _plant(self, of: str, dt: float | None) -> LinearPlant:
         a, b = self._matrix(of, "a"), self._matrix(of, "b")
@@ -168,8 +184,6 @@ class ProbeReport:
         return advise(self.plant, controller, period=period, **keywords)
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write the HTML page, or with the suffix ``.json`` all numbers."""
-        import json
-
-        text = json.dumps(self.results, indent=2) if str(path).endswith(".json") else self._page
+        """Write the HTML page, or with the suffix ``.json`` all numbers; one that is not finite is null."""
+        text = json_text(self.results) if str(path).endswith(".json") else self._page
         Path(path).write_text(text, encoding="utf-8")
