@@ -6,6 +6,7 @@ from typing import Any, Iterable
 
 import numpy as np
 
+from ._step_functions import signals
 from .hosts.host import Host, Recording
 
 
@@ -16,8 +17,8 @@ def description_of(host: Host) -> dict[str, Any]:
         "state": host.state.tolist(),
         "action": host.action.tolist(),
         "dt": host.dt,
-        "states": list(host.states),
-        "inputs": list(host.inputs),
+        "states": signals("states", host.states),
+        "inputs": signals("inputs", host.inputs),
         "integrator": host.integrator,
         "notes": list(host.notes),
         "validity": list(host.validity),

@@ -52,6 +52,16 @@ def names(name: str, value: Sequence[str]) -> list[str]:
     return found
 
 
+def signals(name: str, value: Sequence[str]) -> list[str]:
+    """Return names of states or inputs, each with or without a unit in parentheses."""
+    found = names(name, value)
+    for k, one in enumerate(found):
+        stripped = one.strip()
+        if not (stripped.rpartition("(")[0].strip() if stripped.endswith(")") and "(" in stripped else stripped):
+            raise ValueError(f"{name}[{k}] is {one!r}; expected a name, or a name and its unit: 'angle (rad)'")
+    return found
+
+
 def pair_numbers(value: Any, n: int) -> tuple[tuple[int, int], ...]:
     """Return pairs of numbers of states."""
     found = []
@@ -117,20 +127,79 @@ def energies_of(energy: Callable[..., Any], batched: bool) -> Callable[[Array], 
     return of_batch if batched else of_each
 
 
+def check_energy(energy: Callable[[Array], Array] | None, state: Array) -> None:
+    """Check that an energy of rows is finite at a state."""
+    if energy is None:
+        return
+    found = np.ravel(energy(state[np.newaxis].copy()))
+    if not np.isfinite(found).all():
+        raise ValueError(f"energy returned {found[0]} at the given state; expected a finite number")
+
+
 def observations_of(observe: Callable[..., Any], batched: bool) -> Callable[[Array], Array]:
-    """Return the observations of rows."""
+    """Return the observations of rows.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an observation is empty, has another size than the first one, or is not finite for a finite state.
+    """
+    size: list[int] = []
+
+    def checked(states: Array, found: Array, shape: tuple[int, ...]) -> Array:
+        if found.shape[1] == 0:
+            raise ValueError(f"observe returned an array of shape {shape}; expected at least one number for each state")
+        size[:] = size or [found.shape[1]]
+        if found.shape[1] != size[0]:
+            raise ValueError(f"observe returned {found.shape[1]} numbers for a state, but {size[0]} at the first call; expected {size[0]}")
+        wrong = np.isfinite(states).all(axis=1, keepdims=True) & ~np.isfinite(found)
+        if wrong.any():
+            row, k = (int(index) for index in np.argwhere(wrong)[0])
+            raise ValueError(f"observe returned {found[row, k]} in component {k} for the state {states[row].tolist()}; expected finite numbers")
+        return found
 
     def of_batch(states: Array) -> Array:
         count = len(states)
-        found = numbers_of("the result of observe", observe(states))
+        found = numbers_of("the result of observe", observe(states.copy()))
         if found.ndim == 0 or len(found) != count:
             raise ValueError(f"observe returned an array of shape {found.shape}; expected {count} rows")
-        return found.reshape(count, -1)
+        return checked(states, found.reshape(count, -1) if found.size else np.empty((count, 0)), found.shape)
 
     def of_each(states: Array) -> Array:
-        return np.stack([numbers_of("the result of observe", observe(x.copy())).reshape(-1) for x in states])
+        rows = []
+        for x in states:
+            found = numbers_of("the result of observe", observe(x.copy()))
+            rows.append(checked(x[np.newaxis], found.reshape(1, -1) if found.size else np.empty((1, 0)), found.shape)[0])
+        return np.stack(rows)
 
     return of_batch if batched else of_each
+
+
+def inertia(mass: ArrayLike, count: int) -> list[list[float]]:
+    """Return a symmetric positive definite matrix, or one with the given diagonal."""
+    found = numbers_of("mass", mass)
+    found = np.diag(np.atleast_1d(found)) if found.ndim < 2 else found
+    if found.shape != (count, count):
+        raise ValueError(f"mass has shape {found.shape}; expected {count} × {count} numbers, one for each pair, or the diagonal")
+    if not np.isfinite(found).all():
+        i, j = (int(k) for k in np.argwhere(~np.isfinite(found))[0])
+        raise ValueError(f"mass[{i}, {j}] is {found[i, j]}; expected finite numbers")
+    diagonal = np.diag(found)
+    if not (diagonal > 0).all():
+        k = int(np.argmin(diagonal > 0))
+        raise ValueError(f"mass[{k}, {k}] is {diagonal[k]}; expected a number above 0")
+    # Coordinates may have different units, so that entries are compared in units of their diagonal.
+    scale = np.sqrt(diagonal)
+    scaled = found / scale[:, np.newaxis] / scale
+    apart = np.abs(scaled - scaled.T)
+    if (apart > 1e-9).any():
+        i, j = (int(k) for k in np.unravel_index(np.argmax(apart), apart.shape))
+        raise ValueError(f"mass[{i}, {j}] is {found[i, j]}, but mass[{j}, {i}] is {found[j, i]}; expected a symmetric matrix")
+    if count and np.linalg.eigvalsh(scaled)[0] <= count * np.finfo(np.float64).eps:
+        least = np.linalg.eigvalsh(found)[0]
+        raise ValueError(f"mass has the eigenvalue {least:.6g}; expected a positive definite matrix, with eigenvalues above 0")
+    rows: list[list[float]] = found.tolist()
+    return rows
 
 
 def contiguous(function: Callable[..., Any], ndim: int) -> Callable[..., Array]:

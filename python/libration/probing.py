@@ -15,7 +15,7 @@ from ._complex_step import complex_step as derivatives_of
 from ._descriptions import described_recordings, description_of
 from ._keywords import check_keywords
 from ._settings import positive
-from ._step_functions import callable_of, contiguous, energies_of, names, numbers_of, observations_of, pair_numbers, rows_of_step, vector
+from ._step_functions import callable_of, check_energy, contiguous, energies_of, inertia, names, observations_of, pair_numbers, rows_of_step, vector
 from ._thread_recordings import thread_count, thread_recording
 from .hosts.host import Host
 from .probe_report import ProbeReport
@@ -64,9 +64,10 @@ class Probe:
         dt:
             Length of a step in s.
         observe:
-            ``observe(x)`` returns the observation of a state, to find stale ones. With ``batched`` of rows.
+            ``observe(x)`` returns the observation of a state, to find stale ones: at least one number, always as many, and finite. With
+            ``batched`` of rows.
         energy:
-            ``energy(x)`` returns the energy of a state, to find its drift. With ``batched`` of rows.
+            ``energy(x)`` returns the energy of a state, to find its drift. At ``state`` it is finite. With ``batched`` of rows.
         restart:
             ``restart()`` starts the simulator anew, generators of random numbers with their seeds, to see whether the same bits follow and
             whether environments share a generator.
@@ -78,7 +79,7 @@ class Probe:
         state_scale, action_scale:
             Typical deviations, numbers or vectors (default: the larger of 1 and the absolute value).
         mass:
-            Inertia of the velocities of ``pairs``, or its diagonal, for the defect of symplecticity.
+            Inertia of the velocities of ``pairs``, symmetric and positive definite, or its diagonal, for the defect of symplecticity.
         pairs:
             Pairs of the numbers of a position and of its velocity (default: found in the rates).
         complex_step:
@@ -96,7 +97,7 @@ class Probe:
         Raises
         ------
         TypeError, ValueError
-            For an invalid value, or a step whose result has the wrong shape or is not finite. Exceptions of ``step`` are raised as they are.
+            For an invalid value, or a function whose result has the wrong shape or is not finite. Exceptions of ``step`` are raised as they are.
         """
         if dt is None:
             raise TypeError("dt is missing; expected the length of a step in s")
@@ -135,7 +136,7 @@ class Probe:
         )
         del described["integrator"]
         if mass is not None:
-            described["mass"] = _inertia(mass, len(host.positions))
+            described["mass"] = inertia(mass, len(host.positions))
         for name, scale, count in (("state_scale", state_scale, n), ("action_scale", action_scale, m)):
             if scale is not None:
                 described[name] = vector(name, np.broadcast_to(scale, count) if np.ndim(scale) == 0 else scale).tolist()
@@ -230,6 +231,8 @@ class Probe:
             raise ValueError(f"threads is {number}, but rows of the host continue a simulation; expected None, or a host without memory")
         described = description_of(host)
         described.update(conservative=bool(conservative), invocation=str(invocation))
+        if "mass" in described:
+            described["mass"] = inertia(described["mass"], len(host.positions))
         # The rows of a host with memory continue one simulation each.
         return _audit(host, described, None, None, not host.memory, number)
 
@@ -252,17 +255,8 @@ def _audit(
         ]
         recording = thread_recording(host, scales[0], scales[1], threads, batched)
         described.setdefault("recordings", []).extend(described_recordings([recording]))
+    check_energy(host.energy, host.state)
     energy = None if host.energy is None else contiguous(host.energy, 1)
     text = json.dumps(described)
     answer, holds, page = _native._probe(text, contiguous(host.step, 2), observe, energy, restart, bool(batched))
     return ProbeReport(json.loads(answer), holds, page)
-
-
-def _inertia(mass: ArrayLike, count: int) -> list[list[float]]:
-    """Return a matrix, or one with the given diagonal."""
-    found = numbers_of("mass", mass)
-    found = np.diag(np.atleast_1d(found)) if found.ndim < 2 else found
-    if found.shape != (count, count) or not np.isfinite(found).all():
-        raise ValueError(f"mass has shape {found.shape}; expected {count} × {count} finite numbers, one for each pair, or the diagonal")
-    rows: list[list[float]] = found.tolist()
-    return rows

@@ -1,5 +1,6 @@
 """Audits of steps that are Python functions: faults that are planted on purpose, limits, and errors."""
 
+import dataclasses
 import functools
 import json
 import math
@@ -348,6 +349,15 @@ X, U = (0.0, 0.0), (0.0,)
         (lambda: audit(pendulum, energy=lambda x: x), ValueError, r"energy returned an array of shape \(2,\); expected a number"),
         (lambda: audit(pendulum, energy=lambda x: None), TypeError, "the result of energy is None; expected real numbers"),
         (lambda: audit(pendulums, batched=True, energy=lambda x: x), ValueError, r"energy returned an array of shape .*; expected \(1,\)"),
+        (lambda: audit(pendulum, energy=lambda x: math.nan), ValueError, "energy returned nan at the given state; expected a finite number"),
+        (lambda: audit(pendulums, batched=True, energy=lambda x: x[:, 0] + math.inf), ValueError, "energy returned inf at the given state"),
+        (lambda: audit(pendulum, observe=lambda x: [1.0, math.nan]), ValueError, r"observe returned nan in component 1 for the state \[0\.0, 0\.0\]"),
+        (lambda: audit(pendulum, observe=lambda x: []), ValueError, r"observe returned an array of shape \(0,\); expected at least one number"),
+        (lambda: audit(pendulums, batched=True, observe=lambda x: x[:, :0]), ValueError, r"observe returned an array of shape \(1, 0\)"),
+        (lambda: audit(pendulum, observe=lambda x: x[: 1 + (x[0] != 0)]), ValueError, "observe returned 2 numbers .* 1 at the first call; expected 1"),
+        (lambda: audit(pendulum, states=["a", "(m)"]), ValueError, r"states\[1\] is '\(m\)'; expected a name, or a name and its unit"),
+        (lambda: audit(pendulum, states=["", "b"]), ValueError, r"states\[0\] is ''; expected a name"),
+        (lambda: audit(pendulum, inputs=[" "]), ValueError, r"inputs\[0\] is ' '; expected a name"),
         (lambda: audit(pendulum, states=["a"]), ValueError, "`states` has 1 name; expected 2, one for each"),
         (lambda: audit(pendulum, states="ab"), TypeError, "states is the string 'ab'; expected a list of strings"),
         (lambda: audit(pendulum, states=[1, 2]), TypeError, "states has a int; expected strings"),
@@ -362,6 +372,8 @@ X, U = (0.0, 0.0), (0.0,)
         (lambda: audit(pendulum, pairs=[(0, 1), (0, 1)]), ValueError, "expected each state in one pair"),
         (lambda: audit(pendulum, mass=[[1.0]]), ValueError, "mass requires pairs"),
         (lambda: audit(pendulum, pairs=[(0, 1)], mass=np.eye(2)), ValueError, r"mass has shape \(2, 2\); expected 1 × 1"),
+        (lambda: audit(pendulum, pairs=[(0, 1)], mass=-1), ValueError, r"mass\[0, 0\] is -1\.0; expected a number above 0"),
+        (lambda: audit(pendulum, pairs=[(0, 1)], mass=math.nan), ValueError, r"mass\[0, 0\] is nan; expected finite numbers"),
         (lambda: audit(pendulum, equilibrium="yes"), TypeError, "equilibrium is 'yes'; expected True, False or None"),
         (lambda: audit(pendulum, threads=1), ValueError, "threads is 1, but it must be 2 to 64"),
         (lambda: audit(pendulum, threads=65), ValueError, "threads is 65, but it must be 2 to 64"),
@@ -373,6 +385,34 @@ X, U = (0.0, 0.0), (0.0,)
 def test_an_error_names_the_value_and_what_is_allowed(call, error, message):
     with pytest.raises(error, match=message):
         call()
+
+
+def test_an_inertia_is_symmetric_and_positive_definite_in_any_units():
+    def masses(x, u, dt):
+        v = x[2:] - dt * 9.0 * x[:2]
+        return np.concatenate([x[:2] + dt * v, v])
+
+    def of(mass):
+        return audit(masses, x=np.zeros(4), u=(), pairs=[(0, 2), (1, 3)], mass=mass)
+
+    for mass, message in (
+        ([[2.0, 0.5], [0.25, 2.0]], r"mass\[0, 1\] is 0\.5, but mass\[1, 0\] is 0\.25; expected a symmetric matrix"),
+        ([[1.0, 2.0], [2.0, 1.0]], "mass has the eigenvalue -1; expected a positive definite matrix"),
+        ([[1.0, 1.0], [1.0, 1.0]], "expected a positive definite matrix"),
+        ([1.0, 0.0], r"mass\[1, 1\] is 0\.0; expected a number above 0"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            of(mass)
+    for mass in ([1e12, 1e-12], [[1e12, 0.5], [0.5, 1e-12]], [[2.0, 0.1 + 0.2], [0.3, 2.0]]):
+        assert of(mass).holds
+    # One of a host is checked too.
+    host = Host(pendulums, np.zeros(2), np.zeros(1), DT, ("q", "v"), ("u",), "host", "", mass=np.array([[-1.0]]), positions=((0, 1),))
+    with pytest.raises(ValueError, match=r"mass\[0, 0\] is -1\.0"):
+        probe.host(host)
+    with pytest.raises(ValueError, match=r"inputs\[0\] is ''"):
+        probe.host(dataclasses.replace(host, mass=None, inputs=("",)))
+    with pytest.raises(ValueError, match="energy returned nan"):
+        probe.host(dataclasses.replace(host, mass=None, energy=lambda x: x[:, 0] * math.nan))
 
 
 # ------------------------------------------------------------------ reports
