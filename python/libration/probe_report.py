@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._json import json_text
+from ._settings import number
 from .analysis import Advice, advise
 from .linear import LinearPlant
+from .perturbations import Steps
 
 __all__ = ["ProbeReport"]
 
@@ -19,7 +21,10 @@ Array = NDArray[np.float64]
 
 
 class ProbeReport:
-    """The results of an audit of a step; :attr:`results` has all numbers under the keys of ``libration probe --json``."""
+    """The results of an audit of a step.
+
+    :attr:`results` has all numbers under the keys of ``libration probe --json``, and ``exchange_latency``.
+    """
 
     def __init__(self, results: dict[str, Any], holds: bool, page: str) -> None:
         self.results = results
@@ -71,6 +76,11 @@ class ProbeReport:
     def hidden_latency(self) -> list[dict[str, Any]]:
         """The latency of each input in s: of late commands, of the integrator, and in total."""
         return list(self.results["hidden_latency"])
+
+    @property
+    def exchange_latency(self) -> float:
+        """The latency in s of exchanging values with other simulators at the ends of steps: the macro step of a co-simulation, else 0."""
+        return float(self.results.get("exchange_latency", 0.0))
 
     @property
     def delays(self) -> list[dict[str, Any]]:
@@ -166,24 +176,49 @@ class ProbeReport:
             raise ValueError("the step has no actions; a plant requires an input")
         return LinearPlant(a, b, dt=dt, states=self.results["states"], inputs=self.results["inputs"])
 
-    def advise(self, controller: Any, *, period: float | None = None, **keywords: Any) -> Advice:
+    def advise(self, controller: Any, *, period: float | None = None, exchange: bool = True, **keywords: Any) -> Advice:
         """Return the limits of a loop around the step, by :func:`libration.advise` with all its keywords.
 
-        Deviations from the state and the action are controlled. Latencies that were found in the step are added to ``latency``.
+        Deviations from the state and the action are controlled. Latencies that were found in the step and :attr:`exchange_latency` are
+        added to ``latency``.
 
         Parameters
         ----------
         period:
             Sample period of the controller in s (default: a step).
+        exchange:
+            Whether to add :attr:`exchange_latency`; False for a controller that acts within the same step, as in a program that calls the
+            step itself.
         """
+        plant = self.plant
         period = float(self.results["dt"]) if period is None else period
-        hidden = [float(entry["late"]) for entry in self.hidden_latency]
-        if any(hidden):
-            given = np.broadcast_to(np.asarray(keywords.get("latency") or 0.0, dtype=np.float64), len(hidden))
-            keywords["latency"] = [float(late) for late in given + hidden]
-        return advise(self.plant, controller, period=period, **keywords)
+        late = np.full(len(self.results["inputs"]), self.exchange_latency if exchange else 0.0)
+        for k, entry in enumerate(self.hidden_latency):
+            late[k] += float(entry["late"])
+        if late.any():
+            keywords["latency"] = _added(keywords.get("latency"), late, period)
+        return advise(plant, controller, period=period, **keywords)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the HTML page, or with the suffix ``.json`` all numbers; one that is not finite is null."""
         text = json_text(self.results) if str(path).endswith(".json") else self._page
         Path(path).write_text(text, encoding="utf-8")
+
+
+def _is_latency(value: float) -> bool:
+    return 0 <= value < float("inf")
+
+
+def _added(latency: Any, late: Array, period: float) -> Any:
+    """Return the latency of each input in s, with those of the step."""
+    given = list(latency) if isinstance(latency, (list, tuple)) or np.ndim(latency) == 1 else [latency] * len(late)
+    if len(given) != len(late):
+        # Another number of latencies is an error of ``advise``.
+        return latency
+
+    def seconds(value: Any) -> float:
+        of_steps = isinstance(value, Steps)
+        found = number("latency", value.number if of_steps else 0.0 if value is None else value, "finite and at least 0", _is_latency)
+        return found * period if of_steps else found
+
+    return [seconds(one) + float(more) for one, more in zip(given, late)]

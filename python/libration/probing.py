@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import shlex
 from os import PathLike
 from typing import Any, Callable, Sequence
@@ -14,7 +15,7 @@ from . import _native
 from ._complex_step import complex_step as derivatives_of
 from ._descriptions import described_recordings, description_of
 from ._keywords import check_keywords
-from ._settings import positive
+from ._settings import number, positive
 from ._step_functions import callable_of, check_energy, contiguous, energies_of, inertia, names, observations_of, pair_numbers, rows_of_step, vector
 from ._thread_recordings import thread_count, thread_recording
 from .hosts.host import Host
@@ -209,7 +210,8 @@ class Probe:
     def fmu(self, path: str | PathLike[str], *, conservative: bool = False, **keywords: Any) -> ProbeReport:
         """Audit an FMU of FMI 2 or 3 in a process of its own, see :func:`libration.hosts.fmu_host`. Requires ``fmpy``.
 
-        The step of a co-simulation is its macro step: who exchanges values at its ends adds its length to the latency of a loop.
+        The step of a co-simulation is its macro step. Values that are exchanged at its ends are up to a macro step old: this is
+        :attr:`ProbeReport.exchange_latency`, which :meth:`ProbeReport.advise` adds to the latency of a loop.
         """
         from .hosts import fmu_host
 
@@ -226,15 +228,16 @@ class Probe:
         threads:
             As in :func:`libration.probe`; for a host without memory whose step may be called from several threads.
         """
-        number = thread_count(threads)
-        if number is not None and host.memory:
-            raise ValueError(f"threads is {number}, but rows of the host continue a simulation; expected None, or a host without memory")
+        number_of_threads = thread_count(threads)
+        if number_of_threads is not None and host.memory:
+            raise ValueError(f"threads is {threads}, but rows of the host continue a simulation; expected None, or a host without memory")
+        number("exchange_latency", host.exchange_latency, "finite and at least 0", lambda x: 0 <= x < math.inf)
         described = description_of(host)
         described.update(conservative=bool(conservative), invocation=str(invocation))
         if "mass" in described:
             described["mass"] = inertia(described["mass"], len(host.positions))
         # The rows of a host with memory continue one simulation each.
-        return _audit(host, described, None, None, not host.memory, number)
+        return _audit(host, described, None, None, not host.memory, number_of_threads)
 
 
 probe = Probe()
@@ -259,4 +262,5 @@ def _audit(
     energy = None if host.energy is None else contiguous(host.energy, 1)
     text = json.dumps(described)
     answer, holds, page = _native._probe(text, contiguous(host.step, 2), observe, energy, restart, bool(batched))
-    return ProbeReport(json.loads(answer), holds, page)
+    results = {**json.loads(answer), "exchange_latency": float(host.exchange_latency)}
+    return ProbeReport(results, holds, page)

@@ -122,6 +122,7 @@ def fmu_host(
         reference_A=a,
         reference_B=b,
         reference_source="" if a is None else described.directional,
+        exchange_latency=0.0 if exchange else timestep,
     )
 
 

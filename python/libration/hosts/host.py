@@ -62,6 +62,8 @@ class Host:
     """The damping of each velocity that the integrator may treat implicitly, besides that of actuators."""
     delays: tuple[float, ...] = ()
     """The delay of each action in s that the simulator states; empty if it states none."""
+    exchange_latency: float = 0.0
+    """The latency in s of exchanging values with other simulators at the ends of steps: the macro step of a co-simulation."""
     joints: tuple[str, ...] = ()
     """Names of the joints."""
     recordings: tuple[Recording, ...] = ()

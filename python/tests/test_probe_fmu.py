@@ -1,0 +1,119 @@
+"""Audits of FMUs: the latency of exchanging values, and loops with it. The FMUs are compiled here."""
+
+import dataclasses
+import json
+import re
+
+import numpy as np
+import pytest
+
+fmpy = pytest.importorskip("fmpy")
+
+from fmu import COMPILER, make_fmu  # noqa: E402
+
+from libration import StateFeedback, Steps, probe  # noqa: E402
+from libration.hosts import Host  # noqa: E402
+
+pytestmark = pytest.mark.skipif(COMPILER is None, reason="no C compiler")
+
+MACRO_STEP = 0.01
+GAIN = np.array([[8.0, 4.0]])
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    return make_fmu(tmp_path_factory.mktemp("fmu"), 2)
+
+
+@pytest.fixture(scope="module")
+def report(path):
+    return probe.fmu(path, start_values={"x0": 0.0})
+
+
+def latencies(advice):
+    found = re.search(r'^"latency" = \[(.*)\]$', advice.request, re.MULTILINE)
+    return [float(one) for one in found[1].split(",")] if found else []
+
+
+def stable_up_to(advice):
+    (budget,) = [one for one in advice["budgets"] if one["kind"] == "latency"]
+    return budget["stable_up_to"]
+
+
+def exponential(a):
+    """By scaling and squaring of the series."""
+    a = a / 2**10
+    power, total = np.eye(len(a)), np.eye(len(a))
+    for k in range(1, 20):
+        power = power @ a / k
+        total = total + power
+    return np.linalg.matrix_power(total, 2**10)
+
+
+def growth(latency):
+    """The spectral radius of the loop around the oscillator, whose commands are ``latency`` seconds late.
+
+    A macro step is ten steps of forward Euler. These are exact steps of the plant with the matrix ``log(I + A h)/h``.
+    """
+    a, b, h = np.array([[0.0, 1.0], [-1.0, 1.0]]), np.array([[0.0], [1.0]]), MACRO_STEP / 10
+    flow = sum((-1) ** (k + 1) * np.linalg.matrix_power(a * h, k) / k for k in range(1, 12)) / h
+    forced = np.zeros((3, 3))
+    forced[:2, :2], forced[:2, 2:] = flow, flow @ np.linalg.solve(a, b)
+    whole, late = divmod(latency, MACRO_STEP)
+    whole = int(whole)
+    # The command before last acts until the last one does.
+    first, second = exponential(forced * late), exponential(forced * (MACRO_STEP - late))
+    loop = np.zeros((3 + whole, 3 + whole))
+    loop[:2, :2] = second[:2, :2] @ first[:2, :2]
+    acting = [second[:2, 2:], second[:2, :2] @ first[:2, 2:]]
+    # The states, then the commands of one, two, … steps ago; that of now is −K x.
+    for age, column in zip((whole, whole + 1), acting):
+        if age == 0:
+            loop[:2, :2] -= column @ GAIN
+        else:
+            loop[:2, 1 + age : 2 + age] += column
+    loop[2, :2] = -GAIN[0]
+    loop[3:, 2:-1] = np.eye(whole)
+    return np.max(np.abs(np.linalg.eigvals(loop)))
+
+
+def test_the_macro_step_is_a_latency_of_the_loop(report):
+    assert report.exchange_latency == MACRO_STEP and report.findings == []
+    controller = StateFeedback(GAIN)
+    assert latencies(report.advise(controller)) == [MACRO_STEP]
+    assert latencies(report.advise(controller, exchange=False)) == []
+    assert latencies(report.advise(controller, latency=0.03)) == [0.04]
+    assert latencies(report.advise(controller, latency=[Steps(2)], period=0.005)) == [0.02]
+    alone = report.advise(controller, exchange=False, latency=MACRO_STEP)
+    assert report.advise(controller)["growth"] == alone["growth"] != report.advise(controller, exchange=False)["growth"]
+    for wrong in (-0.01, np.nan, [-0.01]):
+        with pytest.raises(ValueError, match="latency is .*, but it must be finite and at least 0"):
+            report.advise(controller, latency=wrong)
+    with pytest.raises(ValueError, match="latency"):
+        report.advise(controller, latency=[0.01, 0.02])
+
+
+def test_the_critical_latency_is_that_of_the_eigenvalues(report):
+    limit = stable_up_to(report.advise(StateFeedback(GAIN)))
+    # The plant of the audit has the errors of differences.
+    assert growth(limit - 1e-6) < 1 < growth(limit + 1e-6)
+    # The growth of second moments.
+    assert 2 * np.log(growth(MACRO_STEP)) == pytest.approx(report.advise(StateFeedback(GAIN))["growth"], abs=1e-8)
+
+
+def test_the_latency_is_in_the_file_and_a_model_exchange_has_none(path, report, tmp_path):
+    report.save(tmp_path / "report.json")
+    assert json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))["exchange_latency"] == MACRO_STEP
+    assert probe.fmu(path, start_values={"x0": 0.0}, kind="ModelExchange", dt=MACRO_STEP).exchange_latency == 0.0
+
+
+def test_the_latency_of_a_host_is_finite_and_at_least_0():
+    def step(states, actions, dt):
+        return states + dt * (actions - states)
+
+    host = Host(step, np.zeros(1), np.zeros(1), MACRO_STEP, ("x",), ("u",), "filter", "", exchange_latency=0.25)
+    report = probe.host(host)
+    assert report.exchange_latency == 0.25 and latencies(report.advise(StateFeedback([[1.0]]), latency=0.5)) == [0.75]
+    for wrong in (-1.0, np.inf, np.nan):
+        with pytest.raises(ValueError, match="exchange_latency is .*, but it must be finite and at least 0"):
+            probe.host(dataclasses.replace(host, exchange_latency=wrong))
