@@ -131,6 +131,14 @@ class ProbeReport:
         found = self.results["jacobian_error"]
         return float("inf") if found is None else float(found)
 
+    @property
+    def repeat_command(self) -> str:
+        """The command or the Python call that repeats the audit; empty if it is not known.
+
+        A value without a short notation, such as a function without a name, is the name of its parameter.
+        """
+        return str(self.results["repeat_command"])
+
     def _matrix(self, of: str, name: str) -> Array | None:
         found = self.results[of]
         if found is None:

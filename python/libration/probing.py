@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from . import _native
 from ._complex_step import complex_step as derivatives_of
 from ._descriptions import described_recordings, description_of
+from ._invocation import python_call
 from ._keywords import check_keywords
 from ._settings import number, positive
 from ._step_functions import callable_of, check_energy, contiguous, energies_of, inertia, names, observations_of, pair_numbers, rows_of_step, vector
@@ -100,6 +101,7 @@ class Probe:
         TypeError, ValueError
             For an invalid value, or a function whose result has the wrong shape or is not finite. Exceptions of ``step`` are raised as they are.
         """
+        arguments = {name: value for name, value in locals().items() if name != "self"}
         if dt is None:
             raise TypeError("dt is missing; expected the length of a step in s")
         for name, function in (("step", step), ("observe", observe), ("energy", energy), ("restart", restart)):
@@ -133,7 +135,10 @@ class Probe:
         )
         described = description_of(host)
         described.update(
-            fixed_dt=bool(fixed_dt), equilibrium=None if equilibrium is None else bool(equilibrium), conservative=bool(conservative)
+            fixed_dt=bool(fixed_dt),
+            equilibrium=None if equilibrium is None else bool(equilibrium),
+            conservative=bool(conservative),
+            invocation=python_call("libration.probe", [Probe.__call__], arguments, _POINT),
         )
         del described["integrator"]
         if mass is not None:
@@ -173,7 +178,8 @@ class Probe:
         from .hosts import mujoco_host
 
         host = mujoco_host(model, data, keyframe=keyframe, state=state, dt=dt, memory=None)
-        invocation = ""
+        keywords = {"keyframe": keyframe, "state": state, "dt": dt, "conservative": conservative}
+        invocation = python_call("libration.probe.mujoco", [Probe.mujoco], {"model": model, "data": data, **keywords}, ("model", "data"))
         if isinstance(model, (str, PathLike)) and data is None and state in (None, "settled"):
             words = ["libration", "probe", "--mujoco", str(model)]
             words += [] if keyframe is None else ["--keyframe", str(keyframe)]
@@ -186,7 +192,11 @@ class Probe:
         """Audit an environment of Gymnasium with a state and a timestep as attributes, see :func:`libration.hosts.gymnasium_host`."""
         from .hosts import gymnasium_host
 
-        return self.host(gymnasium_host(env, action, **keywords), conservative=conservative)
+        host = gymnasium_host(env, action, **keywords)
+        keywords["conservative"] = conservative
+        functions = [Probe.gymnasium, gymnasium_host]
+        invocation = python_call("libration.probe.gymnasium", functions, {"env": env, "action": action, **keywords}, ("env", "action"))
+        return self.host(host, conservative=conservative, invocation=invocation)
 
     def jax(
         self,
@@ -205,7 +215,10 @@ class Probe:
         """
         from .hosts import jax_host
 
-        return self.host(jax_host(step, state, action, dt, **keywords), conservative=conservative, threads=threads)
+        host = jax_host(step, state, action, dt, **keywords)
+        arguments = {"step": step, "state": state, "action": action, "dt": dt, **keywords, "conservative": conservative, "threads": threads}
+        invocation = python_call("libration.probe.jax", [Probe.jax, jax_host], arguments, _POINT)
+        return self.host(host, conservative=conservative, invocation=invocation, threads=threads)
 
     def fmu(self, path: str | PathLike[str], *, conservative: bool = False, **keywords: Any) -> ProbeReport:
         """Audit an FMU of FMI 2 or 3 in a process of its own, see :func:`libration.hosts.fmu_host`. Requires ``fmpy``.
@@ -215,7 +228,10 @@ class Probe:
         """
         from .hosts import fmu_host
 
-        return self.host(fmu_host(path, **keywords), conservative=conservative)
+        host = fmu_host(path, **keywords)
+        keywords["conservative"] = conservative
+        invocation = python_call("libration.probe.fmu", [Probe.fmu, fmu_host], {"path": path, **keywords}, ("path",))
+        return self.host(host, conservative=conservative, invocation=invocation)
 
     @check_keywords
     def host(self, host: Host, *, conservative: bool = False, invocation: str = "", threads: int | None = None) -> ProbeReport:
@@ -224,7 +240,7 @@ class Probe:
         Parameters
         ----------
         invocation:
-            The command that repeats the audit, for its page.
+            The command or call that repeats the audit, for its page (default: none).
         threads:
             As in :func:`libration.probe`; for a host without memory whose step may be called from several threads.
         """
@@ -241,6 +257,8 @@ class Probe:
 
 
 probe = Probe()
+
+_POINT = ("step", "state", "action", "dt")
 
 
 def _audit(

@@ -107,6 +107,11 @@ def test_the_latency_is_in_the_file_and_a_model_exchange_has_none(path, report, 
     assert probe.fmu(path, start_values={"x0": 0.0}, kind="ModelExchange", dt=MACRO_STEP).exchange_latency == 0.0
 
 
+def test_a_call_repeats_the_audit(path, report):
+    assert report.repeat_command == f"libration.probe.fmu({str(path)!r}, start_values={{'x0': 0.0}})" or len(str(path)) > 100
+    assert probe.fmu(path, dt=0.02, timeout=60.0).repeat_command == f"libration.probe.fmu({str(path)!r}, dt=0.02)" or len(str(path)) > 100
+
+
 def test_the_latency_of_a_host_is_finite_and_at_least_0():
     def step(states, actions, dt):
         return states + dt * (actions - states)

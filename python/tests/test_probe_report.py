@@ -1,7 +1,10 @@
 """Reports of audits: attributes, files, and calls that repeat them."""
 
+import functools
+import html
 import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -58,3 +61,73 @@ def test_a_number_that_is_not_finite_is_null_in_json(random_report, report, tmp_
     gains.results["dt"] = math.nan
     gains.save(tmp_path / "gains.json")
     assert strict(tmp_path / "gains.json")["dt"] is None
+
+
+# ------------------------------------------------------------------ calls that repeat an audit
+
+
+def energy(x):
+    return 0.5 * x[1] ** 2 + 9.0 * (1 - np.cos(x[0]))
+
+
+def test_a_call_repeats_the_audit(tmp_path):
+    mass = np.array([2.0])
+    names = ["<a> (rad)", "b"]
+    report = probe(pendulum, np.zeros(2), [0], np.float64(DT), energy=energy, pairs=[(0, 1)], mass=mass, states=names, batched=False)
+    expected = "libration.probe(pendulum, [0.0, 0.0], [0], 0.01, energy=energy, states=['<a> (rad)', 'b'], mass=[2.0], pairs=[(0, 1)])"
+    assert report.repeat_command == expected
+    again = eval(report.repeat_command)
+    assert again.results == report.results and again.repeat_command == expected
+    report.save(tmp_path / "report.html")
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    # Each word is an element.
+    assert expected in html.unescape(re.sub("<[^>]*>", "", page)) and "<a> (rad)" not in page
+
+
+@pytest.mark.parametrize(
+    ("call", "expected"),
+    [
+        (lambda: probe(pendulum, [0.0, 0.0], [0.0], DT, complex_step=True), "(pendulum, [0.0, 0.0], [0.0], 0.01, complex_step=True)"),
+        (lambda: probe(pendulum, (0, 0), 0.0, dt=DT, equilibrium=False), "(pendulum, (0, 0), 0.0, 0.01, equilibrium=False)"),
+        (lambda: probe(lambda x, u, dt: x - dt * x, [0.0], dt=DT, notes=("one",)), "(step, [0.0], (), 0.01, notes=('one',))"),
+        (lambda: probe(functools.partial(pendulum), [0, 0], [0], DT, energy=lambda x: x[0]), "(step, [0, 0], [0], 0.01, energy=energy)"),
+        (lambda: probe(Linear().step, np.full(30, 1 / 3), (), DT, equilibrium=False), "(step, state, (), 0.01, equilibrium=False)"),
+        (lambda: probe(pendulum, [0, 0], [0], DT, title="a 'b'"), """(pendulum, [0, 0], [0], 0.01, title="a 'b'")"""),
+        (lambda: probe(pendulum, [0, 0], [0], DT, title=200 * "t", states=iter("ab")), "(pendulum, [0, 0], [0], 0.01, states=states, title=title)"),
+    ],
+)
+def test_arguments_have_their_notation_or_the_name_of_their_parameter(call, expected):
+    assert call().repeat_command == f"libration.probe{expected}"
+
+
+class Linear:
+    def step(self, x, u, dt):
+        return x - dt * x
+
+
+def test_a_call_repeats_the_audit_of_an_environment():
+    gymnasium = pytest.importorskip("gymnasium")
+    report = probe.gymnasium("Pendulum-v1", state=np.zeros(2), dt=0.02, conservative=True)
+    assert report.repeat_command == "libration.probe.gymnasium('Pendulum-v1', state=[0.0, 0.0], dt=0.02, conservative=True)"
+    assert eval(report.repeat_command).results == report.results
+    assert probe.gymnasium(gymnasium.make("Pendulum-v1"), [0.5]).repeat_command == "libration.probe.gymnasium(env, [0.5])"
+
+
+def test_a_call_repeats_the_audit_of_a_function_of_jax():
+    jnp = pytest.importorskip("jax.numpy")
+
+    def filtered(x, u, dt):
+        return x + dt * (u - x)
+
+    assert probe.jax(filtered, [0.0], jnp.zeros(1), DT, threads=2).repeat_command == "libration.probe.jax(filtered, [0.0], [0.0], 0.01, threads=2)"
+
+
+def test_a_call_repeats_the_audit_of_a_model_of_mujoco(tmp_path):
+    mujoco = pytest.importorskip("mujoco")
+    text = "<mujoco><worldbody><body><joint axis='0 1 0'/><geom size='.1' pos='0 0 -1'/></body></worldbody></mujoco>"
+    report = probe.mujoco(mujoco.MjModel.from_xml_string(text), dt=0.001)
+    assert report.repeat_command == "libration.probe.mujoco(model, dt=0.001)"
+    path = tmp_path / "pendulum.xml"
+    path.write_text(text, encoding="utf-8")
+    assert probe.mujoco(path, dt=0.001).repeat_command == f"libration probe --mujoco {path} --dt 0.001"
+    assert probe.mujoco(str(path), state="default").repeat_command == f"libration.probe.mujoco({str(path)!r}, state='default')"
