@@ -197,7 +197,7 @@ def inertia(mass: ArrayLike, count: int) -> list[list[float]]:
         raise ValueError(f"mass[{i}, {j}] is {found[i, j]}, but mass[{j}, {i}] is {found[j, i]}; expected a symmetric matrix")
     if count and np.linalg.eigvalsh(scaled)[0] <= count * np.finfo(np.float64).eps:
         least = np.linalg.eigvalsh(found)[0]
-        raise ValueError(f"mass has the eigenvalue {least:.6g}; expected a positive definite matrix, with eigenvalues above 0")
+        raise ValueError(f"mass has the eigenvalue {least:.6g}; expected a positive definite matrix, also with rounding errors")
     rows: list[list[float]] = found.tolist()
     return rows
 

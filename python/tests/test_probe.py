@@ -354,7 +354,7 @@ X, U = (0.0, 0.0), (0.0,)
         (lambda: audit(pendulum, observe=lambda x: [1.0, math.nan]), ValueError, r"observe returned nan in component 1 for the state \[0\.0, 0\.0\]"),
         (lambda: audit(pendulum, observe=lambda x: []), ValueError, r"observe returned an array of shape \(0,\); expected at least one number"),
         (lambda: audit(pendulums, batched=True, observe=lambda x: x[:, :0]), ValueError, r"observe returned an array of shape \(1, 0\)"),
-        (lambda: audit(pendulum, observe=lambda x: x[: 1 + (x[0] != 0)]), ValueError, "observe returned 2 numbers .* 1 at the first call; expected 1"),
+        (lambda: audit(pendulum, observe=lambda x: x[: 1 + (x[0] != 0)]), ValueError, "observe returned 2 numbers .*, but 1 at the first"),
         (lambda: audit(pendulum, states=["a", "(m)"]), ValueError, r"states\[1\] is '\(m\)'; expected a name, or a name and its unit"),
         (lambda: audit(pendulum, states=["", "b"]), ValueError, r"states\[0\] is ''; expected a name"),
         (lambda: audit(pendulum, inputs=[" "]), ValueError, r"inputs\[0\] is ' '; expected a name"),
