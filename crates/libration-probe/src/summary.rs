@@ -35,9 +35,19 @@ impl ProbeReport {
             self.findings.iter().filter(|finding| finding.kind == FindingKind::LimitedValidity);
         sentences.extend(validity.map(|finding| format!("{}.", capitalised(&finding.text))));
         if faults.is_empty() && self.step.is_some() && self.is_differentiable() {
-            sentences.push(match self.findings.len() {
-                0 => "No fault was found.".into(),
-                warnings => format!("No fault was found, but {}.", plural(warnings, "warning")),
+            let warnings: Vec<&str> = self
+                .findings
+                .iter()
+                .filter(|finding| finding.kind != FindingKind::LimitedValidity)
+                .map(|finding| finding.text.as_str())
+                .collect();
+            sentences.push(match warnings[..] {
+                [] => "No fault was found.".into(),
+                [only] => format!("No fault was found, but 1 warning: {only}."),
+                [first, ..] => format!(
+                    "No fault was found, but {}, the first: {first}.",
+                    plural(warnings.len(), "warning")
+                ),
             });
         }
         sentences.join(" ")
