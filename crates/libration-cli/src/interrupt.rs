@@ -3,6 +3,8 @@
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use libration_probe::end_programs;
+
 use crate::error::{FAILED, Failure, INTERRUPTED};
 
 static STOP: AtomicBool = AtomicBool::new(false);
@@ -16,6 +18,7 @@ static LISTENING: AtomicBool = AtomicBool::new(false);
 pub(crate) fn handle() -> Result<(), Failure> {
     ctrlc::set_handler(|| {
         if !LISTENING.load(Ordering::Relaxed) || STOP.swap(true, Ordering::Relaxed) {
+            end_programs();
             process::exit(i32::from(INTERRUPTED));
         }
     })
@@ -26,6 +29,22 @@ pub(crate) fn handle() -> Result<(), Failure> {
 pub(crate) fn listen() -> &'static AtomicBool {
     LISTENING.store(true, Ordering::Relaxed);
     &STOP
+}
+
+/// Ends the simulators that this process starts when it is terminated: they are not in its group.
+pub(crate) fn end_programs_on_termination() {
+    #[cfg(unix)]
+    {
+        use signal_hook::{consts::SIGTERM, iterator::Signals, low_level::emulate_default_handler};
+        // Without the handler the signal ends this process alone, and each simulator at the end of its input.
+        let Ok(mut signals) = Signals::new([SIGTERM]) else { return };
+        let _ = std::thread::Builder::new().spawn(move || {
+            for signal in signals.forever() {
+                end_programs();
+                let _ = emulate_default_handler(signal);
+            }
+        });
+    }
 }
 
 /// Makes a failed allocation end the process with the exit code of a failed run. Rust prints the size before it aborts.

@@ -48,6 +48,12 @@ pub enum BlackBoxError {
     /// The simulator failed, in its own words.
     #[error("{0}")]
     Failed(String),
+    /// The audit has no time left for an answer.
+    #[error("`{program}` gave no answer before the limit of time of the audit")]
+    TimeLimit {
+        /// The program.
+        program: String,
+    },
     /// A result has the wrong shape.
     #[error("the {what} of {rows} states are {found}; expected {expected}")]
     Shape {
@@ -62,7 +68,7 @@ pub enum BlackBoxError {
     },
     /// A state is infinite or NaN.
     #[error(
-        "the step of {dt:e} s from the state [{from}] has {value} in `{state}`; expected finite numbers; help: smaller typical deviations (state_scale) keep the audit where the step is defined"
+        "the step of {dt:e} s from the state [{from}] has {value} in `{state}`; expected finite numbers; help: {help}"
     )]
     NotFinite {
         /// The length of the step.
@@ -73,5 +79,7 @@ pub enum BlackBoxError {
         value: f64,
         /// The name of the state.
         state: String,
+        /// What to change.
+        help: &'static str,
     },
 }

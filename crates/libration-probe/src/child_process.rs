@@ -1,13 +1,15 @@
 //! A simulator that is another program: numbers on its standard input and output.
 
 use std::io::{self, BufRead, BufReader, Read, Write};
-use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel, sync_channel};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use libration::linear::Matrix;
+use libration_report::notation::plural;
 
+use crate::process_group::ProcessGroup;
 use crate::{BlackBox, BlackBoxError};
 
 /// Bytes of a reply: 100 numbers need 2.5 kB, a description of a large model with its matrices some hundred.
@@ -16,6 +18,8 @@ const MOST_BYTES: u64 = 4 << 20;
 const MOST_MESSAGES: u64 = 64 << 10;
 /// The time in which messages must have arrived after the end of a program, whose own children may hold the pipe.
 const LAST_MESSAGES: Duration = Duration::from_millis(200);
+/// The time in which a program that closes its output or input must have ended, to be reported with its status.
+const LAST_STATUS: Duration = Duration::from_millis(200);
 /// Lines that wait to be read.
 const MOST_LINES: usize = 4;
 
@@ -26,6 +30,8 @@ const MOST_LINES: usize = 4;
 pub struct ChildProcess {
     words: Vec<String>,
     patience: Duration,
+    /// The end of the audit.
+    deadline: Option<Instant>,
     running: Running,
     has_energy: bool,
     /// Lines that were answered.
@@ -36,6 +42,7 @@ pub struct ChildProcess {
 #[derive(Debug)]
 struct Running {
     child: Child,
+    group: ProcessGroup,
     input: Option<ChildStdin>,
     lines: Receiver<Result<String, String>>,
     /// Disconnected when all messages are shown.
@@ -46,6 +53,8 @@ impl Drop for Running {
     fn drop(&mut self) {
         // A program that reads to the end of its input ends now; any other is killed.
         drop(self.input.take());
+        // Before its identifier is free for another group.
+        self.group.end();
         let _ = self.child.kill();
         let _ = self.child.wait();
         let _ = self.messages.recv_timeout(LAST_MESSAGES);
@@ -55,16 +64,14 @@ impl Drop for Running {
 impl Running {
     fn start(words: &[String]) -> Result<Self, BlackBoxError> {
         let failed = |why: &dyn core::fmt::Display| {
-            BlackBoxError::Failed(format!("cannot start `{}`: {why}", words.join(" ")))
+            let program = words.first().map_or("", String::as_str);
+            BlackBoxError::Failed(format!("cannot start `{program}`: {why}"))
         };
         let (program, arguments) = words.split_first().ok_or_else(|| failed(&"no program"))?;
-        let mut child = Command::new(program)
-            .args(arguments)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .map_err(|error| failed(&error))?;
+        let mut command = Command::new(program);
+        command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let (mut child, group) =
+            ProcessGroup::start(&mut command).map_err(|error| failed(&error))?;
         let (input, output) = (child.stdin.take(), child.stdout.take());
         let output = output.ok_or_else(|| failed(&"it has no standard output"))?;
         let (send, lines) = sync_channel(MOST_LINES);
@@ -89,7 +96,22 @@ impl Running {
                 errors.map(show_messages)
             })
             .map_err(|error| failed(&error))?;
-        Ok(Running { child, input, lines, messages })
+        Ok(Running { child, group, input, lines, messages })
+    }
+
+    /// The status of a program that ends now or in a moment; none if it still runs.
+    fn last_status(&mut self) -> Option<ExitStatus> {
+        let end = Instant::now() + LAST_STATUS;
+        loop {
+            if let Some(status) = self.child.try_wait().ok().flatten() {
+                self.group.end();
+                return Some(status);
+            }
+            if Instant::now() >= end {
+                return None;
+            }
+            thread::sleep(Duration::from_millis(2));
+        }
     }
 }
 
@@ -125,6 +147,7 @@ impl ChildProcess {
         Ok(ChildProcess {
             words: words.to_vec(),
             patience,
+            deadline: None,
             running: Running::start(words)?,
             has_energy: false,
             answered: 0,
@@ -141,55 +164,73 @@ impl ChildProcess {
         self.next_line()
     }
 
+    /// The end of the audit, at which the wait for an answer ends as well.
+    pub fn set_deadline(&mut self, deadline: Instant) {
+        self.deadline = Some(deadline);
+    }
+
     /// Whether the program answers lines `energy x₁ … xₙ`.
     pub fn set_energy(&mut self, has_energy: bool) {
         self.has_energy = has_energy;
     }
 
+    /// An error of the program, with its name.
+    fn failed(&self, why: &str) -> BlackBoxError {
+        let program = self.words.first().map_or("", String::as_str);
+        BlackBoxError::Failed(format!("`{program}` {why}"))
+    }
+
     fn next_line(&mut self) -> Result<String, BlackBoxError> {
-        let failed = |why: String| {
-            let program = self.words.first().map_or("", String::as_str);
-            Err(BlackBoxError::Failed(format!("`{program}` {why}")))
-        };
-        match self.running.lines.recv_timeout(self.patience) {
+        let left = self.deadline.map(|end| end.saturating_duration_since(Instant::now()));
+        let wait = left.map_or(self.patience, |left| left.min(self.patience));
+        match self.running.lines.recv_timeout(wait) {
             Ok(Ok(line)) => Ok(line),
-            Ok(Err(why)) if why.is_empty() => {
-                let status = self.running.child.try_wait().ok().flatten();
-                let status = match status {
-                    Some(status) => format!("ended ({status})"),
-                    None => "closed its output".to_owned(),
-                };
-                failed(format!(
-                    "{status} after {} lines; expected an answer to each line until its input ends",
-                    self.answered
-                ))
+            Ok(Err(why)) => Err(self.ended(&why)),
+            Err(RecvTimeoutError::Timeout) if wait < self.patience => {
+                Err(BlackBoxError::TimeLimit {
+                    program: self.words.first().cloned().unwrap_or_default(),
+                })
             }
-            Ok(Err(why)) => failed(format!("failed: {why}")),
-            Err(RecvTimeoutError::Timeout) => failed(format!(
+            Err(RecvTimeoutError::Timeout) => Err(self.failed(&format!(
                 "gave no answer within {} s; expected a line for each line, flushed at once",
                 self.patience.as_secs_f64()
-            )),
-            Err(RecvTimeoutError::Disconnected) => failed("has ended".to_owned()),
+            ))),
+            Err(RecvTimeoutError::Disconnected) => Err(self.ended("")),
         }
     }
 
+    /// The error of a program whose output ends, or cannot be read.
+    fn ended(&mut self, why: &str) -> BlackBoxError {
+        if !why.is_empty() {
+            return self.failed(&format!("failed: {why}"));
+        }
+        let status = match self.running.last_status() {
+            Some(status) => format!("ended ({status})"),
+            None => "closed its output".to_owned(),
+        };
+        let answered = usize::try_from(self.answered).unwrap_or(usize::MAX);
+        self.failed(&format!(
+            "{status} after {}; expected an answer to each line until its input ends",
+            plural(answered, "line")
+        ))
+    }
+
     fn ask(&mut self, line: &str, count: usize) -> Result<Vec<f64>, BlackBoxError> {
-        let program = self.words.first().cloned().unwrap_or_default();
-        let failed = |why: String| BlackBoxError::Failed(format!("`{program}` {why}"));
         match self.running.lines.try_recv() {
             Ok(Ok(line)) => {
-                return Err(failed(format!(
+                return Err(self.failed(&format!(
                     "wrote `{}` before it was asked; expected one line for each line",
                     shortened(&line)
                 )));
             }
-            Ok(Err(_)) | Err(TryRecvError::Empty | TryRecvError::Disconnected) => {}
+            Ok(Err(why)) => return Err(self.ended(&why)),
+            Err(TryRecvError::Empty | TryRecvError::Disconnected) => {}
         }
         if let Some(input) = &mut self.running.input {
             let written = input.write_all(line.as_bytes()).and_then(|()| input.flush());
             // Its end is reported with its exit code below.
-            if written.is_err() && self.running.child.try_wait().ok().flatten().is_none() {
-                return Err(failed("does not read its input".into()));
+            if written.is_err() && self.running.last_status().is_none() {
+                return Err(self.failed("does not read its input"));
             }
         }
         let reply = self.next_line()?;
@@ -198,14 +239,16 @@ impl ChildProcess {
         let numbers: Result<Vec<f64>, _> = words.map(|word| word.parse::<f64>()).collect();
         match numbers {
             Ok(numbers) if numbers.len() == count => Ok(numbers),
-            Ok(numbers) => Err(failed(format!(
-                "answered with {} numbers: `{}`; expected {count}",
-                numbers.len(),
+            Ok(numbers) => Err(self.failed(&format!(
+                "answered with {}: `{}`; expected {count}",
+                plural(numbers.len(), "number"),
                 shortened(&reply)
             ))),
-            Err(_) => Err(failed(format!(
-                "answered `{}`; expected {count} numbers, separated by spaces",
-                shortened(&reply)
+            Err(_) => Err(self.failed(&format!(
+                "answered `{}`; expected {}{}",
+                shortened(&reply),
+                plural(count, "number"),
+                if count == 1 { "" } else { ", separated by spaces" }
             ))),
         }
     }

@@ -4,6 +4,12 @@ use libration::linear::Matrix;
 
 use crate::{BlackBox, BlackBoxError, Subject};
 
+/// The help for a result that is not finite at the given state.
+const ELSEWHERE: &str = "choose a state and an action at which the step is defined (state, action)";
+/// The help for one near it.
+const CLOSER: &str =
+    "smaller typical deviations (state_scale) keep the audit where the step is defined";
+
 /// A black box at work: each result has the right shape and is free of earlier calls.
 pub(crate) struct Prober<'a> {
     black_box: &'a mut dyn BlackBox,
@@ -140,6 +146,7 @@ impl<'a> Prober<'a> {
                     from: from.join(", "),
                     value: next[i],
                     state: self.subject.states[i].name.clone(),
+                    help: if state == self.subject.state { ELSEWHERE } else { CLOSER },
                 })
             }
         }

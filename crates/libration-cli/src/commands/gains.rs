@@ -56,7 +56,7 @@ fn described(args: &GainsArgs) -> Result<ServosDescription, Failure> {
         if let Some(keyframe) = &args.keyframe {
             words.extend(["--keyframe".to_owned(), keyframe.clone()]);
         }
-        let (_, text) = mujoco::start(&args.python, path, &words, args.timeout)?;
+        let (_, text) = mujoco::start(&args.python, path, &words, args.timeout, None)?;
         return parse(&text).map_err(Failure::run);
     }
     if let Some(path) = &args.matrices {

@@ -1,11 +1,12 @@
 //! MuJoCo models, which a Python program reads and steps.
 
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use libration_probe::ChildProcess;
+use libration_probe::{BlackBoxError, ChildProcess};
 
 use crate::error::Failure;
+use crate::interrupt;
 
 /// Starts the program for a model, and returns it with the first line of its output.
 pub(super) fn start(
@@ -13,6 +14,7 @@ pub(super) fn start(
     path: &Path,
     options: &[String],
     patience: Duration,
+    deadline: Option<Instant>,
 ) -> Result<(ChildProcess, String), Failure> {
     if !path.is_file() {
         return Err(Failure::usage(format!(
@@ -24,11 +26,20 @@ pub(super) fn start(
         [python, "-m", "libration.hosts", "mujoco"].map(str::to_owned).into();
     words.push(path.display().to_string());
     words.extend_from_slice(options);
+    interrupt::end_programs_on_termination();
     let mut child = ChildProcess::start(&words, patience).map_err(|error| {
         Failure::usage(format!("{error}; expected --python with the packages libration and mujoco"))
     })?;
-    let line = child.description().map_err(|error| {
-        Failure::run(format!("{error}; help: install the packages libration and mujoco for it"))
+    if let Some(deadline) = deadline {
+        child.set_deadline(deadline);
+    }
+    let line = child.description().map_err(|error| match error {
+        BlackBoxError::TimeLimit { .. } => {
+            Failure::run(format!("{error} (--time-limit); expected a longer limit"))
+        }
+        _ => {
+            Failure::run(format!("{error}; help: install the packages libration and mujoco for it"))
+        }
     })?;
     match line.strip_prefix("error: ") {
         Some(message) => Err(Failure::usage(format!("{} (--mujoco)", message.trim_end()))),

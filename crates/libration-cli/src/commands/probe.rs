@@ -1,10 +1,12 @@
 //! `libration probe`.
 
 use std::path::Path;
+use std::time::Instant;
 
 use libration::linear::{Matrix, Signal};
 use libration_probe::{
-    BlackBox, ChildProcess, Description, Matrices, MatrixStep, ProbeReport, Subject, page, probe,
+    BlackBox, BlackBoxError, ChildProcess, Description, Matrices, MatrixStep, ProbeReport, Subject,
+    page, probe,
 };
 use libration_report::notation::plural;
 use libration_settings::linear_loop::read_plant;
@@ -14,15 +16,18 @@ use super::mujoco;
 use super::probe_text::describe;
 use super::result_file::ResultFile;
 use super::watched::Watched;
-use crate::args::{Coordinates, ProbeArgs};
+use crate::args::{Coordinates, ProbeArgs, quoted};
 use crate::error::Failure;
+use crate::interrupt;
 use crate::terminal;
 
 /// Audits the step of a simulator and prints the report.
 pub(crate) fn run(args: &ProbeArgs, quiet: bool) -> Result<(), Failure> {
+    let start = Instant::now();
+    check_suffix(args.save_plant.as_deref())?;
     let file = ResultFile::create("--page", args.page.as_deref())?;
     let plant_file = ResultFile::create("--save-plant", args.save_plant.as_deref())?;
-    let (black_box, mut subject) = simulator(args)?;
+    let (black_box, mut subject) = simulator(args, start + args.time_limit)?;
     subject.invocation = command_line();
     if args.moving {
         subject.equilibrium = Some(false);
@@ -32,8 +37,8 @@ pub(crate) fn run(args: &ProbeArgs, quiet: bool) -> Result<(), Failure> {
     if !quiet {
         terminal::say(&format!("auditing the step of {}", subject.title));
     }
-    let mut watched = Watched::new(black_box, args.time_limit, quiet);
-    let report = probe(&mut watched, &subject).map_err(Failure::run)?;
+    let mut watched = Watched::new(black_box, start, args.time_limit, quiet);
+    let report = probe(&mut watched, &subject).map_err(|error| failure(args, &error))?;
     drop(watched);
     let text = match args.json {
         true => serde_json::to_string_pretty(&report).map_err(Failure::run)? + "\n",
@@ -55,6 +60,29 @@ pub(crate) fn run(args: &ProbeArgs, quiet: bool) -> Result<(), Failure> {
     if report.holds() { Ok(()) } else { Err(Failure::Disagreement) }
 }
 
+/// Checks that `advise --plant` will know the format of a plant. A pipe or device needs no suffix.
+fn check_suffix(path: Option<&Path>) -> Result<(), Failure> {
+    let is_toml = |path: &Path| path.extension().is_some_and(|suffix| suffix == "toml");
+    let is_pipe = |path: &Path| path.exists() && !path.is_file() && !path.is_dir();
+    match path.filter(|path| !is_toml(path) && !is_pipe(path)) {
+        None => Ok(()),
+        Some(path) => Err(Failure::usage(format!(
+            "cannot write `{}` (--save-plant): plants are TOML; expected a file name that ends in .toml",
+            path.display()
+        ))),
+    }
+}
+
+/// The failure of an audit. Only simulators of `--command` have options for their typical deviations and their state.
+fn failure(args: &ProbeArgs, error: &BlackBoxError) -> Failure {
+    let message = error.to_string();
+    let [scale, state] = match args.command {
+        Some(_) => [" (--state-scale)", " (--state, --action)"],
+        None => [""; 2],
+    };
+    Failure::run(message.replace(" (state_scale)", scale).replace(" (state, action)", state))
+}
+
 /// A field of a subject as the option that sets it.
 fn named(message: &str) -> String {
     let options = ["state_scale", "action_scale", "state", "action", "dt"];
@@ -66,15 +94,17 @@ fn named(message: &str) -> String {
 }
 
 /// The simulator of the options.
-fn simulator(args: &ProbeArgs) -> Result<(Box<dyn BlackBox>, Subject), Failure> {
+fn simulator(args: &ProbeArgs, deadline: Instant) -> Result<(Box<dyn BlackBox>, Subject), Failure> {
     match (&args.command, &args.mujoco, &args.matrices) {
         (Some(words), _, _) => {
-            let subject = described(args, &words.0.join(" "))?;
-            let child = ChildProcess::start(&words.0, args.timeout)
+            let subject = described(args, &quoted(words.0.clone()))?;
+            interrupt::end_programs_on_termination();
+            let mut child = ChildProcess::start(&words.0, args.timeout)
                 .map_err(|error| Failure::usage(format!("{error} (--command)")))?;
+            child.set_deadline(deadline);
             Ok((Box::new(child), subject))
         }
-        (_, Some(path), _) => mujoco_model(args, path),
+        (_, Some(path), _) => mujoco_model(args, path, deadline),
         (_, _, Some(path)) => matrices(args, path),
         _ => Err(Failure::usage("expected --command, --mujoco or --matrices")),
     }
@@ -112,7 +142,11 @@ fn described(args: &ProbeArgs, title: &str) -> Result<Subject, Failure> {
 }
 
 /// A MuJoCo model, stepped by a Python program.
-fn mujoco_model(args: &ProbeArgs, path: &Path) -> Result<(Box<dyn BlackBox>, Subject), Failure> {
+fn mujoco_model(
+    args: &ProbeArgs,
+    path: &Path,
+    deadline: Instant,
+) -> Result<(Box<dyn BlackBox>, Subject), Failure> {
     let mut options = Vec::new();
     let mut option = |name: &str, value: Option<String>| {
         options.extend(value.into_iter().flat_map(|value| [format!("--{name}"), value]));
@@ -122,7 +156,8 @@ fn mujoco_model(args: &ProbeArgs, path: &Path) -> Result<(Box<dyn BlackBox>, Sub
     if args.settle {
         options.push("--settle".into());
     }
-    let (mut child, text) = mujoco::start(&args.python, path, &options, args.timeout)?;
+    let (mut child, text) =
+        mujoco::start(&args.python, path, &options, args.timeout, Some(deadline))?;
     let description = Description::parse(&text).map_err(Failure::run)?;
     child.set_energy(description.energy);
     Ok((Box::new(child), description.subject().map_err(Failure::run)?))

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use indicatif::ProgressBar;
 use libration::linear::Matrix;
 use libration_probe::{BlackBox, BlackBoxError};
+use libration_report::notation::plural;
 
 use crate::progress;
 use crate::terminal;
@@ -24,21 +25,49 @@ pub(super) struct Watched {
 }
 
 impl Watched {
-    pub(super) fn new(black_box: Box<dyn BlackBox>, limit: Duration, quiet: bool) -> Self {
+    /// A black box of an audit that began at `start`.
+    pub(super) fn new(
+        black_box: Box<dyn BlackBox>,
+        start: Instant,
+        limit: Duration,
+        quiet: bool,
+    ) -> Self {
         let bar = (!quiet).then(progress::spinner).flatten();
-        let start = Instant::now();
-        let next_line = (!quiet && bar.is_none()).then(|| start + PAUSE);
+        let next_line = (!quiet && bar.is_none()).then(|| Instant::now() + PAUSE);
         Watched { black_box, start, limit, steps: 0, bar, next_line }
     }
 
     fn tell(&mut self) {
         if let Some(bar) = &self.bar {
-            bar.set_message(format!("{} steps", self.steps));
+            bar.set_message(self.steps());
         }
         if self.next_line.is_some_and(|due| Instant::now() >= due) {
             self.next_line = Some(Instant::now() + PAUSE);
             let seconds = self.start.elapsed().as_secs_f64();
-            terminal::say(&format!("{} steps in {seconds:.0} s", self.steps));
+            terminal::say(&format!("{} in {seconds:.0} s", self.steps()));
+        }
+    }
+
+    fn steps(&self) -> String {
+        plural(usize::try_from(self.steps).unwrap_or(usize::MAX), "step")
+    }
+
+    /// The error of an audit that its limit of time ends.
+    fn ended(&self, why: &str) -> BlackBoxError {
+        BlackBoxError::Failed(format!(
+            "the audit was ended after {} s and {} (--time-limit){why}; expected a faster step, or a longer limit",
+            self.limit.as_secs_f64(),
+            self.steps()
+        ))
+    }
+
+    /// An error of the simulator; a limit of time by its option.
+    fn named(&self, error: BlackBoxError) -> BlackBoxError {
+        match error {
+            BlackBoxError::TimeLimit { program } => {
+                self.ended(&format!(": `{program}` gave no answer to the next one"))
+            }
+            error => error,
         }
     }
 }
@@ -59,15 +88,12 @@ impl BlackBox for Watched {
         dt: f64,
     ) -> Result<Matrix, BlackBoxError> {
         if self.start.elapsed() > self.limit {
-            return Err(BlackBoxError::Failed(format!(
-                "the audit was ended after {} s and {} steps (--time-limit); expected a faster step, or a longer limit",
-                self.limit.as_secs_f64(),
-                self.steps
-            )));
+            return Err(self.ended(""));
         }
-        self.steps += states.rows() as u64;
         self.tell();
-        self.black_box.step(states, actions, dt)
+        let next = self.black_box.step(states, actions, dt).map_err(|error| self.named(error))?;
+        self.steps += states.rows() as u64;
+        Ok(next)
     }
 
     fn is_batched(&self) -> bool {
@@ -79,10 +105,10 @@ impl BlackBox for Watched {
     }
 
     fn energies(&mut self, states: &Matrix) -> Result<Option<Vec<f64>>, BlackBoxError> {
-        self.black_box.energies(states)
+        self.black_box.energies(states).map_err(|error| self.named(error))
     }
 
     fn restart(&mut self) -> Result<bool, BlackBoxError> {
-        self.black_box.restart()
+        self.black_box.restart().map_err(|error| self.named(error))
     }
 }

@@ -30,6 +30,8 @@ mod long_files;
 mod memory;
 mod plant_files;
 mod probe;
+#[cfg(unix)]
+mod probe_programs;
 mod readers;
 #[cfg(unix)]
 mod replaced_file;
