@@ -1,7 +1,7 @@
 //! A simulator that is another program: numbers on its standard input and output.
 
-use std::io::{self, BufRead, BufReader, Read, Write};
-use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, ExitStatus, Stdio};
+use std::io::{BufReader, Write};
+use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -9,13 +9,10 @@ use std::time::{Duration, Instant};
 use libration::linear::Matrix;
 use libration_report::notation::plural;
 
+use crate::child_streams::{read_line, show_messages};
 use crate::process_group::ProcessGroup;
 use crate::{BlackBox, BlackBoxError};
 
-/// Bytes of a reply: 100 numbers need 2.5 kB, a description of a large model with its matrices some hundred.
-const MOST_BYTES: u64 = 4 << 20;
-/// Bytes of its standard error that are shown.
-const MOST_MESSAGES: u64 = 64 << 10;
 /// The time in which messages must have arrived after the end of a program, whose own children may hold the pipe.
 const LAST_MESSAGES: Duration = Duration::from_millis(200);
 /// The time in which a program that closes its output or input must have ended, to be reported with its status.
@@ -112,29 +109,6 @@ impl Running {
             }
             thread::sleep(Duration::from_millis(2));
         }
-    }
-}
-
-/// Shows the first messages of a program, and reads the others, so that it does not wait for a reader.
-fn show_messages(mut errors: ChildStderr) {
-    let shown = io::copy(&mut errors.by_ref().take(MOST_MESSAGES), &mut io::stderr());
-    let rest = io::copy(&mut errors, &mut io::sink());
-    if shown.is_ok() && rest.is_ok_and(|bytes| bytes > 0) {
-        let _ = writeln!(io::stderr(), "\n(more messages of the program are left out)");
-    }
-}
-
-/// The next line; an error in words at its end.
-fn read_line(output: &mut BufReader<ChildStdout>) -> Result<String, String> {
-    let mut bytes = Vec::new();
-    let read = output.by_ref().take(MOST_BYTES).read_until(b'\n', &mut bytes);
-    match read {
-        Err(error) => Err(format!("cannot read its output: {error}")),
-        Ok(0) => Err(String::new()),
-        Ok(_) if bytes.last() != Some(&b'\n') && bytes.len() as u64 >= MOST_BYTES => {
-            Err(format!("a line of its output is longer than {MOST_BYTES} bytes"))
-        }
-        Ok(_) => String::from_utf8(bytes).map_err(|_| "its output is not UTF-8 text".into()),
     }
 }
 

@@ -30,6 +30,8 @@ pub struct Description {
     mass: Option<Vec<Vec<f64>>>,
     joint_damping: Option<Vec<f64>>,
     integrator: Option<String>,
+    /// The simulator and its version.
+    version: Option<String>,
     #[serde(default)]
     notes: Vec<String>,
     #[serde(default)]
@@ -109,6 +111,7 @@ impl Description {
         subject.pairs = self.pairs;
         subject.joint_damping = self.joint_damping;
         subject.integrator = self.integrator;
+        subject.version = self.version.filter(|version| !version.is_empty());
         subject.notes = self.notes;
         subject.stated_delays = self.stated_delays;
         subject.validity = self.validity;

@@ -4,6 +4,7 @@ use libration_report::notation::number;
 use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 
+use crate::summary::error_in_words;
 use crate::{Match, ProbeReport};
 
 /// Integrators of a table besides those that agree; all are in the results.
@@ -19,16 +20,24 @@ pub(crate) fn integrator(page: &mut Page, audit: &ProbeReport) {
     });
     page.paragraph(format!(
         "Each candidate steps the same system from a displaced state, whose rates are the limit of short steps of the simulator; errors of \
-         the rates explain distances up to {}.",
-        number(recognition.by_results.allowed, 2)
+         the rates explain distances {}.",
+        allowed(recognition.by_results.allowed)
     ));
     candidates(page, "integrators", &recognition.by_results);
     if let Some(by_matrix) = &recognition.by_matrix {
         page.paragraph(format!(
-            "The same for small deviations, by the matrix of the step; errors explain distances up to {}.",
-            number(by_matrix.allowed, 2)
+            "The same for small deviations, by the matrix of the step; errors explain distances {}.",
+            allowed(by_matrix.allowed)
         ));
         candidates(page, "integrators-linear", by_matrix);
+    }
+}
+
+/// How large distances are that errors explain.
+fn allowed(distance: f64) -> String {
+    match error_in_words(distance) {
+        unknown if unknown == "unknown" => "of unknown size".into(),
+        known => format!("up to {known}"),
     }
 }
 

@@ -1,6 +1,6 @@
 //! An audit as an HTML page.
 
-use libration_report::notation::{count, number, plural};
+use libration_report::notation::{number, plural};
 use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 use libration_report::report;
@@ -8,7 +8,7 @@ use libration_report::report;
 use crate::ProbeReport;
 use crate::integrator_page::{defects, integrator};
 use crate::mode_plane::mode_plane;
-use crate::summary::capitalised;
+use crate::summary::{capitalised, error_in_words};
 
 /// The audit as an HTML page.
 pub fn page(audit: &ProbeReport) -> String {
@@ -25,12 +25,15 @@ pub fn page(audit: &ProbeReport) -> String {
         page.heading("How is the audit repeated?");
         page.code(audit.repeat_command.clone());
     }
+    let simulator = audit.version.as_ref().map(|version| format!(" · {version}"));
     let sub = format!(
-        "{} · {} · dt = {} s · {} steps · `libration probe`",
+        "{} · {} · dt = {} s · {}{} · `libration probe` {}",
         plural(audit.states.len(), "state"),
         plural(audit.inputs.len(), "input"),
         number(audit.dt, 4),
-        count(audit.calls),
+        plural(usize::try_from(audit.calls).unwrap_or(usize::MAX), "step"),
+        simulator.unwrap_or_default(),
+        audit.libration_version,
     );
     report::render_page(&page, &sub)
 }
@@ -250,14 +253,19 @@ fn linearised(audit: &ProbeReport) -> String {
     };
     let mut text = format!(
         "{holds}: {change}. The estimated relative error of the matrices is {}.",
-        number(audit.jacobian_error, 2)
+        error_in_words(audit.jacobian_error)
     );
     if let Some(confirmation) = &audit.confirmation {
+        let follows = match confirmation.error <= 1.0 {
+            true => {
+                format!("follows them to a relative error of {}", number(confirmation.error, 2))
+            }
+            false => "does not follow them".into(),
+        };
         text += &format!(
-            " A run of {} from a deviation of {} follows them to a relative error of {}.",
+            " A run of {} from a deviation of {} {follows}.",
             plural(confirmation.steps, "step"),
             number(confirmation.displacement, 1),
-            number(confirmation.error, 2)
         );
     }
     if let Some(reference) = &audit.reference {

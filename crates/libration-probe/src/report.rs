@@ -31,6 +31,10 @@ pub struct ProbeReport {
     pub findings: Vec<Finding>,
     /// The simulator.
     pub title: String,
+    /// The simulator with its version, if it is known.
+    pub version: Option<String>,
+    /// The version of libration.
+    pub libration_version: &'static str,
     /// The length of a step, in s.
     pub dt: f64,
     /// Names of the states with units.
@@ -105,6 +109,8 @@ impl ProbeReport {
             answer: String::new(),
             findings: Vec::new(),
             title: subject.title.clone(),
+            version: subject.version.clone(),
+            libration_version: env!("CARGO_PKG_VERSION"),
             dt: subject.dt,
             states: (0..subject.states.len()).map(|i| subject.state_name(i)).collect(),
             inputs: subject.inputs.iter().map(crate::subject::with_unit).collect(),

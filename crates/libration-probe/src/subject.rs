@@ -38,6 +38,8 @@ pub struct Subject {
     pub joint_damping: Option<Vec<f64>>,
     /// The integrator in the words of the simulator.
     pub integrator: Option<String>,
+    /// The simulator with its version, such as `MuJoCo 4.0.0`, if it is known.
+    pub version: Option<String>,
     /// Facts that a reader must know, such as contacts.
     pub notes: Vec<String>,
     /// What ends the validity of the result, such as contacts that change.
@@ -111,6 +113,7 @@ impl Subject {
             mass: None,
             joint_damping: None,
             integrator: None,
+            version: None,
             notes: Vec::new(),
             validity: Vec::new(),
             reference: None,

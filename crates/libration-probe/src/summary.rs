@@ -150,6 +150,11 @@ impl ProbedMode {
     }
 }
 
+/// A relative error of a result; one above 1 says nothing but that the result is wrong.
+pub fn error_in_words(error: f64) -> String {
+    if error <= 1.0 { number(error, 2) } else { "unknown".into() }
+}
+
 pub(crate) fn capitalised(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use libration_advise::rounded;
 use libration_probe::{GainReport, ServoIntegrator, ServosDescription, gains, gains_page};
+use libration_report::notation::number;
 use serde_json::json;
 
 use super::advise::command_line;
@@ -87,6 +87,10 @@ fn named(args: &GainsArgs, message: &str) -> String {
     })
 }
 
+fn rounded(x: f64) -> String {
+    number(x, 6)
+}
+
 /// Returns the report as text.
 fn describe(report: &GainReport) -> String {
     let mut text = format!("{}\n", report.answer);
@@ -96,6 +100,7 @@ fn describe(report: &GainReport) -> String {
     let limit = |x: f64| match x {
         f64::INFINITY => "no limit".to_owned(),
         0.0 => "none holds".to_owned(),
+        x if x.is_nan() => "-".to_owned(),
         x => rounded(x),
     };
     let known = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), rounded);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use libration_probe::ProbeReport;
+use libration_probe::{ProbeReport, error_in_words};
 use libration_report::notation::{number, plural};
 
 /// Returns the report as text.
@@ -28,10 +28,10 @@ pub(super) fn describe(report: &ProbeReport) -> String {
     if let Some(confirmation) = &report.confirmation {
         let _ = writeln!(
             text,
-            "linearised with a relative error of {}; a run of {} follows to {}",
-            number(report.jacobian_error, 2),
+            "relative error of the matrices: {}; of a run of {}: {}",
+            error_in_words(report.jacobian_error),
             plural(confirmation.steps, "step"),
-            number(confirmation.error, 2)
+            error_in_words(confirmation.error)
         );
     }
     if let Some(reference) = &report.reference {
@@ -84,6 +84,7 @@ fn latency(report: &ProbeReport, text: &mut String) {
         let start = if i == 0 { "\n" } else { "" };
         let late = match latency.late_steps {
             0.0 => "not late".to_owned(),
+            1.0 => "1 step late".to_owned(),
             late => format!("{} steps late", number(late, 4)),
         };
         let _ = write!(text, "{start}latency of {}: {late}", latency.input);
@@ -114,9 +115,9 @@ fn defects(report: &ProbeReport, text: &mut String) {
     if let Some(energy) = &defects.energy {
         let _ = writeln!(
             text,
-            "energy: {} 1/s over {} steps; {}",
+            "energy: {} 1/s over {}; {}",
             rounded(energy.rate),
-            energy.steps,
+            plural(energy.steps, "step"),
             energy.reason.text()
         );
     }

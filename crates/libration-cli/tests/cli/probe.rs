@@ -36,6 +36,8 @@ fn the_step_of_another_program_is_audited_and_its_page_answers_first() {
             .and(predicate::str::contains("repeat with: libration probe --command")),
     );
     let page = fs::read_to_string(page).unwrap();
+    let version = format!("<code>libration probe</code> {}", env!("CARGO_PKG_VERSION"));
+    assert!(page.contains(&version));
     assert!(page.contains("the longest stable step is") && page.contains("speed, angle"));
 }
 
@@ -151,6 +153,12 @@ fn gains_hold_up_to_the_limit_of_theory_and_else_the_answer_says_what_holds_them
             .and(predicate::str::contains("damping-implicit")),
     );
     limit("1201", &["--integrator", "implicitfast"]).success();
+    let finite = |kp: &str| {
+        let output = limit(kp, &[]).get_output().stdout.clone();
+        String::from_utf8(output).unwrap()
+    };
+    assert!(!finite("0").contains("NaN"));
+    assert!(finite("1e9").contains("1.2·10⁻⁶") && finite("1e300").len() < 4000);
     limit("1", &["--integrator", "euler2"])
         .code(2)
         .stderr(predicate::str::contains("unknown integrator; expected one of explicit-euler"));

@@ -1,6 +1,6 @@
 //! A report on gains as an HTML page.
 
-use libration_report::notation::number;
+use libration_report::notation::{number, plural};
 use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 use libration_report::report;
@@ -17,6 +17,7 @@ pub fn gains_page(report: &GainReport) -> String {
     let limit = |x: f64, digits| match x {
         f64::INFINITY => Cell::absent("no limit"),
         0.0 => Cell::absent("none holds"),
+        x if x.is_nan() => Cell::absent("—"),
         x => Cell::rounded(x, digits),
     };
     let known = |x: Option<f64>| x.map_or_else(|| Cell::absent("—"), |x| Cell::rounded(x, 4));
@@ -78,11 +79,12 @@ pub fn gains_page(report: &GainReport) -> String {
         page.code(report.repeat_command.clone());
     }
     let sub = format!(
-        "{} joints · {} · {} substeps of {} s · `libration gains`",
-        report.joints.len(),
+        "{} · {} · {} of {} s · `libration gains` {}",
+        plural(report.joints.len(), "joint"),
         report.integrator,
-        report.substeps,
+        plural(report.substeps as usize, "substep"),
         number(report.dt / f64::from(report.substeps), 4),
+        env!("CARGO_PKG_VERSION"),
     );
     report::render_page(&page, &sub)
 }

@@ -1,6 +1,7 @@
 //! The report on gains.
 
 use libration::linear::eigenvalues;
+use libration_report::notation::number;
 use serde::{Serialize, Serializer};
 
 use super::servo_mode::{ServoMode, modes};
@@ -67,7 +68,7 @@ pub struct JointRow {
     pub turn: f64,
     /// The damping ratio of the joint alone.
     pub damping_ratio: Option<f64>,
-    /// The largest `ωh` of the joint alone with the same damping.
+    /// The largest `ωh` of the joint alone with the same damping; not a number if ω is 0.
     #[serde(serialize_with = "limit")]
     pub largest_turn: f64,
     /// Its largest gain of position, with all others as they are and with all couplings.
@@ -194,7 +195,7 @@ fn joint_row(servos: &Servos, i: usize, integrator: ServoIntegrator, h: f64) -> 
         kv,
         turn: omega * h,
         damping_ratio,
-        largest_turn: omega * h * longest.most,
+        largest_turn: if omega == 0.0 { f64::NAN } else { omega * h * longest.most },
         largest_kp,
     }
 }
@@ -203,39 +204,45 @@ impl GainReport {
     fn summary(&self) -> String {
         let h = self.dt / f64::from(self.substeps);
         let of = if self.substeps == 1 {
-            format!("steps of {h} s")
+            format!("steps of {} s", number(h, 6))
         } else {
-            format!("{} substeps of {h:.3e} s", self.substeps)
+            format!("{} substeps of {} s", self.substeps, number(h, 4))
         };
         if let Some(growth) = self.growth_in_continuous_time {
             let window = match (self.least_factor, self.largest_factor) {
                 (0.0, _) => String::new(),
                 (least, f64::INFINITY) => format!(
-                    " With {} and this step gains of position hold from {least:.4} times the given ones on.",
-                    self.integrator
+                    " With {} and this step gains of position hold from {} times the given ones on.",
+                    self.integrator,
+                    number(least, 5)
                 ),
                 (least, most) => format!(
-                    " With {} and this step gains of position hold from {least:.4} to {most:.4} times the given ones.",
-                    self.integrator
+                    " With {} and this step gains of position hold from {} to {} times the given ones.",
+                    self.integrator,
+                    number(least, 5),
+                    number(most, 5)
                 ),
             };
             return format!(
-                "The motion is unstable in continuous time, whatever the step: it grows by {growth:.4} 1/s with these gains and stiffnesses.{window} {LIMITATION}"
+                "The motion is unstable in continuous time, whatever the step: it grows by {} 1/s with these gains and stiffnesses.{window} {LIMITATION}",
+                number(growth, 5)
             );
         }
         let mut text = if self.holds {
             format!("The gains hold with {} and {of}", self.integrator)
         } else {
             format!(
-                "The gains do not hold with {} and {of}: a mode grows by a factor {:.4} per step",
-                self.integrator, self.spectral_radius
+                "The gains do not hold with {} and {of}: a mode grows by a factor {} per step",
+                self.integrator,
+                number(self.spectral_radius, 5)
             )
         };
         text += &match self.largest_factor {
             f64::INFINITY => "; no gain of position was found that does not.".to_owned(),
             0.0 => "; no gain of position does.".to_owned(),
             factor => {
-                format!("; the largest gains of position are {factor:.4} times the given ones.")
+                let factor = number(factor, 5);
+                format!("; the largest gains of position are {factor} times the given ones.")
             }
         };
         let worst = self
@@ -244,9 +251,13 @@ impl GainReport {
             .filter(|joint| joint.kp > 0.0)
             .min_by(|a, b| (a.largest_kp / a.kp).total_cmp(&(b.largest_kp / b.kp)));
         if let Some(joint) = worst.filter(|joint| joint.largest_kp.is_finite()) {
+            let most = match joint.largest_kp {
+                0.0 => "no gain of it holds".to_owned(),
+                most => format!("its gain is at most {}", number(most, 5)),
+            };
             text += &format!(
-                " The joint with the least margin is {}: its gain is at most {:.5}, with all others as they are.",
-                joint.name, joint.largest_kp
+                " The joint with the least margin is {}: {most}, with all others as they are.",
+                joint.name
             );
         }
         if !self.holds {

@@ -116,3 +116,29 @@ fn gains_that_are_too_small_beside_a_negative_stiffness_hold_within_a_window() {
     close(found.largest_factor * 3.0, 5.0 + (4.0 - 2.0 * 0.01 * 0.5) / 1e-4, 1e-6);
     assert!(found.answer.contains("gains of position hold from 1.6667 to"), "{}", found.answer);
 }
+
+#[test]
+fn numbers_of_any_size_have_a_few_digits() {
+    let stiff = report(r#"{"mass": [1], "kp": [1e9]}"#, 0.01, 1, "symplectic-euler");
+    // 4/h² of 10⁹.
+    let part = "the largest gains of position are 4·10⁻⁵ times the given ones";
+    assert!(stiff.answer.contains(part), "{}", stiff.answer);
+    let endless = report(r#"{"mass": [1], "kp": [1e300]}"#, 0.01, 1, "symplectic-euler");
+    assert!(
+        endless.answer.contains("a mode grows by a factor 10²⁹⁶ per step"),
+        "{}",
+        endless.answer
+    );
+    assert!(endless.answer.contains("joint 1: no gain of it holds"), "{}", endless.answer);
+    assert!(endless.answer.len() < 700, "{}", endless.answer);
+    // Without a frequency there is no largest one.
+    for text in [r#"{"mass": [1], "kp": [0]}"#, r#"{"mass": [1], "kp": [0], "kv": [3]}"#] {
+        let free = report(text, 0.01, 1, "symplectic-euler");
+        assert!(free.joints[0].largest_turn.is_nan());
+        let page = libration_probe::gains_page(&free);
+        assert!(
+            !page.contains("NaN") && page.contains("1 joint ·") && page.contains("1 substep of")
+        );
+        assert!(serde_json::to_value(&free).unwrap()["joints"][0]["largest_turn"].is_null());
+    }
+}

@@ -1,5 +1,7 @@
 //! Pages of audits, as a reader sees them.
 
+use libration_probe::{Description, error_in_words};
+
 use crate::simulators::{Simulator, pendulum, pendulum_subject};
 
 /// Whether a text has a number such as `6.4e-1`.
@@ -41,4 +43,53 @@ fn a_finding_says_what_to_change_and_the_page_has_one_notation_of_numbers() {
     }
     assert!(reports[0].0.findings[0].help.contains("2 substeps"), "{:?}", reports[0].0.findings);
     assert_eq!(reports[0].0.answer.matches("the longest stable step").count(), 1);
+}
+
+/// The words under the title of a page.
+fn sub_line(page: &str) -> &str {
+    let found = page.lines().find(|line| line.contains("libration probe") && line.contains("dt ="));
+    found.unwrap_or_else(|| panic!("no line with dt"))
+}
+
+#[test]
+fn a_page_and_the_results_have_the_versions_of_the_simulator_and_of_libration() {
+    let described = |more: &str| {
+        let text =
+            format!(r#"{{"title": "p", "state": [0.5, 0], "action": [0], "dt": 0.01{more}}}"#);
+        Description::parse(&text).unwrap().subject().unwrap()
+    };
+    let own = env!("CARGO_PKG_VERSION");
+    let subject = described(r#", "version": "MuJoCo 4.0.0""#);
+    let report = Simulator::new(pendulum).audit(&subject);
+    assert_eq!(report.version.as_deref(), Some("MuJoCo 4.0.0"));
+    let page = libration_probe::page(&report);
+    let line = sub_line(&page);
+    assert!(line.contains("MuJoCo 4.0.0") && line.contains(own), "{line}");
+    assert!(line.contains(" steps ·"), "{line}");
+    for more in ["", r#", "version": """#] {
+        let mut report = Simulator::new(pendulum).audit(&described(more));
+        assert_eq!((report.version.as_deref(), report.libration_version), (None, own));
+        report.calls = 1;
+        let page = libration_probe::page(&report);
+        assert!(sub_line(&page).contains("1 step ·"), "{}", sub_line(&page));
+    }
+}
+
+#[test]
+fn an_error_that_exceeds_its_result_is_unknown() {
+    assert_eq!(error_in_words(2e-9), "2·10⁻⁹");
+    assert_eq!([4.7e307, 1.01, f64::NAN, f64::INFINITY].map(error_in_words), ["unknown"; 4]);
+    let mut report = Simulator::new(pendulum).audit(&pendulum_subject());
+    report.jacobian_error = 4.7e307;
+    report.confirmation.as_mut().unwrap().error = 1e300;
+    report.recognition.as_mut().unwrap().by_results.allowed = 1.3e34;
+    let page = libration_probe::page(&report);
+    for part in [
+        "relative error of the matrices is unknown",
+        "does not follow them",
+        "the rates explain distances of unknown size",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    assert!(!page.contains("10³⁴") && !page.contains("10³⁰"));
 }
