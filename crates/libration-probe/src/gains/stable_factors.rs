@@ -7,12 +7,16 @@ const OUTSIDE: f64 = 1e-7;
 /// Smallest and largest factor that is tried.
 const RANGE: [f64; 2] = [1e-6, 1e9];
 const RATIO: f64 = 1.5;
+/// Entries of a step of which products would overflow: no stable step has them.
+const LARGEST: f64 = 1e100;
 const BISECTIONS: usize = 60;
 const RESOLUTION: f64 = 1e-9;
 
 /// Whether a mode grows.
 pub(super) fn is_stable(step: Option<Matrix>) -> bool {
-    step.is_some_and(|step| is_schur_stable(&step.scaled((-OUTSIDE).exp())))
+    step.is_some_and(|step| {
+        step.largest() < LARGEST && is_schur_stable(&step.scaled((-OUTSIDE).exp()))
+    })
 }
 
 /// The logarithm of the growth per step; infinite without a step.
