@@ -63,7 +63,9 @@ pub(crate) fn run(args: &ProbeArgs, quiet: bool) -> Result<(), Failure> {
 /// Checks that `advise --plant` will know the format of a plant. A pipe or device needs no suffix.
 fn check_suffix(path: Option<&Path>) -> Result<(), Failure> {
     let is_toml = |path: &Path| path.extension().is_some_and(|suffix| suffix == "toml");
-    let is_pipe = |path: &Path| path.exists() && !path.is_file() && !path.is_dir();
+    let is_pipe = |path: &Path| {
+        path.starts_with("/dev") || path.exists() && !path.is_file() && !path.is_dir()
+    };
     match path.filter(|path| !is_toml(path) && !is_pipe(path)) {
         None => Ok(()),
         Some(path) => Err(Failure::usage(format!(
