@@ -123,6 +123,22 @@ def test_gravity_is_no_stiffness_of_a_base_that_falls():
     assert with_gravity.largest_factor == pytest.approx(without.largest_factor, rel=1e-6) and with_gravity.holds
 
 
+def test_a_derivative_below_its_error_is_zero():
+    # The gain of velocity is what remains of a damping of 2 beside a force of the servo of 3e5 N.
+    servo = slider('damping="2"', '<position joint="s" kp="1e6"/>')
+    data = mujoco.MjData(servo)
+    data.qpos[0], data.qvel[0] = 0.3, 0.7
+    (joint,) = gains.mujoco(servo, data).results["joints"]
+    assert joint["kv"] == 0 and joint["kp"] == pytest.approx(1e6, rel=1e-9)
+    (joint,) = gains.mujoco(slider('damping="2"', '<position joint="s" kp="100" kv="1e-4"/>')).results["joints"]
+    assert joint["kv"] == pytest.approx(1e-4, rel=1e-6)
+
+
+def test_the_report_has_the_version_of_mujoco():
+    report = probe.mujoco(slider())
+    assert report.results["version"] == f"MuJoCo {mujoco.__version__}" and report.results["libration_version"]
+
+
 def test_contacts_are_stated_by_an_audit_and_excluded_by_gains():
     model = str(EXAMPLES / "foot_contact.xml")
     report = audit(model, keyframe="home")

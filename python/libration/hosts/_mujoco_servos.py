@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 
 # Forces of servos and springs are linear in positions and velocities, so that the step matters little.
 _STEP = 1e-5
+# The error of such a derivative by rounding, for forces of one unit.
+_ROUNDING = 2 * float(np.finfo(np.float64).eps) / _STEP
 # What notes say of contacts and other constraints.
 _VALID_WHILE = "; the result is valid only while "
 
@@ -51,7 +53,8 @@ def mujoco_servos(
     mujoco.mj_forward(own, forward)
     notes += notes_of(own, forward, False)
     acceleration = _free_fall(own, forward)
-    kp, stiffness = _derivatives(own, point, acceleration, positions=True)
+    error = _ROUNDING * _size(own, forward, acceleration)
+    kp, stiffness = (_without(error, found) for found in _derivatives(own, point, acceleration, positions=True))
     kv, passive = _derivatives(own, point, acceleration, positions=False)
     if not kp.any():
         notes.append("no force of an actuator depends on a position: there are no gains of position")
@@ -63,7 +66,7 @@ def mujoco_servos(
         "joints": list(state_names(own)[: own.nv]),
         "mass": inertia_of(own, forward).tolist(),
         "kp": kp.tolist(),
-        "kv": (kv + passive - damping).tolist(),
+        "kv": _without(error, kv + passive - damping).tolist(),
         "stiffness": stiffness.tolist(),
         "damping": damping.tolist(),
         "dt": float(own.opt.timestep),
@@ -85,6 +88,19 @@ def _free_fall(model: Any, data: Any) -> Array:
         if np.linalg.norm(falls - gravity) < np.linalg.norm(falls):
             found[first : first + 3] = gravity
     return found
+
+
+def _size(model: Any, data: Any, acceleration: Array) -> float:
+    """Return the size of the largest force whose rounding is in derivatives."""
+    inertial = np.zeros(model.nv)
+    mujoco.mj_mulM(model, data, inertial, acceleration)
+    parts = (data.qfrc_actuator, data.qfrc_passive, data.qfrc_bias, inertial)
+    return float(np.max(np.sum(np.abs(parts), axis=0), initial=0.0))
+
+
+def _without(error: float, values: Array) -> Array:
+    """Return values in which those that do not exceed their error are zero."""
+    return np.where(np.abs(values) > error, values, 0.0)
 
 
 def _of_free_motion(note: str) -> str:
