@@ -20,6 +20,7 @@ def description_of(host: Host) -> dict[str, Any]:
         "states": signals("states", host.states),
         "inputs": signals("inputs", host.inputs),
         "integrator": host.integrator,
+        "version": host.version,
         "notes": list(host.notes),
         "validity": list(host.validity),
         "energy": host.energy is not None,

@@ -158,7 +158,7 @@ def test_names_have_units():
     host = mujoco_host(floating())
     assert host.states[2:6] == ("base z (m)", "base rotation x (rad)", "base rotation y (rad)", "base rotation z (rad)")
     assert host.states[9:12] == ("rail (m)", "base x' (m/s)", "base y' (m/s)")
-    assert host.inputs == ("actuator[0] (N)",)
+    assert host.inputs == ("actuator[0] (N)",) and host.version == f"MuJoCo {mujoco.__version__}"
     assert mujoco_host(EXAMPLES / "servo_chain.xml").inputs[0] == "shoulder servo (rad)"
     assert mujoco_host(EXAMPLES / "muscle_or_tendon.xml").states[-1] == "wrist servo activation"
 

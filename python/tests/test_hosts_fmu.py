@@ -77,6 +77,7 @@ def test_a_row_does_not_depend_on_other_rows_and_earlier_calls(make, version):
 def test_names_the_point_and_notes_are_those_of_the_description(make):
     host = fmu_host(make(), start_values={"x0": 0.5, "mu": 3.0, "u": 0.25})
     assert (host.states, host.inputs, host.title) == (("x0 (m)", "x1 (m/s)"), ("u (m/s2)",), "VanDerPol")
+    assert host.version == fmu_host(make(3)).version == "Stub 1.2"
     assert host.state.tolist() == [0.5, 0.0] and host.action.tolist() == [0.25] and host.dt == 0.01
     assert one(host, [0.0, 1.0], [0.0], 0.001)[1] == 1.003
     assert "the macro step of 0.01 s is a latency" in host.notes[0] and not host.equilibrium

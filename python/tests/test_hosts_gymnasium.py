@@ -18,6 +18,7 @@ def test_a_pendulum_takes_a_step_of_symplectic_euler():
     rate = -0.4 + (15 * np.sin(0.3) + 3 * 0.7) * 0.01
     assert one(host, [0.3, -0.4], [0.7], 0.01) == pytest.approx([0.3 + rate * 0.01, rate], rel=1e-14)
     assert (host.dt, host.equilibrium, host.inputs) == (0.05, True, ("torque (N m)",))
+    assert host.version == f"Gymnasium {gymnasium.__version__}"
 
 
 def test_the_force_of_a_cart_pole_is_an_action_by_the_name_of_its_attribute():

@@ -41,6 +41,7 @@ def network(n):
 
 def test_a_step_is_that_of_numpy_to_the_rounding_of_its_sums():
     host = jax_host(pendulum(jnp), [0.3, -0.4], [0.7], 0.01)
+    assert host.version == f"JAX {jax.__version__}"
     random = np.random.default_rng(1)
     states, actions = random.normal(size=(200, 2)), random.normal(size=(200, 1))
     found = host.step(states, actions, 0.01)

@@ -117,6 +117,7 @@ def fmu_host(
         inputs=labels(chosen),
         title=str(described.model.modelName),
         integrator="Euler" if exchange else "unknown",
+        version=str(described.model.generationTool or ""),
         equilibrium=rest,
         notes=tuple(notes),
         reference_A=a,

@@ -108,6 +108,7 @@ def gymnasium_host(
         inputs=of_inputs[:count],
         title=title,
         integrator=str(getattr(inner, "kinematics_integrator", "unknown")),
+        version=f"Gymnasium {gymnasium.__version__}",
         positions=positions,
         equilibrium=at_rest,
         notes=tuple(notes),

@@ -38,6 +38,8 @@ class Host:
     title: str
     integrator: str
     """The integrator that the simulator says it uses."""
+    version: str = ""
+    """The simulator with its version: ``"MuJoCo 4.0.0"``; empty if it is not known."""
     energy: Callable[[Array], Array] | None = None
     """``energy(states)``: the mechanical energy in J of each row, without actuators and constraints."""
     mass: Array | None = None

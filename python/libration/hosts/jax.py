@@ -86,6 +86,7 @@ def jax_host(
         inputs=_names("inputs", inputs, "u", m),
         title=title if title is not None else getattr(step, "__name__", type(step).__name__),
         integrator="unknown",
+        version=f"JAX {jax.__version__}",
         energy=None if energy is None else simulation.energy,
         equilibrium=rest,
         notes=tuple(notes),

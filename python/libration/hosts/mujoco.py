@@ -95,6 +95,7 @@ def mujoco_host(
         inputs=input_names(own),
         title=title,
         integrator=_INTEGRATORS[int(own.opt.integrator)],
+        version=f"MuJoCo {mujoco.__version__}",
         energy=simulation.energy,
         mass=inertia_of(own, forward),
         positions=tuple((k, own.nv + k) for k in range(own.nv)),

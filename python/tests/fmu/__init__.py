@@ -68,7 +68,7 @@ def _fmi2(saves, directional, lists, exchange, step):
     model_exchange = f"<ModelExchange {common}/>" if exchange else ""
     return (
         '<?xml version="1.0" encoding="UTF-8"?><fmiModelDescription fmiVersion="2.0" modelName="VanDerPol" guid="{van-der-pol}" '
-        f'numberOfEventIndicators="{1 if exchange else 0}">{model_exchange}'
+        f'generationTool="Stub 1.2" numberOfEventIndicators="{1 if exchange else 0}">{model_exchange}'
         f'<CoSimulation {common} canHandleVariableCommunicationStepSize="true"/><UnitDefinitions>{units}</UnitDefinitions>'
         f'<DefaultExperiment startTime="0" stopTime="1" {step}/><ModelVariables>{"".join(rows)}</ModelVariables><ModelStructure>'
         f'<Outputs><Unknown index="2"/><Unknown index="8"/></Outputs>{derivatives}'
@@ -93,7 +93,7 @@ def _fmi3(saves, directional, lists, exchange, step):
     indicator = '<EventIndicator valueReference="11"/>' if exchange else ""
     return (
         '<?xml version="1.0" encoding="UTF-8"?><fmiModelDescription fmiVersion="3.0" modelName="VanDerPol" '
-        f'instantiationToken="{{van-der-pol}}">{model_exchange}'
+        f'generationTool="Stub 1.2" instantiationToken="{{van-der-pol}}">{model_exchange}'
         f'<CoSimulation {common} canHandleVariableCommunicationStepSize="true"/><UnitDefinitions>{units}</UnitDefinitions>'
         f'<DefaultExperiment startTime="0" stopTime="1" {step}/><ModelVariables>{"".join(rows)}</ModelVariables><ModelStructure>'
         f'<Output valueReference="1"/><Output valueReference="7"/>{derivatives}{unknown}{indicator}</ModelStructure></fmiModelDescription>'
