@@ -150,7 +150,7 @@ def test_a_stale_observation_is_found():
         return shown
 
     report = audit(pendulum, observe=stale)
-    assert kinds(report) == ["stale-observation"] and "1.000 steps" in text_of(report, "stale-observation")
+    assert kinds(report) == ["stale-observation"] and "1 step (0.01 s) older" in text_of(report, "stale-observation")
 
 
 def test_a_random_step_is_found_and_its_audit_ends():

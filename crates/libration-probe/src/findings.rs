@@ -154,7 +154,7 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
             .iter()
             .map(|(delay, count)| {
                 let share = 100.0 * *count as f64 / audit.steps as f64;
-                format!("{} steps in {} %", number(*delay, 4), number(share, 3))
+                format!("{} steps late in {} %", number(*delay, 4), number(share, 3))
             })
             .collect();
         found.push(Finding::fault(

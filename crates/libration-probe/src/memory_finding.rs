@@ -1,6 +1,6 @@
 //! Findings about what a step remembers.
 
-use libration_report::notation::plural;
+use libration_report::notation::{number, plural};
 
 use crate::FindingKind::*;
 use crate::{Finding, Memory, Observed, Subject};
@@ -21,8 +21,9 @@ pub(crate) fn of_memory(memory: &Memory, subject: &Subject, found: &mut Vec<Find
         found.push(Finding::fault(
             HiddenState,
             format!(
-                "results depend on {of}many calls ago, as those of a filter do: their influence falls by {:.4} per call (time constant {:.4} s), and the step does not return that state{held}",
-                settling.factor, settling.time_constant
+                "results depend on {of}many calls ago, as those of a filter do: their influence falls to {} per call (time constant {} s), and the step does not return that state{held}",
+                number(settling.factor, 4),
+                number(settling.time_constant, 4)
             ),
         ));
         return;
@@ -45,19 +46,25 @@ pub(crate) fn of_memory(memory: &Memory, subject: &Subject, found: &mut Vec<Find
         if (input.mean - stated).abs() < DELAY || (input.mean - held).abs() < DELAY {
             continue;
         }
-        let first = input.first.unwrap_or(0);
         let beside = match stated {
             0.0 => String::new(),
-            stated => format!(", {stated:.3} are stated"),
+            stated => format!(", {} stated", steps(stated)),
         };
+        let first = match input.first {
+            Some(0) | None => "that of the same call responds, too".into(),
+            Some(first) => {
+                format!("the first result that responds is {} later", plural(first, "call"))
+            }
+        };
+        let (how_much, direction) =
+            (input.mean.abs(), if input.mean < 0.0 { "early" } else { "late" });
         found.push(Finding::fault(
             LateCommand,
             format!(
-                "a command of `{}` acts {:.3} steps late ({:.4} s) on average{beside}: the first result that responds is {} later",
+                "a command of `{}` acts {} {direction} ({} s) on average{beside}: {first}",
                 input.of,
-                input.mean,
-                input.mean * dt,
-                plural(first, "call")
+                steps(how_much),
+                number(how_much * dt, 4)
             ),
         ));
     }
@@ -65,8 +72,8 @@ pub(crate) fn of_memory(memory: &Memory, subject: &Subject, found: &mut Vec<Find
         found.push(Finding::fault(
             LateState,
             format!(
-                "the returned states are those of {:.3} calls ago on average, not of the given state",
-                memory.state.mean
+                "the returned states are those of {} calls ago on average, not of the given state",
+                number(memory.state.mean, 4)
             ),
         ));
     }
@@ -82,9 +89,9 @@ pub(crate) fn of_memory(memory: &Memory, subject: &Subject, found: &mut Vec<Find
         Some(Observed::Given) => found.push(Finding::fault(
             StaleObservation,
             format!(
-                "observations are those of the given states and not of the returned ones, {:.3} steps ({:.4} s) older: the simulator stores them before its update",
-                memory.staleness(),
-                memory.staleness() * dt
+                "observations are those of the given states and not of the returned ones, {} ({} s) older: the simulator stores them before its update",
+                steps(memory.staleness()),
+                number(memory.staleness() * dt, 4)
             ),
         )),
         _ => {}
@@ -93,10 +100,17 @@ pub(crate) fn of_memory(memory: &Memory, subject: &Subject, found: &mut Vec<Find
         found.push(Finding::fault(
             StaleObservation,
             format!(
-                "observations are {:.3} steps ({:.4} s) older than the states",
-                memory.staleness(),
-                memory.staleness() * dt
+                "observations are {} ({} s) older than the states",
+                steps(memory.staleness()),
+                number(memory.staleness() * dt, 4)
             ),
         ));
     }
+}
+
+/// A number of steps, such as `1 step` and `2.4 steps`.
+fn steps(count: f64) -> String {
+    let shown = number(count, 4);
+    let plural = if shown == "1" { "" } else { "s" };
+    format!("{shown} step{plural}")
 }

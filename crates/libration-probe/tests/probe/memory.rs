@@ -171,9 +171,7 @@ fn a_delay_in_seconds_that_the_simulator_states_is_no_finding_and_is_flushed_at_
     subject.stated_delays = vec![0.02];
     let report = late().audit(&subject);
     assert!(
-        report.findings[0]
-            .text
-            .contains("acts 3.000 steps late (0.0300 s) on average, 2.000 are stated"),
+        report.findings[0].text.contains("acts 3 steps late (0.03 s) on average, 2 steps stated"),
         "{:?}",
         report.findings
     );
