@@ -32,7 +32,7 @@ pub fn probe(
 }
 
 /// The audit of a black box whose memory is known.
-fn examine(prober: &mut Prober<'_>, mut memory: Memory) -> Result<ProbeReport, BlackBoxError> {
+fn examine(prober: &mut Prober<'_>, memory: Memory) -> Result<ProbeReport, BlackBoxError> {
     let subject = prober.subject;
     let is_held = memory.settling.is_some() && subject.inputs.is_empty();
     // A delay that grows later, by a step or two, is flushed as well.
@@ -49,10 +49,10 @@ fn examine(prober: &mut Prober<'_>, mut memory: Memory) -> Result<ProbeReport, B
     let is_repeatable = report.bits.randomness.is_none();
     let is_audited = is_repeatable && (is_held || memory.calls.is_some());
     if is_audited {
-        report.audit(prober, &mut memory)?;
+        report.audit(prober, &memory)?;
     }
     if is_repeatable || memory.settling.is_some() {
-        of_memory(&memory, subject, &mut findings);
+        of_memory(&memory, &report.delays, subject, &mut findings);
     }
     if is_audited {
         of_report(&report, subject, &mut findings);

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::flow::Flow;
 use crate::linearised_step::LinearisedStep;
-use crate::{Memory, Subject};
+use crate::{DelayAudit, Memory, Subject};
 
 /// Steps per period of the frequencies at which phases are compared; the result is the middle one, as one may be at a resonance.
 const STEPS_PER_PERIOD: [f64; 3] = [12.0, 20.0, 33.0];
@@ -33,13 +33,14 @@ pub(crate) fn hidden_latencies(
     step: &LinearisedStep,
     flow: Option<&Flow>,
     memory: &Memory,
+    delays: &[DelayAudit],
     pairs: Option<&[(usize, usize)]>,
     subject: &Subject,
 ) -> Vec<HiddenLatency> {
     let exact = flow.map(|flow| Discretisation::exact(&flow.a, &flow.b, step.dt));
     let of = |j: usize| {
         let by_phase = exact.as_ref().and_then(|exact| delay(step, exact, pairs, subject, j));
-        let late_steps = memory.latency(j);
+        let late_steps = memory.latency(j, delays);
         let integrator_delay = by_phase.as_ref().map(|(_, delay)| *delay);
         HiddenLatency {
             input: subject.inputs[j].name.clone(),

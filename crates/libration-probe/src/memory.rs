@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use crate::BlackBoxError;
 use crate::impulse::{Lateness, MOST_CALLS, moved, respond};
 use crate::observed::Observed;
 use crate::prober::Prober;
 use crate::settling::Settling;
+use crate::{BlackBoxError, DelayAudit};
 
 /// The influence of a call on the results of later ones.
 ///
@@ -65,9 +65,14 @@ impl Memory {
         Ok(Memory { calls, tried: MOST_CALLS, inputs, state, observation, observed, settling })
     }
 
-    /// The latency of an action beyond that of a step that uses it at once, in steps.
-    pub fn latency(&self, input: usize) -> f64 {
-        self.inputs.get(input).map_or(0.0, |lateness| lateness.mean)
+    /// The latency of an action beyond that of a step that uses it at once, in steps on average. Where it changes from step to step, the
+    /// audit of many steps has it.
+    pub(crate) fn latency(&self, input: usize, delays: &[DelayAudit]) -> f64 {
+        self.inputs.get(input).map_or(0.0, |lateness| {
+            let irregular =
+                |audit: &&DelayAudit| audit.input == lateness.of && audit.first_change.is_some();
+            delays.iter().find(irregular).map_or(lateness.mean, DelayAudit::mean)
+        })
     }
 
     /// Steps by which observations are later than the states.

@@ -3,13 +3,18 @@
 use libration_report::notation::{number, plural};
 
 use crate::FindingKind::*;
-use crate::{Finding, Memory, Observed, Subject};
+use crate::{DelayAudit, Finding, Memory, Observed, Subject};
 
 /// Part of a step by which a delay may differ from the stated one.
 const DELAY: f64 = 1e-3;
 
 /// Findings about what a step remembers.
-pub(crate) fn of_memory(memory: &Memory, subject: &Subject, found: &mut Vec<Finding>) {
+pub(crate) fn of_memory(
+    memory: &Memory,
+    delays: &[DelayAudit],
+    subject: &Subject,
+    found: &mut Vec<Finding>,
+) {
     let dt = subject.dt;
     if let Some(settling) = &memory.settling {
         let (of, held) = match settling.is_of_commands {
@@ -46,6 +51,7 @@ pub(crate) fn of_memory(memory: &Memory, subject: &Subject, found: &mut Vec<Find
         if (input.mean - stated).abs() < DELAY || (input.mean - held).abs() < DELAY {
             continue;
         }
+        let mean = memory.latency(j, delays);
         let beside = match stated {
             0.0 => String::new(),
             stated => format!(", {} stated", steps(stated)),
@@ -56,8 +62,7 @@ pub(crate) fn of_memory(memory: &Memory, subject: &Subject, found: &mut Vec<Find
                 format!("the first result that responds is {} later", plural(first, "call"))
             }
         };
-        let (how_much, direction) =
-            (input.mean.abs(), if input.mean < 0.0 { "early" } else { "late" });
+        let (how_much, direction) = (mean.abs(), if mean < 0.0 { "early" } else { "late" });
         found.push(Finding::fault(
             LateCommand,
             format!(

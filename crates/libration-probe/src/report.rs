@@ -153,7 +153,7 @@ impl ProbeReport {
     pub(crate) fn audit(
         &mut self,
         prober: &mut Prober<'_>,
-        memory: &mut Memory,
+        memory: &Memory,
     ) -> Result<(), BlackBoxError> {
         let subject = prober.subject;
         self.equilibrium = Rest::measure(prober)?;
@@ -169,16 +169,10 @@ impl ProbeReport {
         }
         let unclear = step.unclear_inputs(subject).into_iter();
         self.unclear_inputs = unclear.map(|j| subject.inputs[j].name.clone()).collect();
-        for (j, input) in memory.inputs.iter_mut().enumerate().take(subject.inputs.len()) {
+        for (j, input) in memory.inputs.iter().enumerate().take(subject.inputs.len()) {
             let is_late = input.last.unwrap_or(0) > 0;
             let audit = DelayAudit::run(prober, &step, j, is_late)?;
             // A command that is always in time needs no table.
-            if let Some(audit) =
-                audit.as_ref().filter(|audit| is_late && audit.first_change.is_some())
-            {
-                // Of more steps than two changes reach.
-                input.mean = audit.mean();
-            }
             self.delays.extend(audit.filter(|audit| is_late || audit.first_change.is_some()));
         }
         self.reference = ReferenceCheck::of(subject, &step);
@@ -197,7 +191,8 @@ impl ProbeReport {
             self.largest_dt = Some(LargestStep::search(prober, flow, self.equilibrium.holds)?);
             self.driven_velocities = driven_velocities(flow, pairs, subject);
         }
-        self.hidden_latency = hidden_latencies(&step, flow.as_ref(), memory, pairs, subject);
+        self.hidden_latency =
+            hidden_latencies(&step, flow.as_ref(), memory, &self.delays, pairs, subject);
         if !has_fixed_dt {
             let order = Convergence::measure(prober)?;
             let by_results = Match::by_results(prober, pairs, order.order)?;
