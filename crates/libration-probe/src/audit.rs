@@ -24,17 +24,20 @@ pub fn probe(
     if memory.settling.as_ref().is_some_and(filters_commands) {
         let held = subject.with_held_action();
         let mut black_box = HeldAction { black_box, action: &subject.action };
-        let mut report = examine(&mut Prober::new(&mut black_box, &held), memory)?;
+        let mut report = examine(&mut Prober::new(&mut black_box, &held), memory, true)?;
         report.calls += calls;
         return Ok(report);
     }
-    examine(&mut prober, memory)
+    examine(&mut prober, memory, false)
 }
 
-/// The audit of a black box whose memory is known.
-fn examine(prober: &mut Prober<'_>, memory: Memory) -> Result<ProbeReport, BlackBoxError> {
+/// The audit of a black box whose memory is known. `is_held`: with commands that are held, so that nothing else is remembered.
+fn examine(
+    prober: &mut Prober<'_>,
+    memory: Memory,
+    is_held: bool,
+) -> Result<ProbeReport, BlackBoxError> {
     let subject = prober.subject;
-    let is_held = memory.settling.is_some() && subject.inputs.is_empty();
     // A delay that grows later, by a step or two, is flushed as well.
     let calls = if is_held { 0 } else { memory.calls.unwrap_or(memory.tried) };
     prober.memory = if calls == 0 { 0 } else { calls + 2 };

@@ -26,17 +26,14 @@ impl Observed {
     /// An observation that does not depend on the state that is asked for is one that the simulator has stored. That of a returned state
     /// depends on the length of the step or on the action, as the state does; that of a given state does not.
     pub(crate) fn of(prober: &mut Prober<'_>, responds: bool) -> Result<Self, BlackBoxError> {
-        if !responds {
-            return Ok(Observed::Nothing);
-        }
         let subject = prober.subject;
+        if !responds || subject.has_fixed_dt {
+            return Ok(if responds { Observed::Asked } else { Observed::Nothing });
+        }
         let (dt, u) = (subject.dt, &subject.action);
         let (x, other) = (displaced(prober, 0.1), displaced(prober, 0.2));
         let (next, seen) = after(prober, &x, u, dt)?;
         let seen_of_other = prober.observe(&other)?;
-        if subject.has_fixed_dt {
-            return Ok(Observed::Asked);
-        }
         let mut changed = u.clone();
         changed.iter_mut().zip(&subject.action_scale).for_each(|(u, scale)| *u += scale / 64.0);
         let (of_half, seen_of_half) = after(prober, &x, u, dt / 2.0)?;

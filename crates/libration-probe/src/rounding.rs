@@ -144,8 +144,8 @@ impl Line {
         (0..far.columns()).map(size).collect()
     }
 
-    /// The fourth differences of each state along the line, over the root of the sum of their squared coefficients: for states the largest, since
-    /// rounding inside may show seldom; else one that is exceeded by few.
+    /// The fourth differences of each state along the line, over the root of the sum of their squared coefficients: along states the
+    /// largest, since rounding inside may show seldom; else one that is exceeded by few.
     fn noises(self, results: &Matrix) -> Vec<f64> {
         let fourth = |k: usize, i: usize| {
             [1.0, -4.0, 6.0, -4.0, 1.0]

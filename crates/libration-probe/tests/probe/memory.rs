@@ -94,6 +94,17 @@ fn a_hidden_state_of_states_is_no_filter_of_commands() {
     assert_eq!(kinds(&report), ["hidden-state"], "{:?}", report.findings);
     assert_eq!(report.memory.unwrap().settling.unwrap().is_of_commands, Some(false));
     assert!(report.modes.is_empty());
+    // Without actions there are none to hold.
+    let filtered = Cell::new(0.0);
+    let mut subject = pendulum_subject();
+    (subject.action, subject.action_scale, subject.inputs) = (vec![], vec![], vec![]);
+    let report = Simulator::new(|x, _, dt| {
+        filtered.set(filtered.get() + 0.1 * (x[1] - filtered.get()));
+        damped_pendulum(0.3, &[x[0], filtered.get()], &[0.0], dt)
+    })
+    .audit(&subject);
+    assert_eq!(kinds(&report), ["hidden-state"], "{:?}", report.findings);
+    assert!(report.modes.is_empty());
 }
 
 #[test]
