@@ -181,7 +181,7 @@ class ProbeReport:
         a, b = self._matrix(of, "a"), self._matrix(of, "b")
         assert a is not None and b is not None
         if b.shape[1] == 0:
-            raise ValueError("the step has no actions; a plant requires an input")
+            raise ValueError("the audit has no actions; a plant requires an input: the step has none, or the audit held its commands (see findings)")
         return LinearPlant(a, b, dt=dt, states=self.results["states"], inputs=self.results["inputs"])
 
     def advise(self, controller: Any, *, period: float | None = None, exchange: bool = True, **keywords: Any) -> Advice:

@@ -27,17 +27,23 @@ const CLOSE: usize = 10;
 /// function, by second differences at close points (J. J. Moré and S. M. Wild, SIAM Journal on Scientific Computing 33, 2011). At a
 /// kink it includes half the difference of the slopes on both sides. Steps to where the function is not finite are left out.
 ///
+/// `coarseness` is the rounding of values relative to them that close points do not show, such as that of single precision; else 0.
+///
 /// # Errors
 /// Those of the function.
 pub fn jacobian<E>(
     mut function: impl FnMut(&Matrix) -> Result<Matrix, E>,
     z: &[f64],
     scale: &[f64],
+    coarseness: f64,
 ) -> Result<Jacobian, E> {
     let points = Points::new(z, scale);
     let values = function(&points.states)?;
     let centre = values.row(0);
-    let noise = noise(&values);
+    let mut noise = noise(&values);
+    for (i, noise) in noise.iter_mut().enumerate() {
+        *noise = noise.max(coarseness * (values[(0, i)]).abs());
+    }
     let (rows, columns) = (values.columns(), z.len());
     let mut found =
         Jacobian { values: Matrix::zeros(rows, columns), errors: Matrix::zeros(rows, columns) };
@@ -142,8 +148,10 @@ fn entry(i: usize, centre: f64, noise: f64, pairs: &[Pair<'_>]) -> (f64, f64) {
         }
         before = row;
         estimates.push(best);
-        if MIDDLE.contains(&pair.step) {
-            bends.push((above - 2.0 * centre + below).abs() / pair.width);
+        let bend = (above - 2.0 * centre + below).abs() / pair.width;
+        // Roundings bend, too.
+        if MIDDLE.contains(&pair.step) && bend > 4.0 * rounding {
+            bends.push(bend);
         }
     }
     estimates.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -173,7 +181,7 @@ mod tests {
             let values: Vec<Vec<f64>> = (0..points.rows()).map(|i| f(points.row(i))).collect();
             Ok::<_, ()>(Matrix::from_rows(&values).unwrap())
         };
-        jacobian(rows, z, scale).unwrap()
+        jacobian(rows, z, scale, 0.0).unwrap()
     }
 
     #[test]

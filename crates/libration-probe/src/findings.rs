@@ -63,7 +63,7 @@ pub(crate) fn of_bits(bits: &Bits, found: &mut Vec<Finding>) {
         [whole] if whole == "the step" => found.push(Finding::fault(
             SinglePrecision,
             format!(
-                "the step computes in single precision: its rounding is {} of its results, that of f64 is 10⁻¹⁶",
+                "the step computes in single precision, or prints few digits: its rounding is {} of its results, that of f64 is 10⁻¹⁶",
                 number(rounding.results, 2)
             ),
         )),
@@ -103,7 +103,10 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
             ),
         ));
     }
-    let known = report.unclear_inputs.iter().filter(|_| report.is_differentiable());
+    // Coarse results have no fine derivatives, and a finding of their own.
+    let rounding = report.bits.rounding.as_ref();
+    let is_coarse = rounding.is_some_and(|rounding| rounding.results > COARSE);
+    let known = report.unclear_inputs.iter().filter(|_| report.is_differentiable() && !is_coarse);
     for input in known {
         found.push(Finding::warning(
             NotDifferentiable,
@@ -125,6 +128,7 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
         report.confirmation.as_ref().filter(|c| c.error > LINEAR || c.error.is_nan())
         && equilibrium.holds
         && report.is_differentiable()
+        && !is_coarse
     {
         found.push(Finding::warning(
             Nonlinear,

@@ -7,7 +7,7 @@ use crate::BlackBoxError;
 use crate::flow::Flow;
 use crate::linearised_step::{LinearisedStep, largest_scaled};
 use crate::modes::{eigenvalue_errors, name_mode};
-use crate::prober::Prober;
+use crate::prober::{Prober, row};
 
 /// Least distance from the unit circle that counts as outside.
 const OUTSIDE: f64 = 1e-12;
@@ -28,6 +28,8 @@ const RATIO: f64 = 1.25;
 const RANGE: f64 = 1e4;
 const RANGE_OF_FASTEST: [f64; 2] = [0.01, 10.0];
 const BISECTIONS: usize = 40;
+/// Change of an equilibrium in a step, in units of the scales, that is no rounding.
+const MOVED: f64 = 1e-6;
 /// Relative width of the bracket at which bisection ends.
 const RESOLUTION: f64 = 1e-7;
 
@@ -89,6 +91,12 @@ impl LargestStep {
             if other.is_unknown {
                 found.tried_up_to = dt;
                 found.reason = Some(format!("a step of {next:.4} s has no derivative"));
+                return Ok(found);
+            }
+            if other.moves && !is_unstable {
+                found.tried_up_to = dt;
+                found.reason =
+                    Some(format!("the state is no equilibrium of a step of {next:.4} s"));
                 return Ok(found);
             }
             if other.is_unstable() != is_unstable {
@@ -156,6 +164,15 @@ impl FlowRates {
     }
 }
 
+/// Whether a step of this length moves the state, such as that of contacts which give way by the length of the step.
+fn moves(prober: &mut Prober<'_>, dt: f64) -> Result<bool, BlackBoxError> {
+    let subject = prober.subject;
+    let actions = row(&subject.action);
+    let next = prober.step(&row(&subject.state), &actions, dt)?;
+    let moved = |i: usize| (next[(0, i)] - subject.state[i]).abs() / subject.state_scale[i];
+    Ok((0..subject.state.len()).any(|i| moved(i) > MOVED))
+}
+
 /// A step of a trial length.
 struct Trial {
     step: LinearisedStep,
@@ -166,6 +183,8 @@ struct Trial {
     /// Its factor.
     leaving: Option<Complex64>,
     is_unknown: bool,
+    /// Whether the state of an equilibrium moves under a step of this length.
+    moves: bool,
 }
 
 impl Trial {
@@ -179,13 +198,21 @@ impl Trial {
         let errors = eigenvalue_errors(&step.a, &step.a_errors, &factors);
         // At least that of an entry: errors of a solver of constraints are not independent.
         let of_entries = largest_scaled(&step.a_errors, prober.subject) / ERRORS;
-        let mut found =
-            Trial { step, excess: 0.0, error: 0.0, leaving: None, is_unknown: factors.is_empty() };
+        let moves = flow.is_at_rest && moves(prober, dt)?;
+        let mut found = Trial {
+            step,
+            excess: 0.0,
+            error: 0.0,
+            leaving: None,
+            is_unknown: factors.is_empty(),
+            moves,
+        };
         // The modes of the step and of the flow in the order of their growth: what the fastest of the flow carry out is theirs.
         for (k, (z, error)) in factors.iter().zip(errors).enumerate() {
             let (rate, rate_error) = flow.rates.get(k).copied().unwrap_or((0.0, 0.0));
-            let own = (rate + ERRORS * rate_error).max(0.0);
-            let excess = z.norm().ln() - OWN_GROWTH * own * dt;
+            let unknown = (rate.min(0.0) + ERRORS * rate_error).max(0.0);
+            let own = OWN_GROWTH * rate.max(0.0) + unknown;
+            let excess = z.norm().ln() - own * dt;
             let mut error = ERRORS * error.max(of_entries);
             if !flow.is_at_rest {
                 error = error.max(GROWTH_ON_A_MOTION);

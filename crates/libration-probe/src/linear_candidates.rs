@@ -23,6 +23,7 @@ pub(crate) fn match_matrices(
     cleaned: &Matrix,
     pairs: Option<&[(usize, usize)]>,
     subject: &Subject,
+    order: Option<u32>,
 ) -> Option<Match> {
     let stepper = LinearStepper::new(cleaned)?;
     let largest = |matrix: &Matrix| largest_scaled(matrix, subject);
@@ -41,7 +42,7 @@ pub(crate) fn match_matrices(
     add(euler.name(), euler.title(), update);
     let errors = largest(&flow.a_errors) * step.dt + largest(&step.a_errors);
     let change = largest(&step.a.plus(&Matrix::identity(step.a.rows()).scaled(-1.0)));
-    Some(Match::new(candidates, ERRORS * errors + ROUNDING, change))
+    Some(Match::new(candidates, ERRORS * errors + ROUNDING, change, order))
 }
 
 /// `v' = v + h (M + hD)⁻¹ M a`, `q' = q + h v'` with the damping `D` of joints, and the accelerations `a` of all forces.

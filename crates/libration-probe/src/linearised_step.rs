@@ -47,6 +47,7 @@ impl LinearisedStep {
     ) -> Result<Self, BlackBoxError> {
         let subject = prober.subject;
         let n = subject.state.len();
+        let coarseness = prober.coarseness;
         let z = [&subject.state[..], actions].concat();
         let scale = [&subject.state_scale[..], action_scale].concat();
         let of = |points: &Matrix| {
@@ -58,7 +59,7 @@ impl LinearisedStep {
             };
             prober.step(&states, &actions, dt)
         };
-        let Jacobian { values, errors } = jacobian(of, &z, &scale)?;
+        let Jacobian { values, errors } = jacobian(of, &z, &scale, coarseness)?;
         let part = |matrix: &Matrix, start, count| matrix.block((0, start), (n, count));
         let inputs = z.len() - n;
         Ok(LinearisedStep {

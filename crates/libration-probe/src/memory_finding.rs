@@ -77,8 +77,8 @@ pub(crate) fn of_memory(
         found.push(Finding::fault(
             LateState,
             format!(
-                "the returned states are those of {} calls ago on average, not of the given state",
-                number(memory.state.mean, 4)
+                "the returned states are those of {} ago on average, not of the given state",
+                steps(memory.state.mean)
             ),
         ));
     }

@@ -16,6 +16,8 @@ pub(crate) struct Prober<'a> {
     pub(crate) subject: &'a Subject,
     /// Calls with the same values after which a result no longer depends on what was before.
     pub(crate) memory: usize,
+    /// The rounding of results relative to them, where it is far above that of `f64`; else 0.
+    pub(crate) coarseness: f64,
     /// The actions of the last call, and the number of calls in a row that had them.
     held: (Matrix, usize),
     /// Whether results depend on earlier states.
@@ -30,6 +32,7 @@ impl<'a> Prober<'a> {
             black_box,
             subject,
             memory: 0,
+            coarseness: 0.0,
             held: (Matrix::zeros(0, 0), 0),
             has_state_memory: false,
             calls: 0,

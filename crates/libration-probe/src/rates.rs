@@ -122,7 +122,8 @@ impl<'p, 'b> NumericalSystem<'p, 'b> {
         drop(known);
         let mut prober = self.prober.borrow_mut();
         let scale = prober.subject.state_scale.clone();
-        let found = jacobian(|points| rates(&mut prober, points).map(|found| found.0), &x, &scale);
+        let found =
+            jacobian(|points| rates(&mut prober, points).map(|found| found.0), &x, &scale, 0.0);
         match found {
             Ok(found) => {
                 self.start.borrow_mut().get_or_insert_with(|| (x, found.clone()));

@@ -35,6 +35,8 @@ pub struct Recognition {
 pub struct Match {
     /// Names of the integrators that agree; several agree if they do the same on this system.
     pub methods: Vec<&'static str>,
+    /// Whether the candidates are far enough apart to tell them from each other.
+    pub is_clear: bool,
     /// All candidates, the nearest first.
     pub candidates: Vec<Candidate>,
     /// The largest distance that errors of the rates explain, in units of the scales.
@@ -99,19 +101,32 @@ impl Match {
         }
         let allowed = ERRORS * error * dt + ROUNDING;
         let moved = (0..start.len()).map(|i| ((next[i] - start[i]) / subject.state_scale[i]).abs());
-        Ok(Match::new(candidates, allowed, moved.fold(0.0, f64::max)))
+        let change = moved.fold(0.0, f64::max);
+        Ok(Match::new(candidates, allowed, change, order))
     }
 
     /// `change` is that of the step itself, in units of the scales: errors of its size say nothing, even if a candidate diverges.
-    pub(crate) fn new(mut candidates: Vec<Candidate>, allowed: f64, change: f64) -> Self {
+    /// `order` is that of the step, if it is known.
+    pub(crate) fn new(
+        mut candidates: Vec<Candidate>,
+        allowed: f64,
+        change: f64,
+        order: Option<u32>,
+    ) -> Self {
         candidates.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let farthest = candidates.last().map_or(0.0, |last| last.distance.min(change));
+        let is_clear = allowed < CLEAR * farthest;
+        // Where forces are simple, methods of a higher order have the same results.
+        let has_order = |found: &Candidate| {
+            let own = AnyMethod::from_name(found.method).map(AnyMethod::order);
+            order.is_none() || own <= order
+        };
         let methods = candidates
             .iter()
-            .filter(|found| found.distance <= allowed && allowed < CLEAR * farthest)
+            .filter(|found| is_clear && found.distance <= allowed && has_order(found))
             .map(|found| found.method)
             .collect();
-        Match { methods, candidates, allowed }
+        Match { methods, is_clear, candidates, allowed }
     }
 
     /// Titles of the integrators that agree.

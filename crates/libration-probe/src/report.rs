@@ -196,11 +196,11 @@ impl ProbeReport {
         if !has_fixed_dt {
             let order = Convergence::measure(prober)?;
             let by_results = Match::by_results(prober, pairs, order.order)?;
+            let known_order = order.order;
             self.order = Some(order);
-            let by_matrix = flow
-                .as_ref()
-                .filter(|_| self.equilibrium.holds)
-                .and_then(|flow| match_matrices(&step, flow, &flow.cleaned(), pairs, subject));
+            let by_matrix = flow.as_ref().filter(|_| self.equilibrium.holds).and_then(|flow| {
+                match_matrices(&step, flow, &flow.cleaned(), pairs, subject, known_order)
+            });
             self.recognition = Some(Recognition { by_results, by_matrix });
         }
         self.defects =

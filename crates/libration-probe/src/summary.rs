@@ -109,16 +109,20 @@ impl ProbeReport {
             true => (by_matrix, "its matrix"),
             false => (by_results, "its results"),
         };
+        if self.order.as_ref().is_some_and(|order| order.is_exact) {
+            return Some(
+                "The step is exact to rounding: shorter steps give the same results.".into(),
+            );
+        }
         let order = self.order.as_ref().and_then(|order| order.order);
         match (&titles[..], order) {
+            ([], Some(order)) if !recognition.by_results.is_clear => Some(format!(
+                "Its order is {order}; its motion near this state does not tell integrators apart."
+            )),
             ([], Some(order)) => Some(format!(
                 "Its order is {order}; it is none of the integrators that were compared."
             )),
-            ([], None) => self
-                .order
-                .as_ref()
-                .filter(|order| order.is_exact)
-                .map(|_| "The step is exact: shorter steps give the same results.".into()),
+            ([], None) => None,
             (titles, order) => {
                 let order = order.map_or_else(String::new, |order| format!(", of order {order}"));
                 Some(format!("By {by} the step is that of {}{order}.", titles.join(" or ")))

@@ -159,6 +159,6 @@ pub(crate) fn _jacobian<'py>(
     scale: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
     let rows = |points: &Matrix| matrix(&function.call1((array(py, points)?,))?);
-    let found = jacobian(rows, z.as_slice()?, scale.as_slice()?)?;
+    let found = jacobian(rows, z.as_slice()?, scale.as_slice()?, 0.0)?;
     Ok((array(py, &found.values)?, array(py, &found.errors)?))
 }

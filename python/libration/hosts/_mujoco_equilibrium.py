@@ -22,7 +22,7 @@ MOST_STEPS = 20_000
 def imbalance(model: Any, data: Any) -> tuple[float, int]:
     """Return the largest sum of forces relative to their sizes, and the number of its velocity.
 
-    Forces below a thousandth of the largest one count as that. The data must be that of ``mj_forward``.
+    Forces below a thousandth of the largest one, or of the weight at the distance of the model's extent, count as that. The data must be that of ``mj_forward``.
     """
     if not model.nv:
         return 0.0, 0
@@ -30,7 +30,8 @@ def imbalance(model: Any, data: Any) -> tuple[float, int]:
     rest = np.abs(inertia @ data.qacc)
     forces = (data.qfrc_bias, data.qfrc_passive, data.qfrc_actuator, data.qfrc_applied, data.qfrc_constraint)
     size = np.sum(np.abs(forces), axis=0) + np.abs(inertia) @ np.abs(data.qacc)
-    size = np.maximum(size, max(1e-3 * float(size.max()), 1e-300))
+    weight = float(model.body_mass.sum()) * float(np.linalg.norm(model.opt.gravity)) * float(model.stat.extent)
+    size = np.maximum(size, max(1e-3 * float(size.max()), 1e-3 * weight, 1e-300))
     relative = np.nan_to_num(rest / size, nan=np.inf)
     return float(relative.max()), int(np.argmax(relative))
 

@@ -211,3 +211,26 @@ fn a_step_far_beyond_all_limits_is_unstable() {
         assert!((report.largest_dt.unwrap().dt.unwrap() - 2.0 / 3.0).abs() < 1e-5);
     }
 }
+
+#[test]
+fn a_step_in_single_precision_off_zero_has_the_limit_and_the_matrix_of_its_system() {
+    let single = |x: f64| f64::from(x as f32);
+    for rest in [0.3, 1.0] {
+        let coarse = Simulator::new(move |x, _, dt| {
+            let v = single(x[1] + dt * (-40.0 * (x[0] - rest) - 0.8 * x[1]));
+            vec![single(x[0] + dt * v), v]
+        });
+        let mut subject = pendulum_subject();
+        subject.state = vec![single(rest), 0.0];
+        let report = coarse.audit(&subject);
+        let a = report.step.as_ref().unwrap();
+        // Roundings of 6e-8 over differences of 1/16, and some more.
+        assert!((a.a[(0, 1)] - 0.00992).abs() < 1e-5 && (a.a[(1, 0)] + 0.4).abs() < 1e-5, "{a:?}");
+        assert_eq!(kinds(&report), ["single-precision"], "{:?}", report.findings);
+        // (ωh)² + 2 γ h < 4: symplectic Euler with explicit damping.
+        let limit = (-0.8 + f64::sqrt(0.8 * 0.8 + 4.0 * 40.0)) / 40.0;
+        let found = report.largest_dt.as_ref().unwrap().dt.unwrap();
+        // Short steps in single precision leave the growth of the system unknown to some 0.5 1/s, and the limit to a few percent.
+        assert!((found / limit - 1.0).abs() < 0.1, "{found} {limit}");
+    }
+}

@@ -244,3 +244,21 @@ fn the_limit_of_undamped_systems_and_of_those_that_grow_slowly_is_that_of_the_fa
         }
     }
 }
+
+#[test]
+fn an_integrator_is_named_only_where_its_results_are_its_own() {
+    // Without a force: explicit and backward Euler, and trapezoid, have the same results.
+    let mut subject = Subject::new("mass", vec![0.0, 0.0], vec![0.0], 0.001);
+    let explicit = |x: &[f64], u: &[f64], dt: f64| vec![x[0] + dt * x[1], x[1] + dt * u[0]];
+    let report = Simulator::new(explicit).audit(&subject);
+    assert!(!report.answer.contains("none of the integrators"), "{}", report.answer);
+    // A method of order 2 is not RK4, though both are exact up to the third derivative.
+    subject = Subject::new("jerk", vec![0.0; 3], vec![0.0], 0.001);
+    let heun = |x: &[f64], u: &[f64], h: f64| {
+        let (x2, x3) = (x[1] + h * x[2] + h * h / 2.0 * u[0], x[2] + h * u[0]);
+        vec![x[0] + h * x[1] + h * h / 2.0 * x[2], x2, x3]
+    };
+    let report = Simulator::new(heun).audit(&subject);
+    assert_eq!(report.order.as_ref().unwrap().order, Some(2));
+    assert!(!report.answer.contains("RK4"), "{}", report.answer);
+}
