@@ -94,7 +94,8 @@ impl ProbeReport {
             }
             Some(limit) => {
                 let longest = number(limit.tried_up_to, 3);
-                text += &format!("; no limit was found up to a step of {longest} s");
+                let why = limit.reason.as_ref().map_or_else(String::new, |why| format!(": {why}"));
+                text += &format!("; no limit was found up to a step of {longest} s{why}");
             }
             None => {}
         }

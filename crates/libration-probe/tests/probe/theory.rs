@@ -262,3 +262,24 @@ fn an_integrator_is_named_only_where_its_results_are_its_own() {
     assert_eq!(report.order.as_ref().unwrap().order, Some(2));
     assert!(!report.answer.contains("RK4"), "{}", report.answer);
 }
+
+#[test]
+fn the_search_for_a_limit_ends_where_the_equilibrium_moves_with_the_step() {
+    // A spring whose rest gives way by dt beyond 0.05 s.
+    let gives_way = |x: &[f64], _: &[f64], dt: f64| {
+        let rest = -(dt - 0.05).max(0.0);
+        let v = x[1] + dt * (-9.0 * (x[0] - rest) - 0.3 * x[1]);
+        vec![x[0] + dt * v, v]
+    };
+    let subject = Subject::new("contact", vec![0.0, 0.0], vec![], 0.01);
+    let report = Simulator::new(gives_way).audit(&subject);
+    let limit = report.largest_dt.as_ref().unwrap();
+    assert_eq!(limit.dt, None);
+    // Trials grow by a quarter.
+    assert!((0.04..=0.05).contains(&limit.tried_up_to), "{limit:?}");
+    assert!(
+        report.answer.contains("the state is no equilibrium of a step of"),
+        "{}",
+        report.answer
+    );
+}
