@@ -209,7 +209,9 @@ class Probe:
         threads: int | None = None,
         **keywords: Any,
     ) -> ProbeReport:
-        """Audit a function of JAX, whose Jacobian by JAX is compared, see :func:`libration.hosts.jax_host`. Requires ``jax``.
+        """Audit a function of JAX, see :func:`libration.hosts.jax_host`. Requires ``jax``.
+
+        Its Jacobian is the matrix of the step if differences of the step agree with it.
 
         ``threads`` as in :func:`libration.probe`.
         """

@@ -66,7 +66,7 @@ def test_files_of_several_arrays_are_compared_in_the_order_of_the_first(tmp_path
     found = first_difference(str(tmp_path / "a.npz"), tmp_path / "b.npz")
     assert (found.array, found.index, found.ulps, found.differing) == ("actions", (2,), 1, 3)
     assert first_difference(tmp_path / "b.npz", tmp_path / "a.npz").array == "done"
-    # An array by itself has no name.
+    # An array alone has no name.
     assert first_difference(a["actions"], b["actions"]).array is None
 
 

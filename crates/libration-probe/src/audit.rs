@@ -7,7 +7,7 @@ use crate::prober::Prober;
 use crate::{Bits, BlackBox, BlackBoxError, Memory, ProbeReport, Settling, Subject};
 
 /// Rounding of results relative to them from which differences allow for it.
-const COARSE: f64 = 1e-11;
+const ALLOWED_FOR: f64 = 1e-11;
 
 /// Audits the step of a simulator.
 ///
@@ -48,7 +48,7 @@ fn examine(
     let mut findings = Vec::new();
     let bits = Bits::check(prober)?;
     let rounding = bits.rounding.as_ref().map_or(0.0, |rounding| rounding.results);
-    prober.coarseness = if rounding > COARSE { rounding } else { 0.0 };
+    prober.coarseness = if rounding > ALLOWED_FOR { rounding } else { 0.0 };
     // What is remembered explains differences of bits.
     if memory.settling.is_none() || is_held {
         of_bits(&bits, &mut findings);

@@ -18,7 +18,7 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// Without help, which requires the whole report.
+    /// Without help, which requires the longest stable step.
     pub(crate) fn new(kind: FindingKind, is_fault: bool, text: String) -> Self {
         Finding { kind, is_fault, text, help: String::new() }
     }

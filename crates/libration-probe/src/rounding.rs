@@ -51,44 +51,48 @@ impl Rounding {
         let is_single = |x: &f64| f64::from(*x as f32).to_bits() == x.to_bits();
         let is_whole = results.entries().iter().all(is_single);
         let nothing = vec![0.0; subject.state.len()];
-        let (rounding, is_coarse) = Line::States.is_single(prober, &nothing)?;
+        let far = Line::States.results(prober, DISTANCES[0])?;
+        let (rounding, is_coarse) = Line::States.is_single(prober, &far, &nothing)?;
         found.results = rounding;
         if is_whole || is_coarse {
             found.single_precision.push("the step".into());
             return Ok(found);
         }
-        let far = Line::States.results(prober, DISTANCES[0])?;
         let noises = Line::States.noises(&far);
         let rounded = |i: usize| f64::EPSILON * far[(0, i)].abs().max(far[(CLOSE - 1, i)].abs());
         let floor: Vec<f64> =
             (0..noises.len()).map(|i| ABOVE * noises[i].max(rounded(i))).collect();
         for (j, input) in subject.inputs.iter().enumerate() {
-            if Line::Action(j).is_single(prober, &floor)?.1 {
+            let along = Line::Action(j).results(prober, DISTANCES[0])?;
+            if Line::Action(j).is_single(prober, &along, &floor)?.1 {
                 found.single_precision.push(format!("`{}`", input.name));
             }
         }
-        if !subject.has_fixed_dt && Line::Length.is_single(prober, &floor)?.1 {
-            found.single_precision.push("dt".into());
+        if !subject.has_fixed_dt {
+            let along = Line::Length.results(prober, DISTANCES[0])?;
+            if Line::Length.is_single(prober, &along, &floor)?.1 {
+                found.single_precision.push("dt".into());
+            }
         }
         Ok(found)
     }
 }
 
 impl Line {
-    /// The rounding along the line in units of its sizes, and whether it is that of single precision. Noise below `floor` is none.
+    /// From the results at the first distance: the rounding along the line in units of its sizes, and whether it is that of single precision. Noise below `floor` is none.
     fn is_single(
         self,
         prober: &mut Prober<'_>,
+        far: &Matrix,
         floor: &[f64],
     ) -> Result<(f64, bool), BlackBoxError> {
-        let far = self.results(prober, DISTANCES[0])?;
-        let sizes = self.sizes(prober, &far);
+        let sizes = self.sizes(prober, far);
         let relative = |results: &Matrix| {
             let noises = self.noises(results);
             let known = (0..sizes.len()).filter(|i| sizes[*i] > 0.0 && noises[*i] > floor[*i]);
             known.map(|i| noises[i] / sizes[i]).fold(0.0, f64::max)
         };
-        let rounding = relative(&far);
+        let rounding = relative(far);
         let is_single = SINGLE.contains(&rounding)
             && relative(&self.results(prober, DISTANCES[1])?) > rounding * AS_ROUGH
             && relative(&self.results(prober, DISTANCES[2])?) < SINGLE.start / 10.0;
