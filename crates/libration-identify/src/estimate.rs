@@ -1,0 +1,194 @@
+//! The point of greatest likelihood.
+
+use crate::minimum::simplex;
+use crate::model::{Model, Point};
+use crate::noise::NoiseKind;
+use crate::recording::Recording;
+use crate::regression::Regression;
+use crate::whitening::Window;
+
+/// A fit of a model to a recording.
+#[derive(Clone, Debug)]
+pub(crate) struct Estimate {
+    pub(crate) model: Model,
+    /// The coordinates of the point.
+    pub(crate) coordinates: Vec<f64>,
+    pub(crate) point: Point,
+    pub(crate) regression: Regression,
+    pub(crate) log_likelihood: f64,
+}
+
+/// Most dead times of the first search.
+const DEAD_TIMES: usize = 96;
+/// Responses of the first search.
+const SEARCHED: usize = 4000;
+/// Starts of the second search.
+const STARTS: usize = 3;
+/// The log likelihood is known to this.
+pub(crate) const TOLERANCE: f64 = 1e-7;
+
+impl Estimate {
+    /// The fit with white noise, from a search over the whole range of the parameters.
+    pub(crate) fn search(model: &Model, recording: &Recording) -> Option<Estimate> {
+        let window = model.window(recording);
+        let end = recording.responses.len().min(window.first + SEARCHED);
+        let short = Recording {
+            response_times: recording.response_times[..end].to_vec(),
+            responses: recording.responses[..end].to_vec(),
+            ..recording.clone()
+        };
+        let searched = Window { recording: &short, ..window };
+        let grid = (0.5 * model.interval).max(model.longest / DEAD_TIMES as f64);
+        let mut tried: Vec<(f64, Vec<f64>)> = Vec::new();
+        let counts = (model.longest / grid).floor() as usize;
+        for shape in shapes(model, recording) {
+            for i in 0..=counts {
+                let mut shape = shape.clone();
+                shape[0] = grid * i as f64;
+                let coordinates = model.free(&shape);
+                let cost = model.cost(searched, &coordinates);
+                tried.push((cost, shape));
+                if model.known[0].is_some() {
+                    break;
+                }
+            }
+        }
+        tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut starts: Vec<Vec<f64>> = Vec::new();
+        for (_, shape) in tried.into_iter().filter(|(cost, _)| cost.is_finite()) {
+            let is_near = |other: &Vec<f64>| {
+                (shape[0] - other[0]).abs() < 2.5 * grid
+                    && shape.iter().zip(other).skip(1).all(|(x, y)| x == y)
+            };
+            if !starts.iter().any(is_near) {
+                starts.push(shape);
+            }
+            if starts.len() == STARTS {
+                break;
+            }
+        }
+        let fits = starts.iter().map(|shape| {
+            let mut cost = |coordinates: &[f64]| model.cost(searched, coordinates);
+            let scales = model.shape_scales(shape, 0.5 * grid);
+            simplex(&mut cost, &model.free(shape), &scales, TOLERANCE)
+        });
+        let best = fits.min_by(|a, b| a.value.total_cmp(&b.value))?;
+        Self::from_start(model, recording, &best.point, 0.2 * grid)
+    }
+
+    /// The fit near these coordinates.
+    pub(crate) fn from_start(
+        model: &Model,
+        recording: &Recording,
+        start: &[f64],
+        step: f64,
+    ) -> Option<Estimate> {
+        let window = model.window(recording);
+        let point = model.point(start)?;
+        let mut scales = model.shape_scales(&point.shape, step);
+        let shapes = scales.len();
+        scales.extend(model.noise_start().1);
+        for scale in &mut scales[..shapes] {
+            *scale *= 0.5;
+        }
+        let mut cost = |coordinates: &[f64]| model.cost(window, coordinates);
+        let first = simplex(&mut cost, start, &scales, TOLERANCE);
+        // A simplex can collapse; a fresh one finds what is left.
+        let scales: Vec<f64> = scales.iter().map(|scale| -0.3 * scale).collect();
+        let found = simplex(&mut cost, &first.point, &scales, TOLERANCE);
+        Self::at(model, recording, &found.point)
+    }
+
+    /// The fit at these coordinates.
+    pub(crate) fn at(
+        model: &Model,
+        recording: &Recording,
+        coordinates: &[f64],
+    ) -> Option<Estimate> {
+        let point = model.point(coordinates)?;
+        let regression = model.regression(model.window(recording), &point);
+        let log_likelihood = regression.log_likelihood();
+        log_likelihood.is_finite().then(|| Estimate {
+            model: model.clone(),
+            coordinates: coordinates.to_vec(),
+            point,
+            regression,
+            log_likelihood,
+        })
+    }
+
+    /// The fit of the same response with another noise, or with jitter, from this one.
+    pub(crate) fn extended(&self, model: &Model, recording: &Recording) -> Option<Estimate> {
+        let mut start = model.free(&self.point.shape);
+        start.extend(model.noise_start().0);
+        Self::from_start(model, recording, &start, 0.2 * model.interval)
+    }
+
+    /// The number of estimated numbers: coordinates, coefficients, and the variance of the noise.
+    pub(crate) fn parameters(&self) -> usize {
+        self.model.coordinates() + self.regression.solved + 1
+    }
+
+    /// Bayes' information criterion, lower for the better model (G. Schwarz, Annals of Statistics 6, 1978).
+    pub(crate) fn criterion(&self) -> f64 {
+        let count = self.regression.residuals.len() as f64;
+        self.parameters() as f64 * count.ln() - 2.0 * self.log_likelihood
+    }
+
+    /// The variance of the noise, corrected for the estimated coefficients.
+    pub(crate) fn variance(&self) -> f64 {
+        let count = self.regression.residuals.len();
+        let free = count.saturating_sub(self.regression.solved + self.model.free_shape()).max(1);
+        self.regression.sum_of_squares / free as f64
+    }
+
+    /// The standard deviation of independent errors of the measurement.
+    pub(crate) fn white_deviation(&self) -> f64 {
+        (self.variance() * self.point.noise.white).sqrt()
+    }
+
+    /// The root mean square of arrivals about their mean, in s.
+    pub(crate) fn jitter(&self) -> f64 {
+        let gain = self.regression.coefficients[0].abs();
+        (self.point.noise.jitter * self.variance()).sqrt() / gain
+    }
+}
+
+/// Parameters behind the dead time with which a search begins.
+fn shapes(model: &Model, recording: &Recording) -> Vec<Vec<f64>> {
+    let (interval, span) = (model.interval, recording.span());
+    // From less than an interval to a part of the recording, four per decade.
+    let count = (4.0 * (0.2 * span / interval).log10()).ceil().clamp(1.0, 24.0) as i32;
+    let times = (0..=count).map(|i| 0.5 * interval * 10.0_f64.powf(f64::from(i) / 4.0));
+    let zetas = [0.1, 0.4, 0.9, 2.0];
+    let all: Vec<Vec<f64>> = match model.response.parameters().len() {
+        1 => vec![vec![0.0]],
+        2 => [0.0].into_iter().chain(times).map(|time| vec![0.0, time]).collect(),
+        _ => times.flat_map(|time| zetas.iter().map(move |&zeta| vec![0.0, time, zeta])).collect(),
+    };
+    let with_known = |shape: Vec<f64>| -> Vec<f64> {
+        shape.iter().zip(&model.known).map(|(x, known)| known.unwrap_or(*x)).collect()
+    };
+    let mut all: Vec<Vec<f64>> = all.into_iter().map(with_known).collect();
+    all.dedup();
+    all
+}
+
+/// The fits of a response with each kind of noise, the best first.
+pub(crate) fn with_each_noise(
+    white: &Estimate,
+    recording: &Recording,
+    kinds: &[NoiseKind],
+) -> Vec<Estimate> {
+    let mut fits: Vec<Estimate> = kinds
+        .iter()
+        .filter_map(|&noise| match noise {
+            NoiseKind::White => Some(white.clone()),
+            // A disturbance of a plant without states is an error of the measurement.
+            NoiseKind::Disturbance if white.model.response.name() == "delay" => None,
+            _ => white.extended(&Model { noise, ..white.model.clone() }, recording),
+        })
+        .collect();
+    fits.sort_by(|a, b| a.criterion().total_cmp(&b.criterion()));
+    fits
+}

@@ -1,0 +1,165 @@
+//! Intervals by the profile of the likelihood.
+
+use serde::Serialize;
+
+use crate::estimate::{Estimate, TOLERANCE};
+use crate::minimum::simplex;
+use crate::quantiles::student;
+use crate::recording::Recording;
+
+/// A 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Interval {
+    /// The lower end; a bound of the parameter if the recording does not exclude it.
+    pub low: f64,
+    /// The upper end; `null` if the recording excludes no large value.
+    pub high: Option<f64>,
+}
+
+impl Interval {
+    /// Whether the interval has `value`.
+    pub fn contains(&self, value: f64) -> bool {
+        value >= self.low && self.high.is_none_or(|high| value <= high)
+    }
+}
+
+/// What an interval is of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Functional {
+    /// A free parameter, by its place among the coordinates.
+    Coordinate(usize),
+    /// The sum of the first two: of dead time and lag.
+    Sum,
+}
+
+/// The interval of values that a likelihood ratio does not exclude (W. Q. Meeker and L. A. Escobar, American Statistician 49, 1995), with
+/// Student's quantile in place of the normal one for short recordings.
+///
+/// It needs no smooth likelihood: with commands in steps, the likelihood has a kink in the dead time wherever an arrival meets a sample, and
+/// simulators put it right there.
+pub(crate) fn profile_interval(
+    estimate: &Estimate,
+    recording: &Recording,
+    of: Functional,
+    deviation: Option<f64>,
+) -> Interval {
+    let count = estimate.regression.residuals.len() as f64;
+    let freedom = (count - estimate.parameters() as f64).max(1.0);
+    let threshold = 0.5 * count * (student(freedom).powi(2) / freedom).ln_1p();
+    let value = value(&estimate.coordinates, of);
+    let first = deviation.filter(|step| step.is_finite() && *step > 0.0);
+    let first = first.unwrap_or(0.1 * estimate.model.interval);
+    let low = end(estimate, recording, of, value, -first, threshold);
+    let high = end(estimate, recording, of, value, first, threshold);
+    Interval { low: low.unwrap_or(0.0), high }
+}
+
+fn value(coordinates: &[f64], of: Functional) -> f64 {
+    match of {
+        Functional::Coordinate(i) => coordinates[i].abs(),
+        Functional::Sum => coordinates[0].abs() + coordinates[1].abs(),
+    }
+}
+
+/// The end of an interval on the side of `step`; `None` if it has none.
+fn end(
+    estimate: &Estimate,
+    recording: &Recording,
+    of: Functional,
+    centre: f64,
+    step: f64,
+    threshold: f64,
+) -> Option<f64> {
+    let mut warm = others(&estimate.coordinates, of);
+    let mut excess = |at: f64| -> f64 {
+        let (cost, found) = constrained(estimate, recording, of, at, &warm);
+        if cost.is_finite() {
+            warm = found;
+        }
+        cost + estimate.log_likelihood - threshold
+    };
+    let limit = if step < 0.0 { 0.0 } else { 1e3 * (centre + estimate.model.interval) };
+    // Outward until the likelihood has fallen far enough.
+    let (mut inner, mut inner_excess) = (centre, -threshold);
+    let mut width = step;
+    let (mut outer, mut outer_excess) = loop {
+        let at = centre + width;
+        let is_last = if step < 0.0 { at <= limit } else { at >= limit };
+        let at = if is_last { limit } else { at };
+        let found = excess(at);
+        if found >= 0.0 {
+            break (at, found);
+        }
+        if is_last {
+            return None;
+        }
+        (inner, inner_excess) = (at, found);
+        width *= 1.8;
+    };
+    // The root of the excess is nearly linear in the distance: regula falsi on it, with halving where that stalls.
+    let root = |excess: f64| (excess + threshold).max(0.0).sqrt();
+    let target = threshold.sqrt();
+    for round in 0..24 {
+        if (outer - inner).abs() <= 1e-3 * (outer - centre).abs() {
+            break;
+        }
+        let is_usable = outer_excess.is_finite() && round % 3 != 2;
+        let part = match is_usable {
+            true => {
+                let (a, b) = (root(inner_excess), root(outer_excess));
+                ((target - a) / (b - a)).clamp(0.02, 0.98)
+            }
+            false => 0.5,
+        };
+        let at = inner + part * (outer - inner);
+        let found = excess(at);
+        if found >= 0.0 {
+            (outer, outer_excess) = (at, found);
+        } else {
+            (inner, inner_excess) = (at, found);
+        }
+    }
+    Some(0.5 * (inner + outer))
+}
+
+/// The coordinates without that of the functional.
+fn others(coordinates: &[f64], of: Functional) -> Vec<f64> {
+    let left_out = match of {
+        Functional::Coordinate(i) => i,
+        Functional::Sum => 0,
+    };
+    let kept = coordinates.iter().enumerate().filter(|&(i, _)| i != left_out);
+    kept.map(|(_, &x)| x).collect()
+}
+
+/// The least cost with the functional at `at`, and the other coordinates there.
+pub(crate) fn constrained(
+    estimate: &Estimate,
+    recording: &Recording,
+    of: Functional,
+    at: f64,
+    warm: &[f64],
+) -> (f64, Vec<f64>) {
+    let model = &estimate.model;
+    let window = model.window(recording);
+    let mut cost = |free: &[f64]| {
+        let mut coordinates = free.to_vec();
+        match of {
+            Functional::Coordinate(i) => coordinates.insert(i, at),
+            Functional::Sum => {
+                let first = at - free[0].abs();
+                if first < 0.0 {
+                    return f64::INFINITY;
+                }
+                coordinates.insert(0, first);
+            }
+        }
+        model.cost(window, &coordinates)
+    };
+    let mut scales = model.shape_scales(&estimate.point.shape, 0.3 * model.interval);
+    scales.extend(model.noise_start().1);
+    let scales = others(&scales, of);
+    let scales: Vec<f64> = scales.iter().map(|scale| 0.3 * scale).collect();
+    let found = simplex(&mut cost, warm, &scales, 10.0 * TOLERANCE);
+    (found.value, found.point)
+}
