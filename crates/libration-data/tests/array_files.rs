@@ -17,7 +17,7 @@ fn numbers<'a>(arrays: &'a [NamedArray], name: &str) -> (&'a [usize], &'a [f64])
     let array = arrays.iter().find(|array| array.name == name).expect(name);
     match &array.values {
         ArrayValues::Numbers { shape, entries } => (shape, entries),
-        ArrayValues::Text(_) => panic!("{name}"),
+        ArrayValues::Integers { .. } | ArrayValues::Text(_) => panic!("{name}"),
     }
 }
 

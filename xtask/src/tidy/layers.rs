@@ -11,7 +11,7 @@ const FLOORS: [&[&str]; 13] = [
     &["libration-linear-loops"],
     &["libration"],
     &["libration-data", REPORT, "libration-work"],
-    &["libration-settings"],
+    &["libration-logs", "libration-settings"],
     &["libration-analyze", "libration-identify", "libration-probe"],
     &["libration-advise", "libration-env"],
     &["libration-study"],

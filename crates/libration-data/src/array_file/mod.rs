@@ -7,6 +7,7 @@ mod npz;
 mod number_format;
 
 pub use mat::read_mat;
+pub use npy::parse_npy;
 pub use npz::read_npz;
 
 /// An array with its name.
@@ -27,6 +28,13 @@ pub enum ArrayValues {
         shape: Vec<usize>,
         /// As many as the product of the lengths.
         entries: Vec<f64>,
+    },
+    /// Integers of which a `f64` would lose digits, row by row.
+    Integers {
+        /// At most two lengths; none for a single number.
+        shape: Vec<usize>,
+        /// As many as the product of the lengths.
+        entries: Vec<i64>,
     },
     /// A list of strings.
     Text(Vec<String>),

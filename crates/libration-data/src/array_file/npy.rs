@@ -5,7 +5,10 @@ use super::number_format::{NumberFormat, NumberKind};
 use super::{ArrayValues, by_rows};
 
 /// The array of a file `.npy`, versions 1 to 3: floats of 4 and 8 bytes, integers, and strings.
-pub(super) fn parse_npy(bytes: &[u8]) -> Result<ArrayValues, String> {
+///
+/// # Errors
+/// The error in words: a damaged file, or an array that has neither real numbers nor strings.
+pub fn parse_npy(bytes: &[u8]) -> Result<ArrayValues, String> {
     let mut reader = ByteReader::little_endian(bytes);
     if reader.take(6).ok() != Some(b"\x93NUMPY") {
         return Err("it does not begin as a NumPy array".to_owned());
@@ -45,7 +48,14 @@ pub(super) fn parse_npy(bytes: &[u8]) -> Result<ArrayValues, String> {
         _ => return Err(unknown()),
     };
     let format = NumberFormat::new(kind, size, big_endian).ok_or_else(unknown)?;
-    let entries = format.decode(reader.rest(), &shape)?;
+    let entries = match (format.decode(reader.rest(), &shape), is_by_columns) {
+        (Ok(entries), _) => entries,
+        (Err(why), false) => {
+            let entries = format.decode_integers(reader.rest(), &shape).ok_or(why)?;
+            return Ok(ArrayValues::Integers { entries, shape });
+        }
+        (Err(why), true) => return Err(why),
+    };
     Ok(ArrayValues::Numbers { entries: ordered(entries), shape })
 }
 

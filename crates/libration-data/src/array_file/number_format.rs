@@ -43,20 +43,40 @@ impl NumberFormat {
         bytes.chunks_exact(self.size).map(|one| self.number(one)).collect()
     }
 
+    /// The integers of an array of this shape, all digits of them; none if they are floats or do not fit.
+    pub(super) fn decode_integers(self, bytes: &[u8], shape: &[usize]) -> Option<Vec<i64>> {
+        let expected = shape.iter().try_fold(self.size, |product, &n| product.checked_mul(n));
+        let is_integer = matches!(self.kind, NumberKind::Signed | NumberKind::Unsigned);
+        if !is_integer || expected != Some(bytes.len()) {
+            return None;
+        }
+        bytes.chunks_exact(self.size).map(|one| i64::try_from(self.integer(one)).ok()).collect()
+    }
+
     fn number(self, bytes: &[u8]) -> Result<f64, String> {
+        match (self.kind, self.size) {
+            (NumberKind::Float, 4) => Ok(f64::from(f32::from_bits(self.bits(bytes) as u32))),
+            (NumberKind::Float, _) => Ok(f64::from_bits(self.bits(bytes))),
+            _ => exact(self.integer(bytes)),
+        }
+    }
+
+    fn integer(self, bytes: &[u8]) -> i128 {
+        let unused = 64 - 8 * self.size as u32;
+        let bits = self.bits(bytes);
+        match self.kind {
+            NumberKind::Signed => i128::from((bits << unused) as i64 >> unused),
+            _ => i128::from(bits),
+        }
+    }
+
+    fn bits(self, bytes: &[u8]) -> u64 {
         let mut ordered = [0; 8];
         ordered[..self.size].copy_from_slice(bytes);
         if self.big_endian {
             ordered[..self.size].reverse();
         }
-        let bits = u64::from_le_bytes(ordered);
-        let unused = 64 - 8 * self.size as u32;
-        match (self.kind, self.size) {
-            (NumberKind::Float, 4) => Ok(f64::from(f32::from_bits(bits as u32))),
-            (NumberKind::Float, _) => Ok(f64::from_bits(bits)),
-            (NumberKind::Signed, _) => exact(i128::from((bits << unused) as i64 >> unused)),
-            (NumberKind::Unsigned, _) => exact(i128::from(bits)),
-        }
+        u64::from_le_bytes(ordered)
     }
 }
 

@@ -117,6 +117,11 @@ fn from_arrays(arrays: Vec<NamedArray>) -> Result<PlantTable, String> {
             (_, ArrayValues::Text(_)) => {
                 return Err(format!("array `{name}`: it has strings; expected numbers"));
             }
+            (_, ArrayValues::Integers { .. }) => {
+                return Err(format!(
+                    "array `{name}`: it has integers above 2^53; expected numbers"
+                ));
+            }
             (_, ArrayValues::Numbers { shape, entries }) => {
                 let rows = rows(&key, &shape, &entries).map_err(|why| format!("`{name}` {why}"))?;
                 if matrices.insert(key, rows).is_some() {

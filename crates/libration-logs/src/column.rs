@@ -1,0 +1,150 @@
+//! Columns of tables, whose whole numbers keep all digits.
+
+use crate::time_unit::{unit_by_magnitude, unit_in_name};
+
+/// The values of a column.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Values {
+    /// Whole numbers. [`MISSING`] is none.
+    Whole(Vec<i64>),
+    /// Decimal seconds since 1970, as nanoseconds. [`MISSING`] is none.
+    Nanoseconds(Vec<i64>),
+    /// Other numbers. A value with the bits of [`missing`] is none.
+    Floats(Vec<f64>),
+}
+
+/// No whole number.
+pub(crate) const MISSING: i64 = i64::MIN;
+
+/// No number: not the `NaN` that a program computes or reads.
+pub(crate) fn missing() -> f64 {
+    f64::from_bits(0x7ff8_0000_0000_6d69)
+}
+
+pub(crate) fn is_missing(value: f64) -> bool {
+    value.to_bits() == missing().to_bits()
+}
+
+/// A column.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Column {
+    pub(crate) name: String,
+    pub(crate) unit: Option<String>,
+    /// The number of units of time per second, if the file has it.
+    pub(crate) per_second: Option<i64>,
+    pub(crate) values: Values,
+}
+
+/// Times, each with the number of its row.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Times {
+    /// In ns.
+    Exact(Vec<(usize, i64)>),
+    /// In s.
+    Floats(Vec<(usize, f64)>),
+}
+
+impl Column {
+    pub(crate) fn new(name: String, values: Values) -> Self {
+        Column { unit: unit_in_brackets(&name), per_second: None, name, values }
+    }
+
+    /// The number of rows.
+    pub(crate) fn rows(&self) -> usize {
+        match &self.values {
+            Values::Whole(x) | Values::Nanoseconds(x) => x.len(),
+            Values::Floats(x) => x.len(),
+        }
+    }
+
+    /// The number of values.
+    pub(crate) fn count(&self) -> usize {
+        match &self.values {
+            Values::Whole(x) | Values::Nanoseconds(x) => {
+                x.iter().filter(|&&x| x != MISSING).count()
+            }
+            Values::Floats(x) => x.iter().filter(|&&x| !is_missing(x)).count(),
+        }
+    }
+
+    /// The value of a row.
+    pub(crate) fn value(&self, row: usize) -> Option<f64> {
+        match &self.values {
+            Values::Whole(x) => x.get(row).filter(|&&x| x != MISSING).map(|&x| x as f64),
+            Values::Nanoseconds(x) => {
+                x.get(row).filter(|&&x| x != MISSING).map(|&x| x as f64 / 1e9)
+            }
+            Values::Floats(x) => x.get(row).copied().filter(|&x| !is_missing(x)),
+        }
+    }
+
+    /// The column as times.
+    pub(crate) fn times(&self) -> Times {
+        match &self.values {
+            Values::Whole(x) => {
+                let there = || x.iter().copied().enumerate().filter(|&(_, x)| x != MISSING);
+                let count = there().count();
+                let (first, last) =
+                    (there().next().map_or(0, |f| f.1), there().next_back().map_or(0, |l| l.1));
+                let per_second = self
+                    .per_second
+                    .or_else(|| unit_in_name(&self.name))
+                    .unwrap_or_else(|| unit_by_magnitude(first, last, count));
+                let nanoseconds = 1_000_000_000 / per_second.max(1);
+                let exact: Option<Vec<_>> =
+                    there().map(|(row, x)| Some((row, x.checked_mul(nanoseconds)?))).collect();
+                exact.map_or_else(
+                    || {
+                        Times::Floats(
+                            there().map(|(row, x)| (row, x as f64 / per_second as f64)).collect(),
+                        )
+                    },
+                    Times::Exact,
+                )
+            }
+            Values::Nanoseconds(x) => {
+                Times::Exact(x.iter().copied().enumerate().filter(|&(_, x)| x != MISSING).collect())
+            }
+            Values::Floats(x) => {
+                let per_second =
+                    self.per_second.or_else(|| unit_in_name(&self.name)).unwrap_or(1) as f64;
+                let there = x.iter().copied().enumerate().filter(|&(_, x)| !is_missing(x));
+                Times::Floats(there.map(|(row, x)| (row, x / per_second)).collect())
+            }
+        }
+    }
+}
+
+impl Times {
+    /// The times in s from the first one of `origin`, each with its row.
+    pub(crate) fn since(&self, origin: &Times) -> Vec<(usize, f64)> {
+        match (self, origin) {
+            (Times::Exact(own), Times::Exact(origin)) => {
+                let zero = i128::from(origin.first().map_or(0, |first| first.1));
+                own.iter().map(|&(row, x)| (row, (i128::from(x) - zero) as f64 / 1e9)).collect()
+            }
+            (own, origin) => {
+                let zero = origin.seconds().next().map_or(0.0, |first| first.1);
+                own.seconds().map(|(row, x)| (row, x - zero)).collect()
+            }
+        }
+    }
+
+    fn seconds(&self) -> Box<dyn Iterator<Item = (usize, f64)> + '_> {
+        match self {
+            Times::Exact(x) => Box::new(x.iter().map(|&(row, x)| (row, x as f64 / 1e9))),
+            Times::Floats(x) => Box::new(x.iter().copied()),
+        }
+    }
+}
+
+/// The text in brackets at the end of a name: `x [m]` or `x (m)`.
+fn unit_in_brackets(name: &str) -> Option<String> {
+    let name = name.trim();
+    let inner = name.strip_suffix(']').and_then(|rest| rest.rsplit_once('['));
+    let inner = inner.or_else(|| name.strip_suffix(')').and_then(|rest| rest.rsplit_once('(')));
+    let (before, unit) = inner?;
+    // `x[3]` is an element.
+    let is_unit = !before.is_empty() && !unit.is_empty() && unit.parse::<usize>().is_err();
+    is_unit.then(|| unit.trim().to_owned())
+}

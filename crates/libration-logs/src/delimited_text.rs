@@ -1,0 +1,309 @@
+//! CSV, TSV and other tables in text.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+
+use crate::column::{Column, MISSING, Values, missing};
+use crate::error::LogError;
+use crate::table::Table;
+
+/// Largest line in bytes.
+const LONGEST_LINE: u64 = 1 << 20;
+/// Largest number of cells in memory: 2 GiB of numbers.
+const MOST_CELLS: u64 = 1 << 28;
+
+/// Whether the first bytes of a file are text.
+pub(crate) fn is_text(prefix: &[u8]) -> bool {
+    let whole = match std::str::from_utf8(prefix) {
+        Ok(_) => true,
+        // The last character may be cut.
+        Err(error) => error.error_len().is_none() && prefix.len() > 4000,
+    };
+    let is_control = |byte: &u8| *byte < 9 || (14..32).contains(byte) && *byte != 27;
+    whole && !prefix.is_empty() && !prefix.iter().any(is_control)
+}
+
+/// Reads a table in text.
+pub(crate) fn open(path: &Path, time: Option<&str>) -> Result<Table, LogError> {
+    let (columns, notes) = read(BufReader::new(File::open(path)?))?;
+    Table::new("text", columns, time, notes)
+}
+
+/// The columns of numbers of a text, and remarks.
+///
+/// Empty lines and those that begin with `#` are ignored. The first other line may have names; else the last line with `#` in front of
+/// the numbers has them, if it has as many.
+fn read(mut input: impl BufRead) -> Result<(Vec<Column>, Vec<String>), LogError> {
+    let mut line = String::new();
+    let mut comment = String::new();
+    let mut table: Option<Rows> = None;
+    let mut first = true;
+    loop {
+        if !read_line(&mut input, &mut line)? {
+            break;
+        }
+        let text = if first { line.trim_start_matches('\u{feff}') } else { &line };
+        first = false;
+        let text = text.trim_end_matches(['\n', '\r']);
+        if text.trim().is_empty() {
+            continue;
+        }
+        if let Some(rest) = text.trim_start().strip_prefix('#') {
+            if table.is_none() {
+                comment = rest.trim().to_owned();
+            }
+            continue;
+        }
+        match &mut table {
+            Some(rows) => rows.push(text)?,
+            None => table = Some(Rows::begin(text, &comment)?),
+        }
+    }
+    let rows = table.ok_or_else(|| LogError::Damaged("it has no line of numbers".to_owned()))?;
+    Ok(rows.into_columns())
+}
+
+/// Reads a line of at most [`LONGEST_LINE`] bytes; false at the end.
+fn read_line(input: &mut impl BufRead, line: &mut String) -> Result<bool, LogError> {
+    let mut bytes = std::mem::take(line).into_bytes();
+    bytes.clear();
+    input.by_ref().take(LONGEST_LINE + 1).read_until(b'\n', &mut bytes)?;
+    if bytes.len() as u64 > LONGEST_LINE {
+        let value = bytes.len() as u64;
+        return Err(LogError::TooLarge {
+            what: "length of a line in bytes",
+            value,
+            limit: LONGEST_LINE,
+        });
+    }
+    *line = match String::from_utf8(bytes) {
+        Ok(text) => text,
+        Err(error) => String::from_utf8_lossy(error.as_bytes()).into_owned(),
+    };
+    Ok(!line.is_empty())
+}
+
+/// The rows of a table while they are read.
+struct Rows {
+    delimiter: Option<char>,
+    names: Vec<String>,
+    values: Vec<Builder>,
+    rows: usize,
+    /// Number of rows with another number of cells.
+    ragged: usize,
+}
+
+impl Rows {
+    /// Begins with the first line that is no comment.
+    fn begin(text: &str, comment: &str) -> Result<Self, LogError> {
+        let delimiter = [',', ';', '\t'].into_iter().find(|&delimiter| text.contains(delimiter));
+        let cells = cells(text, delimiter);
+        let is_header = !cells.iter().any(|cell| number(cell).is_some());
+        let comment = self::cells(comment, delimiter);
+        let names: Vec<String> = match (is_header, comment.len() == cells.len()) {
+            (true, _) => cells.iter().map(|cell| name(cell)).collect(),
+            (false, true) if comment.iter().all(|cell| number(cell).is_none()) => {
+                comment.iter().map(|cell| name(cell)).collect()
+            }
+            _ => (1..=cells.len()).map(|i| format!("column_{i}")).collect(),
+        };
+        let values = names.iter().map(|_| Builder::default()).collect();
+        let mut rows = Rows { delimiter, names, values, rows: 0, ragged: 0 };
+        if !is_header {
+            rows.push(text)?;
+        }
+        Ok(rows)
+    }
+
+    fn push(&mut self, text: &str) -> Result<(), LogError> {
+        let cells = cells(text, self.delimiter);
+        self.ragged += usize::from(cells.len() != self.values.len());
+        for (i, column) in self.values.iter_mut().enumerate() {
+            column.push(cells.get(i).map_or("", |cell| cell));
+        }
+        self.rows += 1;
+        let value = self.rows as u64 * self.values.len() as u64;
+        if value > MOST_CELLS {
+            return Err(LogError::TooLarge { what: "number of cells", value, limit: MOST_CELLS });
+        }
+        Ok(())
+    }
+
+    fn into_columns(self) -> (Vec<Column>, Vec<String>) {
+        let mut notes = Vec::new();
+        if self.ragged > 0 {
+            let (ragged, cells) = (self.ragged, self.values.len());
+            notes.push(format!("{ragged} of {} rows do not have {cells} cells", self.rows));
+        }
+        let columns = self.names.into_iter().zip(self.values);
+        let columns = columns.filter(|(_, values)| values.numbers > 0);
+        let columns = columns.map(|(name, values)| Column::new(name, values.values)).collect();
+        (columns, notes)
+    }
+}
+
+/// The cells of a line.
+fn cells(text: &str, delimiter: Option<char>) -> Vec<&str> {
+    match delimiter {
+        None => text.split_whitespace().collect(),
+        Some(delimiter) => {
+            let mut quoted = false;
+            let split = |c: char| {
+                quoted ^= c == '"';
+                c == delimiter && !quoted
+            };
+            text.split(split).map(|cell| cell.trim().trim_matches('"').trim()).collect()
+        }
+    }
+}
+
+/// The name in a cell; `rostopic echo -p` writes a percent sign before the first.
+fn name(cell: &str) -> String {
+    cell.trim_start_matches('%').trim_matches(['"', '\'']).trim().to_owned()
+}
+
+/// The text of a number in a cell; `candump -L` writes parentheses.
+fn number(cell: &str) -> Option<f64> {
+    let bare = cell.strip_prefix('(').and_then(|cell| cell.strip_suffix(')')).unwrap_or(cell);
+    match bare {
+        "true" | "True" => Some(1.0),
+        "false" | "False" => Some(0.0),
+        _ => bare.parse().ok(),
+    }
+}
+
+/// A column while it is read: whole numbers as long as all are whole.
+struct Builder {
+    values: Values,
+    numbers: usize,
+}
+
+impl Default for Builder {
+    fn default() -> Self {
+        Builder { values: Values::Whole(Vec::new()), numbers: 0 }
+    }
+}
+
+impl Builder {
+    fn push(&mut self, cell: &str) {
+        let bare = cell.strip_prefix('(').and_then(|cell| cell.strip_suffix(')')).unwrap_or(cell);
+        let Some(value) = number(bare) else {
+            return self.push_missing();
+        };
+        self.numbers += 1;
+        if let Values::Whole(all) = &mut self.values {
+            if let Ok(whole) = bare.parse::<i64>() {
+                return all.push(whole);
+            }
+            self.leave_whole(value);
+        }
+        if let Values::Nanoseconds(all) = &mut self.values {
+            if let Some(nanoseconds) = nanoseconds(bare) {
+                return all.push(nanoseconds);
+            }
+            let seconds = |&x: &i64| if x == MISSING { missing() } else { x as f64 / 1e9 };
+            self.values = Values::Floats(all.iter().map(seconds).collect());
+        }
+        if let Values::Floats(all) = &mut self.values {
+            all.push(value);
+        }
+    }
+
+    /// Continues with decimals: exactly if the first is a number of seconds since 1970.
+    fn leave_whole(&mut self, value: f64) {
+        let Values::Whole(all) = &mut self.values else { return };
+        let is_epoch = (5e8..5e9).contains(&value);
+        let scaled = |&x: &i64| if x == MISSING { Some(x) } else { x.checked_mul(1_000_000_000) };
+        let exact: Option<Vec<i64>> = is_epoch.then(|| all.iter().map(scaled).collect()).flatten();
+        let float = |&x: &i64| if x == MISSING { missing() } else { x as f64 };
+        self.values = exact
+            .map_or_else(|| Values::Floats(all.iter().map(float).collect()), Values::Nanoseconds);
+    }
+
+    fn push_missing(&mut self) {
+        match &mut self.values {
+            Values::Whole(all) | Values::Nanoseconds(all) => all.push(MISSING),
+            Values::Floats(all) => all.push(missing()),
+        }
+    }
+}
+
+/// Decimal seconds with at most nine digits behind the point, in ns.
+fn nanoseconds(text: &str) -> Option<i64> {
+    let (whole, fraction) = text.split_once('.').unwrap_or((text, ""));
+    let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
+    if whole.is_empty() || fraction.len() > 9 || !digits(whole) || !digits(fraction) {
+        return None;
+    }
+    format!("{whole}{fraction:0<9}").parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ClockChoice;
+    use crate::source::Source;
+
+    fn table(text: &str) -> Table {
+        let (columns, notes) = read(text.as_bytes()).unwrap();
+        Table::new("text", columns, None, notes).unwrap()
+    }
+
+    fn series(text: &str, name: &str) -> (Vec<f64>, Vec<f64>) {
+        let series = table(text).series(name, ClockChoice::Log).unwrap();
+        (series.time, series.values)
+    }
+
+    #[test]
+    fn commas_semicolons_tabs_and_spaces_separate_cells() {
+        for text in [
+            "t,x\n0,1\n0.5,2\n",
+            "t;x\n0;1\n0.5;2\n",
+            "t\tx\n0\t1\n0.5\t2\n",
+            "# t x\n0 1\n0.5 2\n",
+        ] {
+            assert_eq!(series(text, "x"), (vec![0.0, 0.5], vec![1.0, 2.0]), "{text}");
+        }
+        assert_eq!(series("0 1\n1 2\n", "column_2"), (vec![0.0, 1.0], vec![1.0, 2.0]));
+    }
+
+    #[test]
+    fn stamps_since_1970_keep_nanoseconds() {
+        let wanted = vec![0.0, 0.001_000_017];
+        let text = "%time,field.x\n1700000000000000000,1\n1700000000001000017,2\n";
+        assert_eq!(series(text, "field.x").0, wanted);
+        let text = "x,stamp\n1,1700000000.000000000\n2,1700000000.001000017\n";
+        assert_eq!(series(text, "x").0, wanted);
+        let log = "(1436509052.249713) vcan0 044#2A36\n(1436509052.250714) vcan0 044#2A37\n";
+        assert_eq!(table(log).stamps("column_1", ClockChoice::Log).unwrap(), [0.0, 0.001_001]);
+    }
+
+    #[test]
+    fn cells_without_a_number_are_left_out_and_nan_is_a_value() {
+        let (time, values) = series("t,x [m]\n0,1\n1,\n2,nan\n3,4\n", "x");
+        assert_eq!(time, [0.0, 2.0, 3.0]);
+        assert!(values[1].is_nan() && values[2] == 4.0);
+    }
+
+    #[test]
+    fn every_column_of_epochs_is_a_topic_with_the_same_zero() {
+        let text = "callback_start,callback_end\n1700000000000000000,1700000000000400000\n1700000000010000000,\n";
+        let table = table(text);
+        let names: Vec<_> =
+            table.topics().into_iter().map(|topic| (topic.name, topic.count)).collect();
+        assert_eq!(names, [("callback_start".to_owned(), 2), ("callback_end".to_owned(), 1)]);
+        assert_eq!(table.stamps("callback_end", ClockChoice::Log).unwrap(), [0.0004]);
+    }
+
+    #[test]
+    fn an_unknown_signal_is_reported_with_the_nearest() {
+        let error =
+            table("t,position,velocity\n0,1,2\n").series("positon", ClockChoice::Log).unwrap_err();
+        let text = error.to_string();
+        assert!(
+            text.contains("no signal `positon`") && text.contains("nearest names are `position`"),
+            "{text}"
+        );
+    }
+}

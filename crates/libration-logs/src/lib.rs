@@ -1,0 +1,18 @@
+//! Logs of real loops: signals and time stamps in the files that people record.
+//!
+//! [`Log::open`] recognises the format of a file by its first bytes. [`Log::series`] returns a signal over time, [`Log::stamps`] the
+//! time stamps of a topic. Memory is bounded: no count in a file is trusted before its bytes are there.
+
+mod column;
+mod delimited_text;
+mod error;
+mod log;
+mod nearest_name;
+mod numpy_file;
+mod parquet_file;
+mod source;
+mod table;
+mod time_unit;
+
+pub use error::LogError;
+pub use log::{ClockChoice, Log, ReadOptions, Series, SignalInfo, TopicInfo};

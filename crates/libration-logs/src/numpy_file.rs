@@ -1,0 +1,79 @@
+//! Files of NumPy: arrays in `.npz`, or one in `.npy`.
+
+use std::path::Path;
+
+use libration_data::{ArrayValues, NamedArray, parse_npy, read_bounded, read_npz};
+
+use crate::column::{Column, Values};
+use crate::error::LogError;
+use crate::table::Table;
+
+/// Largest file, and largest sum of the arrays in it.
+const LIMIT: usize = 1 << 31;
+/// Most columns of an array.
+const MOST_COLUMNS: usize = 4096;
+
+/// Reads the arrays with as many rows as the column of time.
+pub(crate) fn open(path: &Path, time: Option<&str>) -> Result<Table, LogError> {
+    table(&read_bounded(path, LIMIT as u64)?, time)
+}
+
+fn table(bytes: &[u8], time: Option<&str>) -> Result<Table, LogError> {
+    let (format, arrays) = match bytes.starts_with(b"PK") {
+        true => ("NumPy archive", read_npz(bytes, LIMIT).map_err(LogError::Damaged)?),
+        false => {
+            let values = parse_npy(bytes).map_err(LogError::Damaged)?;
+            ("NumPy array", vec![NamedArray { name: "column".to_owned(), values }])
+        }
+    };
+    let columns: Vec<Column> = arrays.into_iter().flat_map(columns).collect();
+    let is_wanted = |column: &&Column| match time {
+        Some(name) => column.name == name,
+        None => crate::time_unit::is_time_name(&column.name),
+    };
+    // Without a column of time, the longest arrays are the signals.
+    let time_rows = columns.iter().find(is_wanted).map(Column::rows);
+    let rows = time_rows.or_else(|| columns.iter().map(Column::rows).max()).unwrap_or(0);
+    let (columns, others): (Vec<_>, Vec<_>) =
+        columns.into_iter().partition(|column| column.rows() == rows);
+    let name = |column: &Column| {
+        format!("`{}` has {} rows, not {rows}: ignored", column.name, column.rows())
+    };
+    Table::new(format, columns, time, others.iter().map(name).collect())
+}
+
+/// The columns of an array: those of a matrix are `name[0]`, `name[1]`, of a lone array `column_1`, `column_2`.
+fn columns(array: NamedArray) -> Vec<Column> {
+    let is_lone = array.name == "column";
+    let names = |count: usize| -> Vec<String> {
+        match (is_lone, count) {
+            (true, _) => (1..=count).map(|i| format!("column_{i}")).collect(),
+            (false, 1) => vec![array.name.clone()],
+            (false, _) => (0..count).map(|i| format!("{}[{i}]", array.name)).collect(),
+        }
+    };
+    match &array.values {
+        ArrayValues::Text(_) => Vec::new(),
+        ArrayValues::Numbers { shape, entries } => split(shape, entries, &names, Values::Floats),
+        ArrayValues::Integers { shape, entries } => split(shape, entries, &names, Values::Whole),
+    }
+}
+
+fn split<T: Copy>(
+    shape: &[usize],
+    entries: &[T],
+    names: &dyn Fn(usize) -> Vec<String>,
+    values: fn(Vec<T>) -> Values,
+) -> Vec<Column> {
+    let count = match *shape {
+        [_, count] => count.clamp(1, MOST_COLUMNS),
+        _ => 1,
+    };
+    let each = shape.get(1).copied().unwrap_or(1).max(1);
+    let column = |i: usize| entries.iter().skip(i).step_by(each).copied().collect();
+    names(count)
+        .into_iter()
+        .enumerate()
+        .map(|(i, name)| Column::new(name, values(column(i))))
+        .collect()
+}

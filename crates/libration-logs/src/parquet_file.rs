@@ -1,0 +1,149 @@
+//! Apache Parquet.
+
+use std::fs::File;
+use std::path::Path;
+
+use parquet::basic::{LogicalType, TimeUnit};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::DataType;
+use parquet::errors::ParquetError;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::schema::types::ColumnDescriptor;
+
+use crate::column::{Column, MISSING, Values, missing};
+use crate::error::LogError;
+use crate::table::Table;
+
+/// Records that are read at once.
+const BATCH: usize = 1 << 16;
+/// Largest number of cells in memory: 2 GiB of numbers.
+const MOST_CELLS: u64 = 1 << 28;
+
+impl From<ParquetError> for LogError {
+    fn from(error: ParquetError) -> Self {
+        LogError::Damaged(format!("it cannot be read as Parquet: {error}"))
+    }
+}
+
+/// Reads the columns of numbers. Lists and text are left out.
+pub(crate) fn open(path: &Path, time: Option<&str>) -> Result<Table, LogError> {
+    let reader = SerializedFileReader::new(File::open(path)?)?;
+    let schema = reader.metadata().file_metadata().schema_descr_ptr();
+    let units = units(&reader);
+    let (mut columns, mut ignored, mut cells) = (Vec::new(), Vec::new(), 0);
+    for (index, descriptor) in schema.columns().iter().enumerate() {
+        let name = descriptor.path().string();
+        if descriptor.max_rep_level() > 0 {
+            ignored.push(format!("`{name}` is a list: ignored"));
+            continue;
+        }
+        let Some(values) = values(&reader, index, descriptor, &mut cells)? else {
+            ignored.push(format!("`{name}` has no numbers: ignored"));
+            continue;
+        };
+        let unit = units.iter().find(|(column, _)| *column == name).map(|(_, unit)| unit.clone());
+        let mut column = Column::new(name, values);
+        column.unit = unit.or(column.unit);
+        column.per_second = per_second(descriptor);
+        columns.push(column);
+    }
+    Table::new("Parquet", columns, time, ignored)
+}
+
+/// The units that `libration` writes.
+fn units(reader: &SerializedFileReader<File>) -> Vec<(String, String)> {
+    let entries = reader.metadata().file_metadata().key_value_metadata();
+    let text = entries
+        .and_then(|entries| entries.iter().find(|entry| entry.key == "libration.units"))
+        .and_then(|entry| entry.value.as_deref());
+    let map: Option<std::collections::BTreeMap<String, String>> =
+        text.and_then(|text| serde_json::from_str(text).ok());
+    map.unwrap_or_default().into_iter().filter(|(_, unit)| unit != "1").collect()
+}
+
+/// The number of units of time per second.
+fn per_second(descriptor: &ColumnDescriptor) -> Option<i64> {
+    match descriptor.logical_type_ref()? {
+        LogicalType::Timestamp(time) => Some(match time.unit {
+            TimeUnit::MILLIS => 1000,
+            TimeUnit::MICROS => 1_000_000,
+            TimeUnit::NANOS => 1_000_000_000,
+        }),
+        _ => None,
+    }
+}
+
+/// The values of a column in all row groups; none if they are no numbers.
+fn values(
+    reader: &SerializedFileReader<File>,
+    index: usize,
+    descriptor: &ColumnDescriptor,
+    cells: &mut u64,
+) -> Result<Option<Values>, LogError> {
+    let level = descriptor.max_def_level();
+    let unsigned = matches!(descriptor.logical_type_ref(), Some(LogicalType::Integer(integer)) if !integer.is_signed);
+    let (mut whole, mut floats) = (Vec::new(), Vec::new());
+    for group in 0..reader.num_row_groups() {
+        let group = reader.get_row_group(group)?;
+        let column = group.get_column_reader(index)?;
+        match column {
+            ColumnReader::BoolColumnReader(column) => {
+                collect(column, level, cells, &mut whole, MISSING, i64::from)?;
+            }
+            ColumnReader::Int32ColumnReader(column) => {
+                let wide = |x: i32| if unsigned { i64::from(x as u32) } else { i64::from(x) };
+                collect(column, level, cells, &mut whole, MISSING, wide)?;
+            }
+            ColumnReader::Int64ColumnReader(column) => {
+                collect(column, level, cells, &mut whole, MISSING, |x| x)?;
+            }
+            ColumnReader::FloatColumnReader(column) => {
+                collect(column, level, cells, &mut floats, missing(), f64::from)?;
+            }
+            ColumnReader::DoubleColumnReader(column) => {
+                collect(column, level, cells, &mut floats, missing(), |x| x)?;
+            }
+            _ => return Ok(None),
+        }
+    }
+    let is_float = matches!(
+        descriptor.physical_type(),
+        parquet::basic::Type::FLOAT | parquet::basic::Type::DOUBLE
+    );
+    Ok(Some(if is_float { Values::Floats(floats) } else { Values::Whole(whole) }))
+}
+
+/// Appends the values of a column of a row group, with `absent` where there is none.
+fn collect<D: DataType, T: Copy>(
+    mut reader: ColumnReaderImpl<D>,
+    level: i16,
+    cells: &mut u64,
+    out: &mut Vec<T>,
+    absent: T,
+    convert: impl Fn(D::T) -> T,
+) -> Result<(), LogError> {
+    loop {
+        let (mut levels, mut values) = (Vec::new(), Vec::new());
+        let to = (level > 0).then_some(&mut levels);
+        let (records, _, _) = reader.read_records(BATCH, to, None, &mut values)?;
+        if records == 0 {
+            return Ok(());
+        }
+        *cells = cells.saturating_add(records as u64);
+        if *cells > MOST_CELLS {
+            return Err(LogError::TooLarge {
+                what: "number of cells",
+                value: *cells,
+                limit: MOST_CELLS,
+            });
+        }
+        let mut values = values.into_iter();
+        match level {
+            0 => out.extend(values.map(&convert)),
+            _ => out.extend(levels.iter().map(|&own| match own == level {
+                true => values.next().map_or(absent, &convert),
+                false => absent,
+            })),
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! What a reader of one format offers.
+
+use crate::{ClockChoice, LogError, Series, SignalInfo, TopicInfo};
+
+/// An opened file of some format.
+pub(crate) trait Source: Send {
+    /// The name of the format.
+    fn format(&self) -> String;
+    /// The signals, in the order of the file.
+    fn signals(&self) -> Vec<SignalInfo>;
+    /// The topics, in the order of the file.
+    fn topics(&self) -> Vec<TopicInfo>;
+    /// A signal over time.
+    fn series(&self, name: &str, clock: ClockChoice) -> Result<Series, LogError>;
+    /// The time stamps of a topic in file order, in s from the first stamp of the file.
+    fn stamps(&self, topic: &str, clock: ClockChoice) -> Result<Vec<f64>, LogError>;
+    /// Remarks about the file, such as a truncated end.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
+}

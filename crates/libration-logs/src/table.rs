@@ -1,0 +1,128 @@
+//! Tables: signals are columns, and one column is the time.
+
+use crate::column::{Column, Times, Values};
+use crate::error::LogError;
+use crate::source::Source;
+use crate::time_unit::{is_time_name, unit_in_name};
+use crate::{ClockChoice, Series, SignalInfo, TopicInfo};
+
+/// A table with a column of time.
+pub(crate) struct Table {
+    format: &'static str,
+    columns: Vec<Column>,
+    time: usize,
+    notes: Vec<String>,
+}
+
+/// Smallest whole number that is taken for a clock since 1970, whatever its column is called: milliseconds.
+const EPOCH: i64 = 100_000_000_000;
+
+impl Table {
+    /// A table of these columns, whose time is that of the option, else a column named as one, else the first.
+    pub(crate) fn new(
+        format: &'static str,
+        columns: Vec<Column>,
+        time: Option<&str>,
+        notes: Vec<String>,
+    ) -> Result<Self, LogError> {
+        if columns.is_empty() {
+            return Err(LogError::Damaged("it has no column of numbers".to_owned()));
+        }
+        let named = columns.iter().position(|column| is_time_name(&column.name));
+        let time = match time {
+            Some(name) => {
+                position(&columns, name).ok_or_else(|| unknown("column", name, &columns))?
+            }
+            None => named.unwrap_or(0),
+        };
+        Ok(Table { format, columns, time, notes })
+    }
+
+    /// Whether a column has time stamps, from its name or the size of its numbers.
+    fn is_stamps(&self, index: usize) -> bool {
+        let column = &self.columns[index];
+        let is_epoch = match &column.values {
+            Values::Whole(x) => {
+                let mut there = x.iter().filter(|&&x| x != crate::column::MISSING).peekable();
+                there.peek().is_some() && there.all(|&x| x >= EPOCH)
+            }
+            Values::Nanoseconds(_) => true,
+            Values::Floats(_) => false,
+        };
+        let is_named = is_time_name(&column.name) && unit_in_name(&column.name).is_some();
+        index == self.time || is_epoch || is_named || column.per_second.is_some()
+    }
+
+    fn origin(&self) -> Times {
+        self.columns[self.time].times()
+    }
+}
+
+impl Source for Table {
+    fn format(&self) -> String {
+        self.format.to_owned()
+    }
+
+    fn signals(&self) -> Vec<SignalInfo> {
+        let info = |column: &Column| SignalInfo {
+            name: column.name.clone(),
+            count: column.count(),
+            unit: column.unit.clone(),
+        };
+        self.columns.iter().map(info).collect()
+    }
+
+    fn topics(&self) -> Vec<TopicInfo> {
+        let stamps = (0..self.columns.len()).filter(|&i| self.is_stamps(i));
+        let info = |i: usize| TopicInfo {
+            name: self.columns[i].name.clone(),
+            message_type: "time stamps".to_owned(),
+            count: self.columns[i].count(),
+            clocks: vec![ClockChoice::Log],
+        };
+        stamps.map(info).collect()
+    }
+
+    fn series(&self, name: &str, _: ClockChoice) -> Result<Series, LogError> {
+        let index =
+            position(&self.columns, name).ok_or_else(|| unknown("signal", name, &self.columns))?;
+        let origin = self.origin();
+        let mut series = Series::default();
+        for (row, time) in origin.since(&origin) {
+            if let Some(value) = self.columns[index].value(row) {
+                series.time.push(time);
+                series.values.push(value);
+            }
+        }
+        Ok(series)
+    }
+
+    fn stamps(&self, topic: &str, _: ClockChoice) -> Result<Vec<f64>, LogError> {
+        let index =
+            position(&self.columns, topic).ok_or_else(|| unknown("topic", topic, &self.columns))?;
+        let stamps = self.columns[index].times().since(&self.origin());
+        Ok(stamps.into_iter().map(|(_, time)| time).collect())
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let time = &self.columns[self.time];
+        let mut notes = vec![format!("the column of time is `{}`", time.name)];
+        notes.extend(self.notes.iter().cloned());
+        notes
+    }
+}
+
+/// The index of a column with this name, or with this name before its unit in brackets.
+fn position(columns: &[Column], name: &str) -> Option<usize> {
+    let bare = |column: &Column| {
+        column.unit.is_some()
+            && column.name.rsplit_once(['[', '(']).is_some_and(|(b, _)| b.trim() == name)
+    };
+    let exact = columns.iter().position(|column| column.name == name);
+    exact.or_else(|| columns.iter().position(bare))
+}
+
+fn unknown(what: &'static str, name: &str, columns: &[Column]) -> LogError {
+    let known = columns.iter().map(|column| column.name.clone()).collect();
+    LogError::Unknown { what, name: name.to_owned(), known }
+}
