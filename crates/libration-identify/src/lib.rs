@@ -1,28 +1,50 @@
 //! Latency, lag, gain and noise of a real loop from a log of its commands and of the responses to them.
 //!
 //! A response is a plant behind a dead time: `ẋ = A x + B (K u(t − τ) + b)`, `y = C x + e`, sampled at any times. Its likelihood is exact,
-//! for a dead time that is any part of a period.
+//! for a dead time that is any part of a period. [`identify`] maximises it.
 
+mod arrivals;
+mod bootstrap;
+mod candidate;
 mod estimate;
+mod excitation;
 mod hold;
+mod identification;
 mod information;
 mod interval;
+mod likelihood_map;
+mod loop_file;
 mod minimum;
 mod model;
 mod noise;
+mod page;
 mod plant_step;
 mod quantiles;
 mod recording;
 mod regression;
+mod request;
+mod residuals;
 mod response;
+mod selection;
 mod simulation;
-#[cfg(test)]
-mod tries;
+mod summary;
+mod warnings;
 mod whitening;
 
+pub use bootstrap::BootstrapRow;
+pub use candidate::{ArrivalRow, CandidateRow};
+pub use excitation::ExcitationRow;
 pub use hold::Hold;
+pub use identification::{Estimated, FitSeries, Identification, identify};
 pub use interval::Interval;
+pub use likelihood_map::LikelihoodMap;
+pub use loop_file::loop_file;
 pub use noise::NoiseKind;
+pub use page::page;
+pub use quantiles::LEVEL;
 pub use recording::{FEWEST_RESPONSES, Recording, RecordingError};
+pub use request::{IdentifyError, MOST_BOOTSTRAPS, MOST_RESPONSES, Request};
+pub use residuals::{CONTRADICTION, ResidualTests};
 pub use response::{KnownPlant, ParameterName, ResponseKind};
 pub use simulation::SimulatedLoop;
+pub use summary::{interval, seconds, with_unit};

@@ -157,4 +157,11 @@ impl SimulatedLoop {
             ..self
         }
     }
+
+    /// The loop without noise and jitter.
+    #[must_use]
+    pub fn without_noise(self) -> Self {
+        let coloured = (0.0, self.coloured.1);
+        SimulatedLoop { white: 0.0, coloured, disturbance: 0.0, jitter: 0.0, ..self }
+    }
 }

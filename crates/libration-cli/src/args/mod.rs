@@ -5,6 +5,7 @@ mod analyze;
 mod bench;
 mod equation_advice;
 mod gains;
+mod identify;
 mod linear;
 mod linear_analysis;
 mod linear_simulation;
@@ -34,6 +35,7 @@ pub(crate) use advise::AdviseArgs;
 pub(crate) use analyze::AnalyzeArgs;
 pub(crate) use bench::BenchArgs;
 pub(crate) use gains::GainsArgs;
+pub(crate) use identify::IdentifyArgs;
 pub(crate) use linear::LinearArgs;
 pub(crate) use linear_analysis::LinearAnalysisArgs;
 pub(crate) use linear_simulation::LinearSimulationArgs;
@@ -78,6 +80,8 @@ Examples:
                                              an audit of the step of your simulator
   libration gains --mujoco robot.xml --dt 0.005
                                              the largest gains of its servos
+  libration identify log.csv --command cmd --response q
+                                             dead time and lag of a real loop, from its log
   libration rollout --out data --transitions 1e8
                                              a data set of rollouts, as Parquet
   libration bench                            speed of simulations on this machine
@@ -99,6 +103,8 @@ pub(crate) enum Command {
     Probe(ProbeArgs),
     /// Check whether gains of servos hold at a time step, and with which integrator
     Gains(GainsArgs),
+    /// Identify dead time, lag, gain and noise of a loop from a log of its commands and responses
+    Identify(IdentifyArgs),
     /// Simulate one or many trajectories and write them as rows
     Simulate(SimulateArgs),
     /// Write a data set of rollouts, or resume an interrupted one

@@ -13,6 +13,7 @@ mod disagreements;
 mod equation_file;
 mod equation_loop;
 mod gains;
+mod identify;
 mod lab;
 mod linear_closed_loop;
 mod list;
@@ -42,6 +43,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::Verify(args) => rollout::verify(&args, arguments.quiet),
         Command::Bench(args) => bench::run(&args, arguments.quiet),
         Command::Gains(args) => gains::run(&args),
+        Command::Identify(args) => identify::run(&args, arguments.quiet),
         Command::Probe(args) => probe::run(&args, arguments.quiet),
         Command::MeasureJitter(args) => measure_jitter::run(&args, arguments.quiet),
         Command::List(args) => list::run(&args),

@@ -1,0 +1,204 @@
+//! `libration identify`.
+
+use std::fmt::Write as _;
+
+use libration_identify::{
+    Identification, IdentifyError, KnownPlant, Recording, Request, ResponseKind, identify,
+    interval, loop_file, page, with_unit,
+};
+use libration_logs::{Log, ReadOptions};
+use libration_report::notation::number;
+use libration_settings::linear_loop::read_plant;
+use libration_work::Work;
+
+use super::advise::command_line;
+use super::result_file::ResultFile;
+use crate::args::IdentifyArgs;
+use crate::error::Failure;
+use crate::progress::Reporter;
+use crate::{interrupt, terminal};
+
+/// Identifies a loop from a log and prints its numbers.
+pub(crate) fn run(args: &IdentifyArgs, quiet: bool) -> Result<(), Failure> {
+    let stop = interrupt::listen();
+    let request = request(args)?;
+    let recording = recording(args)?;
+    let page_file = ResultFile::create("--page", args.page.as_deref())?;
+    let saved = ResultFile::create("--save-loop", args.save_loop.as_deref())?;
+    let reporter = Reporter::new(quiet);
+    let found = identify(&recording, &request, &Work::new(&reporter, stop));
+    reporter.clear();
+    let mut found = found.map_err(failure)?;
+    found.repeat_command = command_line();
+    let text = match args.json {
+        true => serde_json::to_string_pretty(&found).map_err(Failure::run)? + "\n",
+        false => describe(&found),
+    };
+    terminal::print(&text)?;
+    saved.write(|| loop_file(&found))?;
+    page_file.write(|| page(&found))
+}
+
+fn failure(error: IdentifyError) -> Failure {
+    match error {
+        IdentifyError::Interrupted(_) => Failure::Interrupted("interrupted".into()),
+        IdentifyError::Value { name, value, expected } => {
+            let option = format!("--{}", name.replace(' ', "-"));
+            Failure::usage(format!("{option} is {value}; expected {expected}"))
+        }
+        error => Failure::usage(error),
+    }
+}
+
+fn request(args: &IdentifyArgs) -> Result<Request, Failure> {
+    let responses = match &args.plant {
+        None => args.model.0.clone(),
+        Some(_) => vec![ResponseKind::Plant(Box::new(plant(args)?))],
+    };
+    Ok(Request {
+        responses,
+        noises: args.noise.0.clone(),
+        holds: args.hold.0.clone(),
+        dead_time: args.dead_time,
+        lag: args.lag,
+        gain: args.gain,
+        largest_dead_time: args.largest_dead_time,
+        arrivals: !args.certain_arrivals,
+        bootstrap: args.bootstrap,
+        seed: args.seed,
+    })
+}
+
+/// The signals of the options.
+fn recording(args: &IdentifyArgs) -> Result<Recording, Failure> {
+    let path = args.log.display();
+    let options = ReadOptions { time: args.time.clone(), ..ReadOptions::default() };
+    let log = Log::open(&args.log, &options)
+        .map_err(|error| Failure::usage(format!("cannot read `{path}`: {error}")))?;
+    let series = |option: &str, name: &str| {
+        log.series(name).map_err(|error| Failure::usage(format!("`{path}` ({option}): {error}")))
+    };
+    let command = series("--command", &args.command)?;
+    let response = series("--response", &args.response)?;
+    Recording::new(&command.time, &command.values, &response.time, &response.values)
+        .map_err(|error| Failure::usage(format!("`{path}`: {error}")))
+}
+
+/// The channel of the plant of the options.
+fn plant(args: &IdentifyArgs) -> Result<KnownPlant, Failure> {
+    let Some(path) = &args.plant else {
+        return Err(Failure::usage("--plant is missing; expected a file"));
+    };
+    let plant = read_plant(path)
+        .and_then(|table| table.plant().map_err(|fault| fault.to_string()))
+        .map_err(|why| {
+            Failure::usage(format!("cannot use `{}` (--plant): {why}", path.display()))
+        })?;
+    let place = |option: &str, of: &str, wanted: &Option<String>, names: Vec<&str>| match wanted {
+        None if names.len() == 1 => Ok(0),
+        None => Err(Failure::usage(format!(
+            "{option} is missing; expected one of the {of} {}",
+            names.join(", ")
+        ))),
+        Some(wanted) => names.iter().position(|name| name == wanted).ok_or_else(|| {
+            Failure::usage(format!("{option} is {wanted}; expected one of {}", names.join(", ")))
+        }),
+    };
+    let names = |signals: &'_ [libration::linear::Signal]| -> Vec<String> {
+        signals.iter().map(|signal| signal.name.clone()).collect()
+    };
+    let (inputs, outputs) = (names(&plant.inputs), names(&plant.outputs));
+    let input = place(
+        "--plant-input",
+        "inputs",
+        &args.plant_input,
+        inputs.iter().map(String::as_str).collect(),
+    )?;
+    let output = place(
+        "--plant-output",
+        "outputs",
+        &args.plant_output,
+        outputs.iter().map(String::as_str).collect(),
+    )?;
+    KnownPlant::new(&plant, input, output).ok_or_else(|| {
+        Failure::usage("the plant (--plant) is sampled; expected one in continuous time")
+    })
+}
+
+/// The result as text.
+fn describe(found: &Identification) -> String {
+    let mut text = format!("{}\n", found.answer);
+    for warning in &found.warnings {
+        let _ = writeln!(text, "warning: {warning}");
+    }
+    let _ = writeln!(text, "\n{:<32} {:>14}   95 % interval", "number", "estimate");
+    for parameter in &found.parameters {
+        let value = with_unit(parameter.value, &parameter.unit);
+        let _ = writeln!(text, "{:<32} {value:>14}   {}", parameter.name, interval(parameter));
+    }
+    if let Some(correlation) = found.correlation {
+        let _ = writeln!(
+            text,
+            "\nthe errors of dead time and lag have the correlation {correlation:.2} with this command"
+        );
+        excitations(found, &mut text);
+    }
+    let tests = &found.residuals;
+    let _ = writeln!(
+        text,
+        "\nresiduals: independent p = {}, of earlier commands p = {}, feedback p = {}",
+        number(tests.whiteness, 2),
+        number(tests.command, 2),
+        number(tests.feedback, 2)
+    );
+    for row in &found.arrivals {
+        let numbers: Vec<String> =
+            row.parameters.iter().map(|(key, x)| format!("{key} {}", number(*x, 3))).collect();
+        let _ = writeln!(
+            text,
+            "arrivals {:<12} excess of Bayes' criterion {:>10}  {}",
+            row.law,
+            number(row.excess, 4),
+            numbers.join(", ")
+        );
+    }
+    for row in &found.bootstrap {
+        let unit = found.parameter(&row.key).map_or("", |parameter| &*parameter.unit);
+        let _ = writeln!(
+            text,
+            "simulated logs: {:<16} {} to {}{}",
+            row.key,
+            with_unit(row.low, unit),
+            with_unit(row.high, unit),
+            row.ratio.map_or_else(String::new, |ratio| format!(
+                "; {} times the standard error of Fisher's information",
+                number(ratio, 3)
+            )),
+        );
+    }
+    let _ = writeln!(text, "repeat with: {}", found.repeat_command);
+    text
+}
+
+/// The command that would tell most.
+fn excitations(found: &Identification, text: &mut String) {
+    let own = found.excitations.first().and_then(|row| row.dead_time_error);
+    let others = found.excitations.iter().skip(1).filter(|row| row.dead_time_error.is_some());
+    let best = others.min_by(|a, b| {
+        let error = |row: &libration_identify::ExcitationRow| {
+            let [first, second] = [row.dead_time_error, row.lag_error];
+            first.unwrap_or(f64::INFINITY) + second.unwrap_or(0.0)
+        };
+        error(a).total_cmp(&error(b))
+    });
+    let (Some(own), Some(best)) = (own, best) else { return };
+    if let Some(error) = best.dead_time_error.filter(|&error| error < 0.8 * own) {
+        let _ = writeln!(
+            text,
+            "{} of the same size would tell the dead time to {} in place of {} (standard errors)",
+            best.command,
+            with_unit(error, "s"),
+            with_unit(own, "s")
+        );
+    }
+}

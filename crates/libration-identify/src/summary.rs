@@ -1,0 +1,75 @@
+//! An identification in sentences.
+
+use libration_report::notation::number;
+
+use crate::identification::{Estimated, Identification};
+use crate::response::ResponseKind;
+
+/// A time with three digits.
+pub fn seconds(time: f64) -> String {
+    let size = time.abs();
+    match size {
+        0.0 => "0 s".to_owned(),
+        s if s >= 1.0 => format!("{} s", number(time, 4)),
+        s if s >= 1e-3 => format!("{} ms", number(time * 1e3, 4)),
+        s if s >= 1e-6 => format!("{} µs", number(time * 1e6, 4)),
+        _ => format!("{} ns", number(time * 1e9, 4)),
+    }
+}
+
+/// A value with its unit.
+pub fn with_unit(value: f64, unit: &str) -> String {
+    match unit {
+        "s" => seconds(value),
+        "" => number(value, 4),
+        unit => format!("{} {unit}", number(value, 4)),
+    }
+}
+
+/// The interval of a parameter in words; empty for a given number.
+pub fn interval(parameter: &Estimated) -> String {
+    let Some(interval) = parameter.interval else { return String::new() };
+    let low = with_unit(interval.low, &parameter.unit);
+    match interval.high {
+        Some(high) => format!("{low} to {}", with_unit(high, &parameter.unit)),
+        None => format!("{low} or more"),
+    }
+}
+
+/// The answer.
+pub(crate) fn answer(found: &Identification) -> String {
+    let mut numbers: Vec<String> = Vec::new();
+    for parameter in &found.parameters {
+        let is_noise = matches!(
+            &*parameter.key,
+            "load" | "noise_std" | "coloured_std" | "correlation_time" | "disturbance"
+        );
+        if is_noise {
+            continue;
+        }
+        let value = with_unit(parameter.value, &parameter.unit);
+        numbers.push(match parameter.interval {
+            Some(_) => format!("{} {value} ({})", parameter.name, interval(parameter)),
+            None => format!("{} {value}", parameter.name),
+        });
+    }
+    let form = ResponseKind::SIMPLE.iter().find(|kind| kind.name() == found.response).map_or(
+        "a lag of first order after a dead time, before the given plant",
+        ResponseKind::in_words,
+    );
+    let verdict = match found.is_contradicted {
+        false => "The residuals do not contradict the model.",
+        true => "The residuals contradict the model: its intervals cannot be trusted.",
+    };
+    let mut text = format!(
+        "The response is {form}: {}. The noise is {}. {verdict}",
+        numbers.join(", "),
+        found.noise.in_words()
+    );
+    if let Some(correlation) = found.correlation.filter(|correlation| *correlation < -0.9) {
+        text += &format!(
+            " This command hardly tells dead time and lag apart (correlation {correlation:.2}); their sum is known better."
+        );
+    }
+    text
+}
