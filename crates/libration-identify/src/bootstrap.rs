@@ -54,7 +54,7 @@ pub(crate) fn bootstrap(
     Ok(found.into_iter().flatten().collect())
 }
 
-/// The loop of an estimate, without the jitter of its arrivals where there is none.
+/// The loop of an estimate.
 pub(crate) fn simulated(estimate: &Estimate) -> SimulatedLoop {
     let coefficients = &estimate.regression.coefficients;
     let plain = SimulatedLoop {
@@ -62,7 +62,6 @@ pub(crate) fn simulated(estimate: &Estimate) -> SimulatedLoop {
         load: coefficients[1],
         start: coefficients[2..].to_vec(),
         hold: estimate.model.hold,
-        jitter: estimate.jitter(),
         ..SimulatedLoop::new(estimate.model.response.clone(), &estimate.point.shape)
     };
     plain.with_noise(estimate.point.noise, estimate.variance().sqrt())

@@ -2,11 +2,12 @@
 
 use serde::Serialize;
 
+use crate::arrivals::{ArrivalFit, ArrivalLaw};
 use crate::estimate::Estimate;
 use crate::hold::Hold;
 use crate::noise::NoiseKind;
 
-/// A tried form of response and noise.
+/// A tried model.
 #[derive(Clone, Debug, Serialize)]
 pub struct CandidateRow {
     /// The name of the form of the response.
@@ -15,7 +16,9 @@ pub struct CandidateRow {
     pub hold: Hold,
     /// The kind of noise.
     pub noise: NoiseKind,
-    /// The dead time in s.
+    /// How commands arrive: `certain`, `jitter`, `loss` or `two-delays`.
+    pub arrivals: &'static str,
+    /// The dead time in s; the shorter one of two.
     pub dead_time: f64,
     /// The second parameter: lag or time constant in s.
     pub second: Option<f64>,
@@ -23,34 +26,38 @@ pub struct CandidateRow {
     pub parameters: usize,
     /// The log likelihood.
     pub log_likelihood: f64,
-    /// How much larger Bayes' information criterion is than that of the best form.
+    /// Bayes' information criterion less that of the best model.
     pub excess: f64,
 }
 
 impl CandidateRow {
-    pub(crate) fn new(estimate: &Estimate, best: f64) -> Self {
+    /// The row of a model in which all commands arrive.
+    pub(crate) fn certain(estimate: &Estimate) -> Self {
         CandidateRow {
             response: estimate.model.response.name(),
             hold: estimate.model.hold,
             noise: estimate.model.noise,
+            arrivals: ArrivalLaw::Certain.name(),
             dead_time: estimate.point.shape[0],
             second: estimate.point.shape.get(1).copied(),
             parameters: estimate.parameters(),
             log_likelihood: estimate.log_likelihood,
-            excess: estimate.criterion() - best,
+            excess: estimate.criterion(),
         }
     }
-}
 
-/// A tried law of arrivals.
-#[derive(Clone, Debug, Serialize)]
-pub struct ArrivalRow {
-    /// `certain`, `jitter`, `loss` or `two-delays`.
-    pub law: &'static str,
-    /// What it adds, by key.
-    pub parameters: Vec<(String, f64)>,
-    /// The log likelihood.
-    pub log_likelihood: f64,
-    /// How much larger Bayes' information criterion is than that of the best law.
-    pub excess: f64,
+    /// The row of a law of arrivals, by its gain over `certain` arrivals in the same filter.
+    pub(crate) fn random(base: &Estimate, fit: &ArrivalFit, certain: &ArrivalFit) -> Self {
+        let count = base.regression.residuals.len();
+        let gained = certain.criterion(count) - fit.criterion(count);
+        CandidateRow {
+            arrivals: fit.law.name(),
+            dead_time: fit.model.shape[0],
+            second: fit.model.shape.get(1).copied(),
+            parameters: fit.parameters,
+            log_likelihood: base.log_likelihood + fit.log_likelihood - certain.log_likelihood,
+            excess: base.criterion() - gained,
+            ..CandidateRow::certain(base)
+        }
+    }
 }

@@ -1,8 +1,8 @@
 //! The point of greatest likelihood.
 
+use crate::hold::Hold;
 use crate::minimum::simplex;
 use crate::model::{Model, Point};
-use crate::noise::NoiseKind;
 use crate::recording::Recording;
 use crate::regression::Regression;
 use crate::whitening::Window;
@@ -21,9 +21,12 @@ pub(crate) struct Estimate {
 /// Most dead times of the first search.
 const DEAD_TIMES: usize = 96;
 /// Responses of the first search.
-const SEARCHED: usize = 4000;
+const SEARCHED: usize = 1500;
 /// Starts of the second search.
 const STARTS: usize = 3;
+/// A difference of Bayes' criterion that is strong evidence (R. E. Kass and A. E. Raftery, Journal of the American Statistical Association
+/// 90, 1995).
+pub(crate) const STRONG: f64 = 6.0;
 /// The log likelihood is known to this.
 pub(crate) const TOLERANCE: f64 = 1e-7;
 
@@ -38,7 +41,9 @@ impl Estimate {
             ..recording.clone()
         };
         let searched = Window { recording: &short, ..window };
-        let grid = (0.5 * model.interval).max(model.longest / DEAD_TIMES as f64);
+        // Of three parameters each has fewer values.
+        let dead_times = if model.known.len() > 2 { DEAD_TIMES / 3 } else { DEAD_TIMES };
+        let grid = (0.5 * model.interval).max(model.longest / dead_times as f64);
         let mut tried: Vec<(f64, Vec<f64>)> = Vec::new();
         let counts = (model.longest / grid).floor() as usize;
         for shape in shapes(model, recording) {
@@ -70,7 +75,7 @@ impl Estimate {
         let fits = starts.iter().map(|shape| {
             let mut cost = |coordinates: &[f64]| model.cost(searched, coordinates);
             let scales = model.shape_scales(shape, 0.5 * grid);
-            simplex(&mut cost, &model.free(shape), &scales, TOLERANCE)
+            simplex(&mut cost, &model.free(shape), &scales, 1e-3)
         });
         let best = fits.min_by(|a, b| a.value.total_cmp(&b.value))?;
         Self::from_start(model, recording, &best.point, 0.2 * grid)
@@ -92,7 +97,7 @@ impl Estimate {
             *scale *= 0.5;
         }
         let mut cost = |coordinates: &[f64]| model.cost(window, coordinates);
-        let first = simplex(&mut cost, start, &scales, TOLERANCE);
+        let first = simplex(&mut cost, start, &scales, 1e-3);
         // A simplex can collapse; a fresh one finds what is left.
         let scales: Vec<f64> = scales.iter().map(|scale| -0.3 * scale).collect();
         let found = simplex(&mut cost, &first.point, &scales, TOLERANCE);
@@ -117,7 +122,7 @@ impl Estimate {
         })
     }
 
-    /// The fit of the same response with another noise, or with jitter, from this one.
+    /// The fit of the same response with another noise, from this one.
     pub(crate) fn extended(&self, model: &Model, recording: &Recording) -> Option<Estimate> {
         let mut start = model.free(&self.point.shape);
         start.extend(model.noise_start().0);
@@ -129,10 +134,18 @@ impl Estimate {
         self.model.coordinates() + self.regression.solved + 1
     }
 
+    /// Whether the response has states.
+    pub(crate) fn has_states(&self) -> bool {
+        self.regression.coefficients.len() > 2
+    }
+
     /// Bayes' information criterion, lower for the better model (G. Schwarz, Annals of Statistics 6, 1978).
+    ///
+    /// Receivers hold commands: that they draw lines takes strong evidence.
     pub(crate) fn criterion(&self) -> f64 {
         let count = self.regression.residuals.len() as f64;
-        self.parameters() as f64 * count.ln() - 2.0 * self.log_likelihood
+        let doubt = if self.model.hold == Hold::Linear { STRONG } else { 0.0 };
+        self.parameters() as f64 * count.ln() - 2.0 * self.log_likelihood + doubt
     }
 
     /// The variance of the noise, corrected for the estimated coefficients.
@@ -146,21 +159,17 @@ impl Estimate {
     pub(crate) fn white_deviation(&self) -> f64 {
         (self.variance() * self.point.noise.white).sqrt()
     }
-
-    /// The root mean square of arrivals about their mean, in s.
-    pub(crate) fn jitter(&self) -> f64 {
-        let gain = self.regression.coefficients[0].abs();
-        (self.point.noise.jitter * self.variance()).sqrt() / gain
-    }
 }
 
 /// Parameters behind the dead time with which a search begins.
 fn shapes(model: &Model, recording: &Recording) -> Vec<Vec<f64>> {
     let (interval, span) = (model.interval, recording.span());
     // From less than an interval to a part of the recording, four per decade.
-    let count = (4.0 * (0.2 * span / interval).log10()).ceil().clamp(1.0, 24.0) as i32;
-    let times = (0..=count).map(|i| 0.5 * interval * 10.0_f64.powf(f64::from(i) / 4.0));
-    let zetas = [0.1, 0.4, 0.9, 2.0];
+    let per_decade = if model.known.len() > 2 { 3.0 } else { 4.0 };
+    let decades = (0.2 * span / interval).log10().clamp(0.0, 6.0);
+    let count = (per_decade * decades).ceil() as i32;
+    let times = (0..=count).map(|i| 0.5 * interval * 10.0_f64.powf(f64::from(i) / per_decade));
+    let zetas = [0.15, 0.6, 1.5];
     let all: Vec<Vec<f64>> = match model.response.parameters().len() {
         1 => vec![vec![0.0]],
         2 => [0.0].into_iter().chain(times).map(|time| vec![0.0, time]).collect(),
@@ -172,23 +181,4 @@ fn shapes(model: &Model, recording: &Recording) -> Vec<Vec<f64>> {
     let mut all: Vec<Vec<f64>> = all.into_iter().map(with_known).collect();
     all.dedup();
     all
-}
-
-/// The fits of a response with each kind of noise, the best first.
-pub(crate) fn with_each_noise(
-    white: &Estimate,
-    recording: &Recording,
-    kinds: &[NoiseKind],
-) -> Vec<Estimate> {
-    let mut fits: Vec<Estimate> = kinds
-        .iter()
-        .filter_map(|&noise| match noise {
-            NoiseKind::White => Some(white.clone()),
-            // A disturbance of a plant without states is an error of the measurement.
-            NoiseKind::Disturbance if white.model.response.name() == "delay" => None,
-            _ => white.extended(&Model { noise, ..white.model.clone() }, recording),
-        })
-        .collect();
-    fits.sort_by(|a, b| a.criterion().total_cmp(&b.criterion()));
-    fits
 }

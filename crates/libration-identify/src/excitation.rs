@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::arrivals::spread;
 use crate::estimate::Estimate;
 use crate::information::information;
 use crate::recording::Recording;
@@ -28,7 +29,7 @@ const DWELLS: [usize; 6] = [1, 2, 4, 8, 16, 64];
 pub(crate) fn excitations(estimate: &Estimate, recording: &Recording) -> Vec<ExcitationRow> {
     let mut rows = vec![row(estimate, recording, "that of the recording".to_owned(), None)];
     let interval = estimate.model.interval;
-    let size = deviation(&recording.commands);
+    let size = spread(&recording.commands);
     let end = recording.response_times[recording.response_times.len() - 1];
     for dwell in DWELLS {
         let dwell = dwell as f64 * interval;
@@ -36,7 +37,6 @@ pub(crate) fn excitations(estimate: &Estimate, recording: &Recording) -> Vec<Exc
             continue;
         }
         let count = (end / dwell).ceil() as usize + 1;
-        // In the middle of an interval, where samples follow an arrival on both sides.
         let command_times: Vec<f64> = (0..count).map(|k| k as f64 * dwell).collect();
         let designed = Recording {
             commands: random_signs(count).iter().map(|sign| sign * size).collect(),
@@ -79,11 +79,6 @@ fn random_signs(count: usize) -> Vec<f64> {
             if bit == 1 { 1.0 } else { -1.0 }
         })
         .collect()
-}
-
-fn deviation(values: &[f64]) -> f64 {
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
 }
 
 fn significant(x: f64) -> String {

@@ -3,6 +3,8 @@
 //! A response is a plant behind a dead time: `ẋ = A x + B (K u(t − τ) + b)`, `y = C x + e`, sampled at any times. Its likelihood is exact,
 //! for a dead time that is any part of a period. [`identify`] maximises it.
 
+mod arrival_filter;
+mod arrival_parameters;
 mod arrivals;
 mod bootstrap;
 mod candidate;
@@ -18,6 +20,7 @@ mod minimum;
 mod model;
 mod noise;
 mod page;
+mod parameters;
 mod plant_step;
 mod quantiles;
 mod recording;
@@ -32,15 +35,16 @@ mod warnings;
 mod whitening;
 
 pub use bootstrap::BootstrapRow;
-pub use candidate::{ArrivalRow, CandidateRow};
+pub use candidate::CandidateRow;
 pub use excitation::ExcitationRow;
 pub use hold::Hold;
-pub use identification::{Estimated, FitSeries, Identification, identify};
+pub use identification::{FitSeries, Identification, identify};
 pub use interval::Interval;
 pub use likelihood_map::LikelihoodMap;
 pub use loop_file::loop_file;
 pub use noise::NoiseKind;
 pub use page::page;
+pub use parameters::Estimated;
 pub use quantiles::LEVEL;
 pub use recording::{FEWEST_RESPONSES, Recording, RecordingError};
 pub use request::{IdentifyError, MOST_BOOTSTRAPS, MOST_RESPONSES, Request};

@@ -4,7 +4,8 @@ use core::fmt::Write as _;
 
 use libration_report::notation::number;
 
-use crate::identification::{Estimated, Identification};
+use crate::identification::Identification;
+use crate::parameters::Estimated;
 use crate::summary::{interval, seconds};
 
 /// The file `loop.toml`: the identified plant with its latency, and a controller to edit.

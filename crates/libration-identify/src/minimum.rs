@@ -11,7 +11,7 @@ pub(crate) struct Minimum {
 const MOST_CALLS: usize = 250;
 
 /// The minimum near `start` that a simplex of the size `scales` finds (J. A. Nelder and R. Mead, *A simplex method for function
-/// minimization*, Computer Journal 7, 1965), until its values differ by less than `tolerance` and its points by little.
+/// minimization*, Computer Journal 7, 1965), until its values differ by less than `tolerance`, and its points by little.
 pub(crate) fn simplex(
     f: &mut dyn FnMut(&[f64]) -> f64,
     start: &[f64],
@@ -32,12 +32,15 @@ pub(crate) fn simplex(
         point[i] += scales[i];
         points.push(Minimum { value: value(&point), point });
     }
+    // The cost of a minimum rises with the square of the distance.
+    let size = tolerance.sqrt().clamp(1e-5, 0.05);
     let mut calls = 0;
     while calls < MOST_CALLS * n {
         points.sort_by(|a, b| a.value.total_cmp(&b.value));
         let spread = points[n].value - points[0].value;
         let is_small = (0..n).all(|i| {
-            let differs = |p: &Minimum| (p.point[i] - points[0].point[i]).abs() > 1e-5 * scales[i];
+            let differs =
+                |p: &Minimum| (p.point[i] - points[0].point[i]).abs() > size * scales[i].abs();
             !points.iter().any(differs)
         });
         if spread <= tolerance && (is_small || spread == 0.0) || is_small && spread.is_nan() {

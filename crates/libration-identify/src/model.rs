@@ -13,8 +13,6 @@ pub(crate) struct Model {
     pub(crate) response: ResponseKind,
     pub(crate) hold: Hold,
     pub(crate) noise: NoiseKind,
-    /// The root mean square of arrivals about their mean is free, in units of this many standard deviations of the noise per second.
-    pub(crate) jitter: Option<f64>,
     /// The gain, if it is known.
     pub(crate) gain: Option<f64>,
     /// Known parameters of the response, in their order.
@@ -30,8 +28,6 @@ pub(crate) struct Model {
 pub(crate) struct Point {
     pub(crate) shape: Vec<f64>,
     pub(crate) noise: Noise,
-    /// Root mean square of arrivals, in the units of the model.
-    pub(crate) jitter: f64,
 }
 
 /// A time constant this much shorter than an interval of the responses cannot be told from none.
@@ -45,7 +41,7 @@ impl Model {
 
     /// The number of coordinates of a point.
     pub(crate) fn coordinates(&self) -> usize {
-        self.free_shape() + self.noise_coordinates() + usize::from(self.jitter.is_some())
+        self.free_shape() + self.noise_coordinates()
     }
 
     fn noise_coordinates(&self) -> usize {
@@ -56,18 +52,13 @@ impl Model {
         }
     }
 
-    /// The coordinates of noise and jitter at which a search begins, and its first steps.
+    /// The coordinates of noise at which a search begins, and its first steps.
     pub(crate) fn noise_start(&self) -> (Vec<f64>, Vec<f64>) {
-        let (mut start, mut scales) = match self.noise {
+        match self.noise {
             NoiseKind::White => (Vec::new(), Vec::new()),
             NoiseKind::Coloured => (vec![0.0, 1.5], vec![1.0, 0.7]),
             NoiseKind::Disturbance => (vec![0.0], vec![1.5]),
-        };
-        if self.jitter.is_some() {
-            start.push(0.3 * self.interval);
-            scales.push(0.2 * self.interval);
         }
-        (start, scales)
     }
 
     /// First steps of a search in the free parameters of the response, around `shape`.
@@ -132,15 +123,7 @@ impl Model {
                 noise.disturbance = intensity.exp() * self.interval;
             }
         }
-        let mut jitter = 0.0;
-        if let Some(unit) = self.jitter {
-            jitter = free.next()?.abs();
-            if jitter > self.longest {
-                return None;
-            }
-            noise.jitter = (unit * jitter).powi(2);
-        }
-        Some(Point { shape, noise, jitter })
+        Some(Point { shape, noise })
     }
 
     /// The innovations of a window at a point.
@@ -163,6 +146,6 @@ impl Model {
     /// The part of a recording that every dead time of the model predicts from known commands.
     pub(crate) fn window<'a>(&self, recording: &'a Recording) -> Window<'a> {
         let first = recording.response_times.partition_point(|&time| time < self.longest);
-        Window { recording, first, hold: self.hold }
+        Window { recording, first, hold: self.hold, interval: self.interval }
     }
 }

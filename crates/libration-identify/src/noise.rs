@@ -50,16 +50,14 @@ pub(crate) struct Noise {
     pub(crate) correlation_time: f64,
     /// The intensity of the disturbance at the input of the plant.
     pub(crate) disturbance: f64,
-    /// The variance of an arrival times the square of the gain.
-    pub(crate) jitter: f64,
 }
 
 impl Noise {
     pub(crate) const WHITE: Noise =
-        Noise { white: 1.0, coloured: 0.0, correlation_time: 1.0, disturbance: 0.0, jitter: 0.0 };
+        Noise { white: 1.0, coloured: 0.0, correlation_time: 1.0, disturbance: 0.0 };
 
     /// Whether the states of the plant are random.
     pub(crate) fn moves_plant(&self) -> bool {
-        self.disturbance > 0.0 || self.jitter > 0.0
+        self.disturbance > 0.0
     }
 }

@@ -1,7 +1,7 @@
 //! An identification as an HTML page.
 
 use libration_report::figure::{Axis, Colors, Figure, Grid, Mark, Panel};
-use libration_report::notation::{number, plural};
+use libration_report::notation::plural;
 use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 use libration_report::report;
@@ -194,6 +194,7 @@ fn candidates(page: &mut Page, found: &Identification) {
             row.response.into(),
             row.hold.name().into(),
             row.noise.name().into(),
+            row.arrivals.into(),
             seconds(row.dead_time).into(),
             row.second.map_or_else(|| Cell::absent("—"), |x| seconds(x).into()),
             Cell::rounded(row.log_likelihood, 6),
@@ -201,23 +202,6 @@ fn candidates(page: &mut Page, found: &Identification) {
         ]);
     }
     page.table(&table, 4);
-    if found.arrivals.len() > 1 {
-        let mut table = Table::new(
-            "arrivals",
-            &["arrivals of commands", "numbers", "log likelihood", "excess of Bayes' criterion"],
-        );
-        for row in &found.arrivals {
-            let numbers: Vec<String> =
-                row.parameters.iter().map(|(key, x)| format!("{key} {}", number(*x, 4))).collect();
-            table.push([
-                row.law.into(),
-                numbers.join(", ").into(),
-                Cell::rounded(row.log_likelihood, 6),
-                Cell::rounded(row.excess, 3),
-            ]);
-        }
-        page.table(&table, 4);
-    }
 }
 
 fn repeats(page: &mut Page, found: &Identification) {

@@ -20,3 +20,14 @@ pub(crate) fn chi_squared_tail(x: f64, freedom: f64) -> f64 {
 pub(crate) fn normal_tails(x: f64) -> f64 {
     Normal::new(0.0, 1.0).map_or(1.0, |law| 2.0 * law.sf(x.abs()))
 }
+
+/// The probability that a normal number is below `x`.
+pub(crate) fn normal_probability(x: f64) -> f64 {
+    Normal::new(0.0, 1.0).map_or(0.5, |law| law.cdf(x))
+}
+
+/// The normal number below which a number is with this probability; finite also for probabilities that round to 0 and 1.
+pub(crate) fn normal_quantile(probability: f64) -> f64 {
+    let inside = probability.clamp(1e-16, 1.0 - 1e-16);
+    Normal::new(0.0, 1.0).map_or(0.0, |law| law.inverse_cdf(inside))
+}

@@ -35,8 +35,20 @@ impl ResidualTests {
         self.whiteness < CONTRADICTION || self.command < CONTRADICTION
     }
 
-    pub(crate) fn new(estimate: &Estimate, recording: &Recording) -> Self {
-        let residuals = &estimate.regression.residuals;
+    /// Whether another law of arrivals may explain more.
+    pub(crate) fn are_suspect(&self) -> bool {
+        self.contradict() || (self.normality < CONTRADICTION && self.excess_kurtosis > 0.0)
+    }
+
+    /// The tests of a fit.
+    pub(crate) fn of(estimate: &Estimate, recording: &Recording) -> Self {
+        let used = estimate.model.coordinates() - estimate.model.free_shape();
+        let first = estimate.model.window(recording).first;
+        Self::new(&estimate.regression.residuals, used, first, recording)
+    }
+
+    /// The tests of residuals of a model whose noise has `used` parameters, for the responses from the `first` on.
+    pub(crate) fn new(residuals: &[f64], used: usize, first: usize, recording: &Recording) -> Self {
         let n = residuals.len();
         let lags = LAGS.min(n / 5);
         let mean = residuals.iter().sum::<f64>() / n as f64;
@@ -51,9 +63,8 @@ impl ResidualTests {
             (1..=lags).map(|lag| correlation(lag).powi(2) / (n - lag) as f64).sum::<f64>()
                 * count
                 * (count + 2.0);
-        let used = estimate.model.coordinates() - estimate.model.free_shape();
         let whiteness = chi_squared_tail(statistic, lags.saturating_sub(used) as f64);
-        let changes = changes(estimate, recording);
+        let changes = changes(first, recording);
         let command = cross(&centred, &changes, 1..lags + 1, false);
         let feedback = cross(&centred, &changes, 0..lags, true);
         let variance = square / count;
@@ -71,8 +82,7 @@ impl ResidualTests {
 }
 
 /// The change of the command between one response and the next.
-fn changes(estimate: &Estimate, recording: &Recording) -> Vec<f64> {
-    let first = estimate.model.window(recording).first;
+fn changes(first: usize, recording: &Recording) -> Vec<f64> {
     let times = &recording.response_times;
     let command = |time: f64| {
         let k = recording.command_times.partition_point(|&t| t <= time);

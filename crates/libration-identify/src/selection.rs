@@ -2,29 +2,31 @@
 
 use libration_work::Work;
 
-use crate::arrivals::{ArrivalFit, ArrivalLaw};
-use crate::candidate::{ArrivalRow, CandidateRow};
-use crate::estimate::{Estimate, with_each_noise};
+use crate::arrivals::{ArrivalFit, ArrivalLaw, ArrivalSearch};
+use crate::candidate::CandidateRow;
+use crate::estimate::Estimate;
 use crate::hold::Hold;
-use crate::identification::Estimated;
 use crate::model::Model;
+use crate::noise::NoiseKind;
 use crate::recording::Recording;
 use crate::request::{IdentifyError, Request};
+use crate::residuals::ResidualTests;
 use crate::response::ResponseKind;
 
 /// The chosen model, and what was tried.
 pub(crate) struct Selection {
+    /// The best fit in which all commands arrive; with random arrivals, the one that they were searched from.
     pub(crate) estimate: Estimate,
+    /// Random arrivals, if they are better.
+    pub(crate) arrivals: Option<ArrivalFit>,
+    /// All tried models, the best first.
     pub(crate) candidates: Vec<CandidateRow>,
-    pub(crate) arrivals: Vec<ArrivalRow>,
-    /// What the best law of arrivals adds, if one is clearly better than certain arrivals.
-    pub(crate) best_arrival: Option<Vec<Estimated>>,
 }
 
-/// A law of arrivals replaces certain ones if Bayes' criterion falls by more: "very strong" evidence of R. E. Kass and A. E. Raftery,
-/// Journal of the American Statistical Association 90, 1995.
-const STRONG: f64 = 10.0;
+/// Forms of response whose noise and arrivals are searched.
+const PURSUED: usize = 3;
 
+/// The model with the least criterion of Bayes: forms of response with white noise first, then noise and arrivals of the best of them.
 pub(crate) fn select(
     recording: &Recording,
     request: &Request,
@@ -37,23 +39,40 @@ pub(crate) fn select(
         .flat_map(|response| request.holds.iter().map(|&hold| (response.clone(), hold)))
         .map(|(response, hold)| model(response, hold, recording, request, largest))
         .collect();
-    let fits = work.sweep("models", &models, |model| {
-        let white = Estimate::search(model, recording);
-        Ok::<_, IdentifyError>(
-            white.map(|white| with_each_noise(&white, recording, &request.noises)),
-        )
+    let white = work.sweep("responses", &models, |model| {
+        Ok::<_, IdentifyError>(Estimate::search(model, recording))
     })?;
-    let mut fits: Vec<Estimate> = fits.into_iter().flatten().flatten().collect();
-    fits.sort_by(|a, b| a.criterion().total_cmp(&b.criterion()));
-    let best = fits.first().ok_or(IdentifyError::NoFit)?.clone();
-    let criterion = best.criterion();
-    let candidates = fits.iter().map(|fit| CandidateRow::new(fit, criterion)).collect();
-    let mut selection =
-        Selection { estimate: best, candidates, arrivals: Vec::new(), best_arrival: None };
-    if request.arrivals && selection.estimate.model.hold == Hold::Zero {
-        arrivals(&mut selection, &fits, recording, work)?;
+    let mut white: Vec<Estimate> = white.into_iter().flatten().collect();
+    by_criterion(&mut white);
+    let mut fits = with_noises(&white, recording, request, work)?;
+    let best = fits.first().ok_or(IdentifyError::NoFit)?;
+    let is_plain = best.model.noise == NoiseKind::White && best.model.hold == Hold::Zero;
+    let is_suspect = !is_plain || ResidualTests::of(best, recording).are_suspect();
+    let mut random = Vec::new();
+    if request.arrivals && is_suspect {
+        let held: Vec<&Estimate> =
+            white.iter().filter(|fit| fit.model.hold == Hold::Zero).take(PURSUED).collect();
+        random = with_arrivals(&held, recording, work)?;
     }
-    Ok(selection)
+    by_criterion(&mut fits);
+    let mut candidates: Vec<CandidateRow> = fits.iter().map(CandidateRow::certain).collect();
+    let mut estimate = fits[0].clone();
+    let mut arrivals = None;
+    let mut least = estimate.criterion();
+    for (base, fit, row) in random {
+        if row.excess < least {
+            least = row.excess;
+            (estimate, arrivals) = (base, Some(fit));
+        }
+        candidates.push(row);
+    }
+    candidates.iter_mut().for_each(|row| row.excess -= least);
+    candidates.sort_by(|a, b| a.excess.total_cmp(&b.excess));
+    Ok(Selection { estimate, arrivals, candidates })
+}
+
+fn by_criterion(fits: &mut [Estimate]) {
+    fits.sort_by(|a, b| a.criterion().total_cmp(&b.criterion()));
 }
 
 fn model(
@@ -63,131 +82,67 @@ fn model(
     request: &Request,
     largest: f64,
 ) -> Model {
-    let known = response
-        .parameters()
-        .iter()
-        .map(|parameter| match parameter.key {
-            "dead_time" => request.dead_time,
-            "lag" => request.lag,
-            _ => None,
-        })
-        .collect();
+    let known = |key: &str| match key {
+        "dead_time" => request.dead_time,
+        "lag" => request.lag,
+        _ => None,
+    };
     Model {
+        known: response.parameters().iter().map(|parameter| known(parameter.key)).collect(),
         response,
         hold,
-        noise: crate::NoiseKind::White,
-        jitter: None,
+        noise: NoiseKind::White,
         gain: request.gain,
-        known,
         longest: largest,
         interval: recording.interval(),
     }
 }
 
-/// Tries losses, two delays and jitter.
-fn arrivals(
-    selection: &mut Selection,
-    fits: &[Estimate],
+/// The fits with each kind of noise, the best first; of the best forms of response only, except with white noise.
+fn with_noises(
+    white: &[Estimate],
     recording: &Recording,
+    request: &Request,
     work: &Work<'_>,
-) -> Result<(), IdentifyError> {
-    let best = selection.estimate.clone();
-    let count = best.regression.residuals.len();
-    // Losses and two delays are tried with white noise, of the best form of response.
-    let white = fits.iter().find(|fit| {
-        fit.model.noise == crate::NoiseKind::White
-            && fit.model.hold == Hold::Zero
-            && fit.model.response == best.model.response
-    });
-    let laws = [ArrivalLaw::Certain, ArrivalLaw::Loss, ArrivalLaw::TwoDelays];
-    let fitted = match white {
-        None => Vec::new(),
-        Some(white) => work.sweep("arrivals", &laws, |&law| {
-            Ok::<_, IdentifyError>(ArrivalFit::new(law, white, recording))
-        })?,
-    };
-    let fitted: Vec<ArrivalFit> = fitted.into_iter().flatten().collect();
-    let jittered = (best.model.response.dynamics(&best.point.shape[1..]).states() > 0)
-        .then(|| {
-            let gain = best.regression.coefficients[0].abs();
-            let unit = gain / best.variance().sqrt();
-            best.extended(&Model { jitter: Some(unit), ..best.model.clone() }, recording)
-        })
-        .flatten();
-    let certain = best.criterion();
-    let mut rows = vec![ArrivalRow {
-        law: "certain",
-        parameters: Vec::new(),
-        log_likelihood: best.log_likelihood,
-        excess: 0.0,
-    }];
-    if let Some(fit) = &jittered {
-        rows.push(ArrivalRow {
-            law: "jitter",
-            parameters: vec![("jitter".to_owned(), fit.jitter())],
-            log_likelihood: fit.log_likelihood,
-            excess: fit.criterion() - certain,
-        });
+) -> Result<Vec<Estimate>, IdentifyError> {
+    let others = request.noises.iter().filter(|&&noise| noise != NoiseKind::White);
+    let jobs: Vec<(&Estimate, NoiseKind)> = others
+        .flat_map(|&noise| white.iter().take(PURSUED).map(move |fit| (fit, noise)))
+        // A disturbance of a plant without states is an error of the measurement.
+        .filter(|(fit, noise)| *noise != NoiseKind::Disturbance || fit.has_states())
+        .collect();
+    let found = work.sweep("noise", &jobs, |&(fit, noise)| {
+        let model = Model { noise, ..fit.model.clone() };
+        Ok::<_, IdentifyError>(fit.extended(&model, recording))
+    })?;
+    let mut fits: Vec<Estimate> = found.into_iter().flatten().collect();
+    if request.noises.contains(&NoiseKind::White) || fits.is_empty() {
+        fits.extend(white.iter().cloned());
     }
-    // Of the same filter with certain arrivals, so that both begin in the same way.
-    let reference = fitted.iter().find(|fit| fit.law == ArrivalLaw::Certain);
-    let reference = reference.map_or(0.0, |fit| fit.criterion(count));
-    let base = white.map_or(0.0, |white| white.criterion() - certain);
-    for fit in fitted.iter().filter(|fit| fit.law != ArrivalLaw::Certain) {
-        let (law, parameters) = match fit.law {
-            ArrivalLaw::Loss => ("loss", vec![("loss".to_owned(), fit.loss)]),
-            _ => (
-                "two-delays",
-                vec![
-                    ("dead_time".to_owned(), fit.shape[0]),
-                    ("second_dead_time".to_owned(), fit.shape[0] + fit.second.0),
-                    ("second_share".to_owned(), fit.second.1),
-                ],
-            ),
-        };
-        rows.push(ArrivalRow {
-            law,
-            parameters,
-            log_likelihood: fit.log_likelihood,
-            excess: base + fit.criterion(count) - reference,
-        });
-    }
-    rows.sort_by(|a, b| a.excess.total_cmp(&b.excess));
-    if rows[0].law != "certain" && rows[0].excess < -STRONG {
-        selection.best_arrival = Some(arrival_parameters(&rows[0]));
-        if rows[0].law == "jitter"
-            && let Some(fit) = jittered
-        {
-            selection.estimate = fit;
-        }
-    }
-    let least = rows[0].excess;
-    rows.iter_mut().for_each(|row| row.excess -= least);
-    selection.arrivals = rows;
-    Ok(())
+    by_criterion(&mut fits);
+    Ok(fits)
 }
 
-fn arrival_parameters(row: &ArrivalRow) -> Vec<Estimated> {
-    let describe = |key: &str| match key {
-        "jitter" => ("jitter of arrivals, rms", "s"),
-        "loss" => ("lost commands", ""),
-        "second_dead_time" => ("longer dead time", "s"),
-        "second_share" => ("share of the longer dead time", ""),
-        _ => ("shorter dead time", "s"),
-    };
-    row.parameters
-        .iter()
-        .map(|(key, value)| {
-            let (name, unit) = describe(key);
-            let key = if key == "dead_time" { "first_dead_time" } else { key };
-            Estimated {
-                key: key.to_owned(),
-                name: name.to_owned(),
-                unit: unit.to_owned(),
-                value: *value,
-                interval: None,
-                standard_error: None,
-            }
-        })
-        .collect()
+/// Jitter, losses and two delays, with white noise.
+fn with_arrivals(
+    held: &[&Estimate],
+    recording: &Recording,
+    work: &Work<'_>,
+) -> Result<Vec<(Estimate, ArrivalFit, CandidateRow)>, IdentifyError> {
+    let laws = ArrivalLaw::ALL;
+    let jobs: Vec<(&Estimate, ArrivalLaw)> =
+        held.iter().flat_map(|&base| laws.map(|law| (base, law))).collect();
+    let found = work.sweep("arrivals", &jobs, |&(base, law)| {
+        let search = ArrivalSearch::new(law, base, recording);
+        Ok::<_, IdentifyError>(search.and_then(|search| search.fit()))
+    })?;
+    let mut rows = Vec::new();
+    for (base, fits) in held.iter().zip(found.chunks(laws.len())) {
+        let [Some(certain), others @ ..] = fits else { continue };
+        for fit in others.iter().flatten() {
+            let row = CandidateRow::random(base, fit, certain);
+            rows.push(((*base).clone(), fit.clone(), row));
+        }
+    }
+    Ok(rows)
 }

@@ -2,7 +2,8 @@
 
 use libration_report::notation::number;
 
-use crate::identification::{Estimated, Identification};
+use crate::identification::Identification;
+use crate::parameters::Estimated;
 use crate::response::ResponseKind;
 
 /// A time with three digits.

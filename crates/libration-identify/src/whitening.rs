@@ -35,6 +35,8 @@ pub(crate) struct Window<'a> {
     /// The first response.
     pub(crate) first: usize,
     pub(crate) hold: Hold,
+    /// The median interval of the responses, in s.
+    pub(crate) interval: f64,
 }
 
 /// The state of the filter.
@@ -60,10 +62,10 @@ pub(crate) fn whiten(
     dead_time: f64,
     noise: Noise,
 ) -> Whitened {
-    let Window { recording, first, hold } = window;
+    let Window { recording, first, hold, interval } = window;
     let (times, values) = (&recording.command_times[..], &recording.commands[..]);
-    let mut filter = Filter::new(plant, noise);
     let mut steps = PlantSteps::new(plant, noise.disturbance > 0.0);
+    let mut filter = Filter::new(plant, noise, &mut steps, interval);
     let count = recording.responses.len() - first;
     let columns = filter.width - 1;
     let mut whitened = Whitened {
@@ -88,7 +90,6 @@ pub(crate) fn whiten(
                     hold.at(times, values, active, now - dead_time),
                 );
                 now = arrival;
-                filter.arrive(values[active + 1] - values[active]);
             }
             active += 1;
         }
@@ -101,7 +102,7 @@ pub(crate) fn whiten(
 }
 
 impl<'a> Filter<'a> {
-    fn new(plant: &'a UnitPlant, noise: Noise) -> Self {
+    fn new(plant: &'a UnitPlant, noise: Noise, steps: &mut PlantSteps<'_>, interval: f64) -> Self {
         let n = plant.states();
         let is_coloured = noise.coloured > 0.0;
         let states = n + usize::from(is_coloured);
@@ -111,6 +112,16 @@ impl<'a> Filter<'a> {
             means[i * width + LOAD + 1 + i] = 1.0;
         }
         let mut covariance = vec![0.0; states * states];
+        if noise.disturbance > 0.0 && n > 0 {
+            // The initial states are known a step before the first response, which would otherwise have no disturbance, and a likelihood
+            // without bound if nothing else is random.
+            let noises = &steps.step(interval).noise;
+            for i in 0..n {
+                for j in 0..n {
+                    covariance[i * states + j] = noise.disturbance * noises[i * n + j];
+                }
+            }
+        }
         if is_coloured {
             covariance[states * states - 1] = noise.coloured;
         }
@@ -189,20 +200,6 @@ impl<'a> Filter<'a> {
             for j in 0..states {
                 self.covariance[i * states + j] =
                     (0..states).map(|k| half[i * states + k] * entry(j, k)).sum();
-            }
-        }
-    }
-
-    /// A command arrives: a shift of its arrival by δ is an impulse of `−δ` times the change at the input.
-    fn arrive(&mut self, change: f64) {
-        if self.noise.jitter == 0.0 {
-            return;
-        }
-        let (n, states) = (self.plant.states(), self.states);
-        for i in 0..n {
-            for j in 0..n {
-                self.covariance[i * states + j] +=
-                    self.noise.jitter * change * change * self.plant.b[i] * self.plant.b[j];
             }
         }
     }

@@ -151,15 +151,22 @@ fn describe(found: &Identification) -> String {
         number(tests.command, 2),
         number(tests.feedback, 2)
     );
-    for row in &found.arrivals {
-        let numbers: Vec<String> =
-            row.parameters.iter().map(|(key, x)| format!("{key} {}", number(*x, 3))).collect();
+    let _ = writeln!(
+        text,
+        "\n{:<16} {:<8} {:<12} {:<12} {:>12} {:>12} {:>24}",
+        "response", "hold", "noise", "arrivals", "dead time", "lag", "excess of Bayes' criterion"
+    );
+    for row in found.candidates.iter().take(5) {
         let _ = writeln!(
             text,
-            "arrivals {:<12} excess of Bayes' criterion {:>10}  {}",
-            row.law,
-            number(row.excess, 4),
-            numbers.join(", ")
+            "{:<16} {:<8} {:<12} {:<12} {:>12} {:>12} {:>24}",
+            row.response,
+            row.hold.name(),
+            row.noise.name(),
+            row.arrivals,
+            with_unit(row.dead_time, "s"),
+            row.second.map_or_else(|| "-".to_owned(), |second| with_unit(second, "s")),
+            number(row.excess, 4)
         );
     }
     for row in &found.bootstrap {

@@ -1,0 +1,361 @@
+//! The likelihood of commands that may be lost, or arrive after one of two dead times.
+//!
+//! Which command acts is a hidden state. Hypotheses about it are filters, whose number is kept small: those that agree are merged to their
+//! mean and covariance, and those that weigh least are dropped (Y. Bar-Shalom, X. R. Li and T. Kirubarajan, *Estimation with Applications
+//! to Tracking and Navigation*, 2001, section 11.6).
+
+use std::f64::consts::TAU;
+
+use crate::plant_step::{PlantStep, PlantSteps};
+use crate::quantiles::{normal_probability, normal_quantile};
+use crate::recording::Recording;
+use crate::response::UnitPlant;
+
+/// Most states of a plant whose arrivals are filtered.
+pub(crate) const MOST_STATES: usize = 3;
+/// Most hypotheses at a time.
+const MOST_HYPOTHESES: usize = 16;
+/// Hypotheses are merged if their means differ by less than the root of this part of the sum of their variances.
+const ALIKE: f64 = 0.1;
+/// The least weight of a hypothesis relative to the heaviest.
+const LIGHTEST: f64 = 1e-8;
+
+/// How commands arrive and what answers them.
+#[derive(Clone, Debug)]
+pub(crate) struct ArrivalModel {
+    /// Parameters of the response, the dead time first.
+    pub(crate) shape: Vec<f64>,
+    pub(crate) gain: f64,
+    pub(crate) load: f64,
+    /// Standard deviation of the noise.
+    pub(crate) deviation: f64,
+    /// The standard deviation of its dead time, in s.
+    pub(crate) jitter: f64,
+    /// The probability that a command is lost.
+    pub(crate) loss: f64,
+    /// What a longer dead time adds, in s, and the share of commands that it delays.
+    pub(crate) second: (f64, f64),
+}
+
+/// Where a filter begins.
+#[derive(Clone, Debug)]
+pub(crate) struct Start {
+    /// The first response.
+    pub(crate) first: usize,
+    /// States there, and their variance.
+    pub(crate) states: Vec<f64>,
+    pub(crate) variance: f64,
+}
+
+type State = [f64; MOST_STATES];
+
+#[derive(Clone, Copy, Debug)]
+struct Hypothesis {
+    acting: usize,
+    weight: f64,
+    mean: State,
+    covariance: [State; MOST_STATES],
+}
+
+/// The log likelihood of a recording; each response leaves a normal score in `scores`, if they are wanted.
+pub(crate) fn log_likelihood(
+    recording: &Recording,
+    plant: &UnitPlant,
+    model: &ArrivalModel,
+    start: &Start,
+    mut scores: Option<&mut Vec<f64>>,
+) -> f64 {
+    let n = plant.states();
+    let (times, values) = (&recording.command_times[..], &recording.commands[..]);
+    let events = events(model, times);
+    let mut steps = PlantSteps::new(plant, false);
+    let mut now = recording.response_times[start.first];
+    let mut next = events.partition_point(|event| event.time <= now);
+    let acting = times.partition_point(|t| t + model.shape[0] <= now).saturating_sub(1);
+    let mut first = Hypothesis {
+        acting,
+        weight: 1.0,
+        mean: [0.0; MOST_STATES],
+        covariance: [[0.0; MOST_STATES]; MOST_STATES],
+    };
+    for i in 0..n {
+        first.mean[i] = start.states.get(i).copied().unwrap_or(0.0);
+        first.covariance[i][i] = start.variance;
+    }
+    let mut hypotheses = vec![first];
+    let mut log_likelihood = 0.0;
+    for i in start.first..recording.responses.len() {
+        let end = recording.response_times[i];
+        while let Some(event) = events.get(next).filter(|event| event.time <= end) {
+            let k = event.command;
+            if hypotheses.iter().any(|h| h.acting < k && values[h.acting] != values[k]) {
+                advance(&mut hypotheses, &mut steps, event.time - now, values, model);
+                now = event.time.max(now);
+            }
+            branch(&mut hypotheses, event, values, plant, model.gain);
+            next += 1;
+        }
+        advance(&mut hypotheses, &mut steps, end - now, values, model);
+        now = end;
+        let response = recording.responses[i];
+        let mut below = 0.0;
+        let mut total = 0.0;
+        for h in &mut hypotheses {
+            let (error, spread) = h.measure(plant, model, values, response);
+            if scores.is_some() {
+                below += h.weight * normal_probability(error / spread.sqrt());
+            }
+            h.weight *= (-0.5 * error * error / spread).exp() / (TAU * spread).sqrt();
+            total += h.weight;
+        }
+        // Each hypothesis is excluded by more than the range of floats.
+        if !(total > 0.0) {
+            return f64::NEG_INFINITY;
+        }
+        if let Some(scores) = &mut scores {
+            scores.push(normal_quantile(below));
+        }
+        log_likelihood += total.ln();
+        hypotheses.iter_mut().for_each(|h| h.weight /= total);
+        prune(&mut hypotheses);
+    }
+    log_likelihood
+}
+
+/// A possible arrival of a command.
+#[derive(Clone, Copy, Debug)]
+struct Event {
+    time: f64,
+    command: usize,
+    /// The probability that it comes now if it has not come before.
+    chance: f64,
+    /// The standard deviation of the time.
+    spread: f64,
+}
+
+/// A normal law as a mixture of narrower ones: offsets and weights, in standard deviations. Within each the effect of a shift is linear.
+const NARROW: [(f64, f64); 5] =
+    [(-1.7, 0.0629), (-0.85, 0.2447), (0.0, 0.3848), (0.85, 0.2447), (1.7, 0.0629)];
+/// The standard deviation of each, with which the mixture has the variance of the normal law: `1 − Σ w δ²`.
+const NARROW_DEVIATION: f64 = 0.532;
+
+/// Possible arrivals in the order of time.
+fn events(model: &ArrivalModel, times: &[f64]) -> Vec<Event> {
+    let (longer, late) = model.second;
+    // Delay beyond the dead time, probability, and spread.
+    let mut parts = vec![(0.0, 1.0 - late, 0.0)];
+    if late > 0.0 {
+        parts.push((longer, late, 0.0));
+    }
+    if model.jitter > 0.0 {
+        let part = |(offset, weight): (f64, f64)| {
+            (offset * model.jitter, weight, NARROW_DEVIATION * model.jitter)
+        };
+        parts = NARROW.map(part).to_vec();
+    }
+    let mut events = Vec::with_capacity(parts.len() * times.len());
+    let mut before = 0.0;
+    for &(delay, weight, spread) in &parts {
+        let probability = weight * (1.0 - model.loss);
+        let chance = (probability / (1.0 - before)).min(1.0);
+        before += probability;
+        let delay = model.shape[0] + delay;
+        let event =
+            |(command, time): (usize, &f64)| Event { time: time + delay, command, chance, spread };
+        events.extend(times.iter().enumerate().map(event));
+    }
+    if parts.len() > 1 {
+        events.sort_by(|a, b| a.time.total_cmp(&b.time));
+    }
+    events
+}
+
+impl Hypothesis {
+    /// Takes a response; its error and the variance of that error.
+    fn measure(
+        &mut self,
+        plant: &UnitPlant,
+        model: &ArrivalModel,
+        values: &[f64],
+        response: f64,
+    ) -> (f64, f64) {
+        let n = plant.states();
+        let mut predicted = plant.d * (model.gain * values[self.acting] + model.load);
+        let mut spread = model.deviation * model.deviation;
+        let mut gains = [0.0; MOST_STATES];
+        for i in 0..n {
+            predicted += plant.c[i] * self.mean[i];
+            for j in 0..n {
+                gains[i] += self.covariance[i][j] * plant.c[j];
+            }
+            spread += plant.c[i] * gains[i];
+        }
+        let error = response - predicted;
+        for i in 0..n {
+            self.mean[i] += gains[i] / spread * error;
+            for j in 0..n {
+                self.covariance[i][j] -= gains[i] * gains[j] / spread;
+            }
+        }
+        (error, spread)
+    }
+
+    /// Moves on by a step under its command.
+    fn advance(&mut self, step: &PlantStep, values: &[f64], model: &ArrivalModel) {
+        let n = step.gamma.len();
+        let command = model.gain * values[self.acting] + model.load;
+        let phi = |i: usize, j: usize| step.phi[i * n + j];
+        let mut mean = [0.0; MOST_STATES];
+        let mut half = [[0.0; MOST_STATES]; MOST_STATES];
+        for i in 0..n {
+            mean[i] = step.gamma[i] * command;
+            for k in 0..n {
+                mean[i] += phi(i, k) * self.mean[k];
+                for j in 0..n {
+                    half[i][j] += phi(i, k) * self.covariance[k][j];
+                }
+            }
+        }
+        for i in 0..n {
+            for j in 0..n {
+                self.covariance[i][j] = (0..n).map(|k| half[i][k] * phi(j, k)).sum();
+            }
+        }
+        self.mean = mean;
+    }
+
+    /// The arrival of a change is spread over time: a shift by `δ` is an impulse of `−δ` times the change at the input.
+    fn shift(&mut self, plant: &UnitPlant, impulse: f64) {
+        for i in 0..plant.states() {
+            for j in 0..plant.states() {
+                self.covariance[i][j] += impulse * impulse * plant.b[i] * plant.b[j];
+            }
+        }
+    }
+
+    /// Whether both have the same acting command and nearly the same state.
+    fn is_like(&self, other: &Hypothesis) -> bool {
+        let is_near = |i: usize| {
+            let variance = self.covariance[i][i] + other.covariance[i][i];
+            (self.mean[i] - other.mean[i]).powi(2) <= ALIKE * variance
+        };
+        self.acting == other.acting && (0..MOST_STATES).all(is_near)
+    }
+
+    /// This hypothesis and another as one, with their mean and covariance.
+    fn merged(self, other: Hypothesis) -> Hypothesis {
+        let weight = self.weight + other.weight;
+        if !(weight > 0.0) {
+            return self;
+        }
+        let (own, others) = (self.weight / weight, other.weight / weight);
+        let mut merged = Hypothesis { weight, ..self };
+        for i in 0..MOST_STATES {
+            merged.mean[i] = own * self.mean[i] + others * other.mean[i];
+            for j in 0..MOST_STATES {
+                let between = (self.mean[i] - other.mean[i]) * (self.mean[j] - other.mean[j]);
+                merged.covariance[i][j] = own * self.covariance[i][j]
+                    + others * other.covariance[i][j]
+                    + own * others * between;
+            }
+        }
+        merged
+    }
+}
+
+/// Moves all hypotheses on by `h` seconds.
+fn advance(
+    hypotheses: &mut [Hypothesis],
+    steps: &mut PlantSteps<'_>,
+    h: f64,
+    values: &[f64],
+    model: &ArrivalModel,
+) {
+    if h > 0.0 {
+        let step = steps.step(h);
+        hypotheses.iter_mut().for_each(|hypothesis| hypothesis.advance(step, values, model));
+    }
+}
+
+/// A command comes with its probability where an older command acts.
+fn branch(
+    hypotheses: &mut Vec<Hypothesis>,
+    event: &Event,
+    values: &[f64],
+    plant: &UnitPlant,
+    gain: f64,
+) {
+    let k = event.command;
+    for i in 0..hypotheses.len() {
+        let h = &mut hypotheses[i];
+        if h.acting >= k {
+            continue;
+        }
+        let change = values[k] - values[h.acting];
+        // Whether an equal command comes changes nothing.
+        if change == 0.0 {
+            h.acting = k;
+            continue;
+        }
+        let mut arrived = Hypothesis { acting: k, weight: h.weight * event.chance, ..*h };
+        if event.spread > 0.0 {
+            arrived.shift(plant, gain * change * event.spread);
+        }
+        if event.chance < 1.0 {
+            h.weight *= 1.0 - event.chance;
+            hypotheses.push(arrived);
+        } else {
+            *h = arrived;
+        }
+    }
+    merge_alike(hypotheses);
+}
+
+/// Merges hypotheses with the same acting command whose means differ by less than their deviations.
+///
+/// Those with different means stay apart: together they would be a normal law far wider than either, and the next response could no longer
+/// choose between them.
+fn merge_alike(hypotheses: &mut Vec<Hypothesis>) {
+    let mut i = 0;
+    while i < hypotheses.len() {
+        let mut j = i + 1;
+        while j < hypotheses.len() {
+            if hypotheses[i].is_like(&hypotheses[j]) {
+                let other = hypotheses.swap_remove(j);
+                hypotheses[i] = hypotheses[i].merged(other);
+            } else {
+                j += 1;
+            }
+        }
+        i += 1;
+    }
+    if hypotheses.len() > MOST_HYPOTHESES {
+        prune(hypotheses);
+    }
+}
+
+/// Drops hypotheses that weigh nothing.
+fn prune(hypotheses: &mut Vec<Hypothesis>) {
+    hypotheses.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+    let heaviest = hypotheses[0].weight;
+    hypotheses.retain(|h| h.weight >= LIGHTEST * heaviest);
+    hypotheses.truncate(MOST_HYPOTHESES);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn narrow_laws_together_have_the_moments_of_a_normal_one() {
+        let moment = |of: fn(f64, f64) -> f64| -> f64 {
+            NARROW.iter().map(|&(offset, weight)| weight * of(offset, NARROW_DEVIATION)).sum()
+        };
+        assert!((moment(|_, _| 1.0) - 1.0).abs() < 1e-12);
+        assert!(moment(|d, _| d).abs() < 1e-12);
+        assert!((moment(|d, s| d * d + s * s) - 1.0).abs() < 1e-3);
+        // A fourth moment of 3, to the digits of which the grid of five is capable.
+        let fourth = moment(|d, s| d.powi(4) + 6.0 * d * d * s * s + 3.0 * s.powi(4));
+        assert!((fourth - 3.0).abs() < 0.3, "{fourth}");
+    }
+}
