@@ -14,11 +14,11 @@ use crate::response::UnitPlant;
 /// Most states of a plant whose arrivals are filtered.
 pub(crate) const MOST_STATES: usize = 3;
 /// Most hypotheses at a time.
-const MOST_HYPOTHESES: usize = 16;
+const MOST_HYPOTHESES: usize = 10;
 /// Hypotheses are merged if their means differ by less than the root of this part of the sum of their variances.
 const ALIKE: f64 = 0.1;
 /// The least weight of a hypothesis relative to the heaviest.
-const LIGHTEST: f64 = 1e-8;
+const LIGHTEST: f64 = 1e-6;
 
 /// How commands arrive and what answers them.
 #[derive(Clone, Debug)]
@@ -42,6 +42,8 @@ pub(crate) struct ArrivalModel {
 pub(crate) struct Start {
     /// The first response.
     pub(crate) first: usize,
+    /// Most responses.
+    pub(crate) responses: usize,
     /// States there, and their variance.
     pub(crate) states: Vec<f64>,
     pub(crate) variance: f64,
@@ -84,7 +86,8 @@ pub(crate) fn log_likelihood(
     }
     let mut hypotheses = vec![first];
     let mut log_likelihood = 0.0;
-    for i in start.first..recording.responses.len() {
+    let count = recording.responses.len() - start.first;
+    for i in start.first..start.first + count.min(start.responses) {
         let end = recording.response_times[i];
         while let Some(event) = events.get(next).filter(|event| event.time <= end) {
             let k = event.command;
@@ -134,10 +137,17 @@ struct Event {
 }
 
 /// A normal law as a mixture of narrower ones: offsets and weights, in standard deviations. Within each the effect of a shift is linear.
-const NARROW: [(f64, f64); 5] =
-    [(-1.7, 0.0629), (-0.85, 0.2447), (0.0, 0.3848), (0.85, 0.2447), (1.7, 0.0629)];
+const NARROW: [(f64, f64); 7] = [
+    (-1.95, 0.02702),
+    (-1.30, 0.10158),
+    (-0.65, 0.22487),
+    (0.00, 0.29306),
+    (0.65, 0.22487),
+    (1.30, 0.10158),
+    (1.95, 0.02702),
+];
 /// The standard deviation of each, with which the mixture has the variance of the normal law: `1 − Σ w δ²`.
-const NARROW_DEVIATION: f64 = 0.532;
+const NARROW_DEVIATION: f64 = 0.5110;
 
 /// Possible arrivals in the order of time.
 fn events(model: &ArrivalModel, times: &[f64]) -> Vec<Event> {

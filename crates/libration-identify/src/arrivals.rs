@@ -4,7 +4,7 @@ use libration::linear::{Matrix, solve_matrix};
 
 use crate::arrival_filter::{ArrivalModel, MOST_STATES, Start, log_likelihood};
 use crate::estimate::Estimate;
-use crate::minimum::simplex;
+use crate::minimum::{restarted, simplex};
 use crate::model::Model;
 use crate::noise::NoiseKind;
 use crate::recording::Recording;
@@ -51,7 +51,9 @@ pub(crate) struct ArrivalFit {
 }
 
 /// Starts of a search.
-const STARTS: usize = 3;
+const STARTS: usize = 2;
+/// Responses of a search, before all of them.
+const SEARCHED: usize = 500;
 
 /// What is fixed during a search.
 pub(crate) struct ArrivalSearch<'a> {
@@ -77,7 +79,7 @@ impl<'a> ArrivalSearch<'a> {
         }
         let deviation = base.variance().sqrt();
         let first = model.window(recording).first;
-        let start = Start { first, states, variance: deviation * deviation };
+        let start = Start { first, responses: usize::MAX, states, variance: deviation * deviation };
         let [gain, load] = [0, 1].map(|i| base.regression.coefficients[i]);
         let shape = &base.point.shape;
         let period = median_period(recording);
@@ -128,15 +130,15 @@ impl<'a> ArrivalSearch<'a> {
 
     /// The fit of greatest likelihood.
     pub(crate) fn fit(&self) -> Option<ArrivalFit> {
+        let mut cost = |coordinates: &[f64]| self.cost_of(coordinates, SEARCHED);
         let mut rough: Vec<(f64, &Vec<f64>)> =
-            self.starts.iter().map(|start| (self.cost(start), start)).collect();
+            self.starts.iter().map(|start| (cost(start), start)).collect();
         rough.retain(|(cost, _)| cost.is_finite());
         rough.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut cost = |coordinates: &[f64]| self.cost(coordinates);
         let found = rough
             .into_iter()
             .take(STARTS)
-            .map(|(_, start)| simplex(&mut cost, start, &self.scales, 1e-3))
+            .map(|(_, start)| restarted(&mut cost, start, &self.scales, 0.1))
             .min_by(|a, b| a.value.total_cmp(&b.value))?;
         self.fit_near(&found.point)
     }
@@ -144,8 +146,8 @@ impl<'a> ArrivalSearch<'a> {
     /// The fit near these coordinates.
     pub(crate) fn fit_near(&self, start: &[f64]) -> Option<ArrivalFit> {
         let mut cost = |coordinates: &[f64]| self.cost(coordinates);
-        let fresh: Vec<f64> = self.scales.iter().map(|scale| -0.3 * scale).collect();
-        let found = simplex(&mut cost, start, &fresh, 1e-6);
+        let fresh: Vec<f64> = self.scales.iter().map(|scale| 0.3 * scale).collect();
+        let found = simplex(&mut cost, start, &fresh, 1e-3);
         Some(ArrivalFit {
             law: self.law,
             model: self.arrival_model(&found.point)?,
@@ -193,9 +195,15 @@ impl<'a> ArrivalSearch<'a> {
     }
 
     fn cost(&self, coordinates: &[f64]) -> f64 {
+        self.cost_of(coordinates, usize::MAX)
+    }
+
+    /// The negative log likelihood of the first responses.
+    fn cost_of(&self, coordinates: &[f64], responses: usize) -> f64 {
         self.arrival_model(coordinates).map_or(f64::INFINITY, |model| {
             let plant = self.model.response.dynamics(&model.shape[1..]);
-            -log_likelihood(self.recording, &plant, &model, &self.start, None)
+            let start = Start { responses, ..self.start.clone() };
+            -log_likelihood(self.recording, &plant, &model, &start, None)
         })
     }
 

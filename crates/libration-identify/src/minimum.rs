@@ -80,6 +80,32 @@ pub(crate) fn simplex(
     points.remove(0)
 }
 
+/// Most restarts of a search.
+const MOST_RESTARTS: usize = 3;
+
+/// The minimum of simplexes that begin where the one before collapsed, until another gains less than `10 · tolerance` or a tenth.
+pub(crate) fn restarted(
+    f: &mut dyn FnMut(&[f64]) -> f64,
+    start: &[f64],
+    scales: &[f64],
+    tolerance: f64,
+) -> Minimum {
+    let mut best = simplex(f, start, scales, tolerance);
+    for round in 0..MOST_RESTARTS {
+        let sign = if round % 2 == 0 { -0.6 } else { 0.6 };
+        let fresh: Vec<f64> = scales.iter().map(|scale| sign * scale).collect();
+        let found = simplex(f, &best.point, &fresh, tolerance);
+        let gained = best.value - found.value;
+        if gained > 0.0 {
+            best = found;
+        }
+        if !(gained > (10.0 * tolerance).max(0.1)) {
+            break;
+        }
+    }
+    best
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -26,6 +26,9 @@ pub(crate) struct Selection {
 /// Forms of response whose noise and arrivals are searched.
 const PURSUED: usize = 3;
 
+/// Forms of response with held commands whose arrivals are searched.
+const HELD: usize = 2;
+
 /// The model with the least criterion of Bayes: forms of response with white noise first, then noise and arrivals of the best of them.
 pub(crate) fn select(
     recording: &Recording,
@@ -51,7 +54,7 @@ pub(crate) fn select(
     let mut random = Vec::new();
     if request.arrivals && is_suspect {
         let held: Vec<&Estimate> =
-            white.iter().filter(|fit| fit.model.hold == Hold::Zero).take(PURSUED).collect();
+            white.iter().filter(|fit| fit.model.hold == Hold::Zero).take(HELD).collect();
         random = with_arrivals(&held, recording, work)?;
     }
     by_criterion(&mut fits);
