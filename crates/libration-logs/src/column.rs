@@ -130,6 +130,18 @@ impl Times {
         }
     }
 
+    /// The times in ns, rounded if the file has decimals.
+    pub(crate) fn nanoseconds(&self) -> Vec<Option<i64>> {
+        match self {
+            Times::Exact(own) => own.iter().map(|&(_, x)| Some(x)).collect(),
+            // A conversion to an integer saturates.
+            Times::Floats(own) => own
+                .iter()
+                .map(|&(_, x)| x.is_finite().then_some((1e9 * x).round() as i64))
+                .collect(),
+        }
+    }
+
     fn seconds(&self) -> Box<dyn Iterator<Item = (usize, f64)> + '_> {
         match self {
             Times::Exact(x) => Box::new(x.iter().map(|&(row, x)| (row, x as f64 / 1e9))),

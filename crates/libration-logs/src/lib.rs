@@ -3,13 +3,17 @@
 //! [`Log::open`] recognises the format of a file by its first bytes. [`Log::series`] returns a signal over time, [`Log::stamps`] the
 //! time stamps of a topic. Memory is bounded: no count in a file is trusted before its bytes are there.
 
+mod bag;
 mod column;
 mod delimited_text;
 mod error;
+mod json_message;
 mod log;
+mod mcap;
 mod nearest_name;
 mod numpy_file;
 mod parquet_file;
+mod ros;
 mod source;
 mod table;
 mod time_unit;

@@ -4,7 +4,9 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use crate::bag::Bag;
 use crate::error::LogError;
+use crate::mcap::Mcap;
 use crate::source::Source;
 use crate::{delimited_text, numpy_file, parquet_file};
 
@@ -104,6 +106,9 @@ impl Log {
             [0x93, b'N', b'U', b'M', b'P', b'Y', ..] | [b'P', b'K', 3 | 5, ..] => {
                 Box::new(numpy_file::open(path, time)?)
             }
+            [0x89, b'M', b'C', b'A', b'P', b'0', b'\r', b'\n', ..] => {
+                Box::new(Bag::open(Mcap::new(path))?)
+            }
             bytes if delimited_text::is_text(bytes) => Box::new(delimited_text::open(path, time)?),
             _ => return Err(LogError::UnknownFormat { expected: FORMATS }),
         };
@@ -141,12 +146,25 @@ impl Log {
         self.source.stamps(topic, self.clock)
     }
 
-    /// As [`Log::stamps`], by another clock than that of the options. The stamps of all clocks have the same zero.
+    /// As [`Log::stamps`], by another clock than that of the options. The stamps have the same zero, unless a clock counts from
+    /// another epoch: then its first stamp is zero.
     ///
     /// # Errors
     /// As [`Log::stamps`].
     pub fn stamps_of(&self, topic: &str, clock: ClockChoice) -> Result<Vec<f64>, LogError> {
         self.source.stamps(topic, clock)
+    }
+
+    /// The time stamps of a topic in ns from the zero of the clock itself, in file order; none for a message without the clock.
+    ///
+    /// # Errors
+    /// As [`Log::stamps`].
+    pub fn exact_stamps(
+        &self,
+        topic: &str,
+        clock: ClockChoice,
+    ) -> Result<Vec<Option<i64>>, LogError> {
+        self.source.exact_stamps(topic, clock)
     }
 
     /// Remarks about the file, such as a truncated end.
@@ -156,4 +174,4 @@ impl Log {
 }
 
 /// What [`Log::open`] reads.
-const FORMATS: &str = "CSV or other text, Parquet, or NumPy (.npy, .npz)";
+const FORMATS: &str = "MCAP, CSV or other text, Parquet, or NumPy (.npy, .npz)";

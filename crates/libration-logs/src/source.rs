@@ -14,6 +14,8 @@ pub(crate) trait Source: Send {
     fn series(&self, name: &str, clock: ClockChoice) -> Result<Series, LogError>;
     /// The time stamps of a topic in file order, in s from the first stamp of the file.
     fn stamps(&self, topic: &str, clock: ClockChoice) -> Result<Vec<f64>, LogError>;
+    /// The time stamps of a topic in file order, in ns from the zero of the clock itself; none for a message without the clock.
+    fn exact_stamps(&self, topic: &str, clock: ClockChoice) -> Result<Vec<Option<i64>>, LogError>;
     /// Remarks about the file, such as a truncated end.
     fn notes(&self) -> Vec<String> {
         Vec::new()

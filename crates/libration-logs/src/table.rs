@@ -104,6 +104,12 @@ impl Source for Table {
         Ok(stamps.into_iter().map(|(_, time)| time).collect())
     }
 
+    fn exact_stamps(&self, topic: &str, _: ClockChoice) -> Result<Vec<Option<i64>>, LogError> {
+        let index =
+            position(&self.columns, topic).ok_or_else(|| unknown("topic", topic, &self.columns))?;
+        Ok(self.columns[index].times().nanoseconds())
+    }
+
     fn notes(&self) -> Vec<String> {
         let time = &self.columns[self.time];
         let mut notes = vec![format!("the column of time is `{}`", time.name)];

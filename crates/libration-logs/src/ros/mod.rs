@@ -1,0 +1,75 @@
+//! Messages of ROS 1 and ROS 2: definitions as text, and numbers in the bytes.
+
+mod cursor;
+mod definition;
+mod idl;
+mod walker;
+
+pub(crate) use definition::{Definition, Wire};
+use walker::Walker;
+
+/// A step to a number: a field, or an element of an array.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Step {
+    Field(usize),
+    Element(usize),
+}
+
+/// Decodes messages of one type.
+pub(crate) struct RosDecoder {
+    definition: Definition,
+    wire: Wire,
+}
+
+impl RosDecoder {
+    /// A decoder for the text of a definition (`ros1msg`, `ros2msg`).
+    ///
+    /// # Errors
+    /// In words, if the text cannot be understood.
+    pub(crate) fn of_text(root: &str, text: &str, wire: Wire) -> Result<Self, String> {
+        Ok(RosDecoder { definition: definition::parse(root, text)?, wire })
+    }
+
+    /// A decoder for a definition in OMG IDL (`ros2idl`).
+    ///
+    /// # Errors
+    /// In words, if the text cannot be understood.
+    pub(crate) fn of_idl(root: &str, text: &str) -> Result<Self, String> {
+        Ok(RosDecoder { definition: idl::parse(root, text)?, wire: Wire::Cdr })
+    }
+
+    /// The names of the numbers in a message, at most `most`.
+    pub(crate) fn signals(&self, data: &[u8], most: usize) -> Vec<String> {
+        let mut names = Vec::new();
+        if let Some(mut walker) = Walker::new(&self.definition, self.wire, data) {
+            // The names up to the end of a truncated message are kept.
+            let _ = walker.names(most, &mut names);
+        }
+        names
+    }
+
+    /// The steps of a name such as `twist.linear.x` or `position[3]`.
+    pub(crate) fn path(&self, name: &str) -> Option<Vec<Step>> {
+        self.definition.path(name)
+    }
+
+    /// The number at a path.
+    pub(crate) fn value(&self, data: &[u8], path: &[Step]) -> Option<f64> {
+        Walker::new(&self.definition, self.wire, data)?.value(path)
+    }
+
+    /// The time in ns of a message that begins with a header or a time.
+    pub(crate) fn header_time(&self, data: &[u8]) -> Option<i64> {
+        let path = self.definition.header_stamp()?;
+        let mut path = path.to_vec();
+        let mut part = |index: usize| {
+            path.push(Step::Field(index));
+            let value = Walker::new(&self.definition, self.wire, data)?.value(&path);
+            path.pop();
+            // Both are 32-bit integers, which f64 holds.
+            value.map(|value| value as i64)
+        };
+        let (seconds, nanoseconds) = (part(0)?, part(1)?);
+        seconds.checked_mul(1_000_000_000)?.checked_add(nanoseconds)
+    }
+}

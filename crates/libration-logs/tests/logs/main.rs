@@ -1,0 +1,17 @@
+//! Logs that other programs wrote; `tools/make_log_files.py` runs them.
+
+mod bags;
+mod mutations;
+mod tables;
+
+use std::path::PathBuf;
+
+use libration_logs::{ClockChoice, Log, ReadOptions};
+
+fn path(name: &str) -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data")).join(name)
+}
+
+fn open(name: &str, clock: ClockChoice) -> Log {
+    Log::open(&path(name), &ReadOptions { clock, ..ReadOptions::default() }).unwrap()
+}

@@ -1,0 +1,97 @@
+//! Damaged files: no bytes lead to a panic, or to more memory than the file deserves.
+
+use std::fs;
+
+use libration_logs::{ClockChoice, Log, ReadOptions};
+
+use crate::path;
+
+const SAMPLES: [&str; 7] =
+    ["zstd.mcap", "lz4.mcap", "none.mcap", "json.mcap", "table.npz", "matrix.npy", "table.parquet"];
+
+/// Mutations of each sample; `cargo xtask torture` sets more.
+fn count() -> u64 {
+    std::env::var("LIBRATION_MUTATIONS").ok().and_then(|count| count.parse().ok()).unwrap_or(1000)
+}
+
+/// Random bits (G. Marsaglia, *Xorshift RNGs*, Journal of Statistical Software 8, 2003).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0
+    }
+
+    fn below(&mut self, limit: usize) -> usize {
+        (self.next() % limit.max(1) as u64) as usize
+    }
+}
+
+/// Changes some bytes, copies some, removes some, or ends early.
+fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
+    const EDGES: [u8; 6] = [0, 1, 0x7f, 0x80, 0xfe, 0xff];
+    for _ in 0..=random.below(4) {
+        let at = random.below(bytes.len());
+        match random.below(6) {
+            0 => bytes[at] ^= 1 << random.below(8),
+            1 => bytes[at] = EDGES[random.below(EDGES.len())],
+            2 => {
+                // A length becomes huge.
+                let end = (at + 1 + random.below(8)).min(bytes.len());
+                bytes[at..end].fill(EDGES[random.below(EDGES.len())]);
+            }
+            3 => bytes.truncate(at.max(1)),
+            4 => {
+                let end = (at + random.below(64)).min(bytes.len());
+                bytes.drain(at..end);
+            }
+            _ => {
+                let end = (at + random.below(64)).min(bytes.len());
+                let copy = bytes[at..end].to_vec();
+                let to = random.below(bytes.len());
+                bytes.splice(to..to, copy);
+            }
+        }
+        if bytes.is_empty() {
+            bytes.push(0);
+        }
+    }
+}
+
+/// Reads all that a log offers.
+fn read_all(path: &std::path::Path) -> bool {
+    let Ok(log) = Log::open(path, &ReadOptions::default()) else { return false };
+    for topic in log.topics().iter().take(3) {
+        for clock in ClockChoice::ALL {
+            let _ = log.stamps_of(&topic.name, clock);
+        }
+    }
+    let signals = log.signals();
+    for signal in signals.iter().step_by(signals.len().div_ceil(4).max(1)) {
+        let _ = log.series(&signal.name);
+    }
+    let _ = log.notes();
+    true
+}
+
+#[test]
+fn no_mutation_of_a_file_leads_to_a_panic() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in SAMPLES {
+        let sample = fs::read(path(name)).unwrap();
+        let mut random = Random(0x9e37_79b9_7f4a_7c15);
+        let path = folder.path().join(name);
+        let start = std::time::Instant::now();
+        let mut opened = 0_u64;
+        for _ in 0..count() {
+            let mut bytes = sample.clone();
+            mutate(&mut bytes, &mut random);
+            fs::write(&path, &bytes).unwrap();
+            opened += u64::from(read_all(&path));
+        }
+        eprintln!("{name}: {opened} of {} open, {:?}", count(), start.elapsed());
+    }
+}

@@ -1,0 +1,45 @@
+//! Tables that NumPy and pyarrow wrote.
+
+use libration_logs::{ClockChoice, Log, ReadOptions};
+
+use crate::{open, path};
+
+#[test]
+fn archives_of_numpy_keep_all_digits_of_time_stamps() {
+    let log = open("table.npz", ClockChoice::Log);
+    let stamps = log.stamps("stamp").unwrap();
+    assert_eq!(stamps.len(), 50);
+    assert_eq!(stamps[49], 49.0 * 1_000_003.0 / 1e9);
+    let pair = log.series("pair[1]").unwrap();
+    let x = log.series("x").unwrap();
+    assert_eq!(pair.values[7], 2.0 * x.values[7]);
+    assert_eq!(pair.time, stamps);
+}
+
+#[test]
+fn an_array_of_numpy_has_the_time_in_its_first_column() {
+    let log = open("matrix.npy", ClockChoice::Log);
+    let series = log.series("column_2").unwrap();
+    assert_eq!((series.time[3], series.values[3]), (0.03, (0.1_f64 * 3.0).sin()));
+}
+
+#[test]
+fn parquet_has_units_of_time_and_holes() {
+    let log = open("table.parquet", ClockChoice::Log);
+    assert_eq!(log.stamps("stamp").unwrap()[2], 2.0 * 1_000_003.0 / 1e9);
+    let x = log.series("x").unwrap();
+    assert_eq!(x.values.len(), 50 - 8);
+    assert_eq!(x.time[0], 1_000_003.0 / 1e9);
+    assert_eq!(log.series("n").unwrap().values[49], 49.0);
+    let names: Vec<_> = log.signals().into_iter().map(|signal| signal.name).collect();
+    assert_eq!(names, ["x", "stamp", "n"]);
+}
+
+#[test]
+fn a_column_of_time_can_be_chosen() {
+    let options = |time: &str| ReadOptions { time: Some(time.to_owned()), ..Default::default() };
+    let log = Log::open(&path("matrix.npy"), &options("column_2")).unwrap();
+    assert_eq!(log.series("column_1").unwrap().time[3], (0.1_f64 * 3.0).sin());
+    let error = Log::open(&path("table.npz"), &options("stmp")).err().unwrap().to_string();
+    assert!(error.contains("no column `stmp`") && error.contains("`stamp`"), "{error}");
+}
