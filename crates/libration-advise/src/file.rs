@@ -8,6 +8,7 @@ use libration::catalog::Actuation;
 use libration::control::controller::PidGains;
 use libration::control::{Feedback, Jitter, LqrWeights};
 use libration::{AnySystem, catalog};
+use libration_logs::{StampOptions, read_time_stamps};
 use libration_settings::{Count, Document, Fault, Number, SettingsError, suggestions};
 
 use super::AdviseError;
@@ -15,7 +16,6 @@ use super::advised_system::AdvisedSystem;
 use super::control::{Control, Correction, Law, Regulator};
 use super::file_tables::{ControllerTable, LoopTable, ObserverTable, RequestFile};
 use super::request::{Measure, Request, Tolerance};
-use crate::jitter_measurement;
 
 /// The default request, as a file with comments.
 pub const DEFAULT: &str = include_str!("default.toml");
@@ -186,7 +186,7 @@ fn control(law: Law, table: LoopTable) -> Result<Control, Fault> {
         let path = &table.time_stamps;
         let wrong =
             |why: String| Fault::new("loop.time_stamps", format!("cannot use `{path}`: {why}"));
-        let stamps = jitter_measurement::read_time_stamps(Path::new(path)).map_err(wrong)?;
+        let stamps = read_time_stamps(Path::new(path), &StampOptions::default()).map_err(wrong)?;
         control = control.with_time_stamps(&stamps).map_err(|error| wrong(error.to_string()))?;
     }
     Ok(control)

@@ -1,11 +1,10 @@
 //! CSV, TSV and other tables in text.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
-use std::path::Path;
+use std::io::{BufRead, Read};
 
 use crate::column::{Column, MISSING, Values, missing};
 use crate::error::LogError;
+use crate::input::Input;
 use crate::table::Table;
 
 /// Largest line in bytes.
@@ -25,8 +24,8 @@ pub(crate) fn is_text(prefix: &[u8]) -> bool {
 }
 
 /// Reads a table in text.
-pub(crate) fn open(path: &Path, time: Option<&str>) -> Result<Table, LogError> {
-    let (columns, notes) = read(BufReader::new(File::open(path)?))?;
+pub(crate) fn open(input: &Input, time: Option<&str>) -> Result<Table, LogError> {
+    let (columns, notes) = read(input.reader()?)?;
     Table::new("text", columns, time, notes)
 }
 

@@ -4,9 +4,11 @@
 //! time stamps of a topic. Memory is bounded: no count in a file is trusted before its bytes are there.
 
 mod bag;
+pub mod clock;
 mod column;
 mod delimited_text;
 mod error;
+mod input;
 mod json_message;
 mod log;
 mod mcap;
@@ -16,7 +18,10 @@ mod parquet_file;
 mod ros;
 mod source;
 mod table;
+mod time_stamps;
 mod time_unit;
 
+pub use clock::{Band, Lateness, Quantile, Spectrum, Statistics};
 pub use error::LogError;
 pub use log::{ClockChoice, Log, ReadOptions, Series, SignalInfo, TopicInfo};
+pub use time_stamps::{StampOptions, read_time_stamps};

@@ -1,11 +1,10 @@
 //! Logs of any format.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use crate::bag::Bag;
 use crate::error::LogError;
+use crate::input::Input;
 use crate::mcap::Mcap;
 use crate::source::Source;
 use crate::{delimited_text, numpy_file, parquet_file};
@@ -74,6 +73,8 @@ pub struct TopicInfo {
     pub count: usize,
     /// The clocks that its messages have.
     pub clocks: Vec<ClockChoice>,
+    /// The time from the first message to the last one in s, by the log clock.
+    pub span: f64,
 }
 
 /// A signal over time.
@@ -94,22 +95,34 @@ impl Log {
     /// # Errors
     /// If the file cannot be read, has an unknown format or is damaged from its beginning on, or if it has no such column of time.
     pub fn open(path: &Path, options: &ReadOptions) -> Result<Log, LogError> {
-        let mut prefix = Vec::new();
-        let file = File::open(path)?;
-        if file.metadata()?.is_dir() {
+        if path.is_dir() {
             return Err(LogError::Damaged("it is a directory; expected a file".to_owned()));
         }
-        file.take(PREFIX).read_to_end(&mut prefix)?;
+        Self::read(Input::File(path.to_owned()), options)
+    }
+
+    /// Opens a file that is in memory.
+    ///
+    /// # Errors
+    /// As [`Log::open`].
+    pub fn from_bytes(bytes: Vec<u8>, options: &ReadOptions) -> Result<Log, LogError> {
+        Self::read(Input::Memory(bytes.into()), options)
+    }
+
+    fn read(input: Input, options: &ReadOptions) -> Result<Log, LogError> {
+        let prefix = input.prefix(PREFIX)?;
         let time = options.time.as_deref();
         let source: Box<dyn Source> = match prefix.as_slice() {
-            [b'P', b'A', b'R', b'1', ..] => Box::new(parquet_file::open(path, time)?),
+            [b'P', b'A', b'R', b'1', ..] => Box::new(parquet_file::open(&input, time)?),
             [0x93, b'N', b'U', b'M', b'P', b'Y', ..] | [b'P', b'K', 3 | 5, ..] => {
-                Box::new(numpy_file::open(path, time)?)
+                Box::new(numpy_file::open(&input, time)?)
             }
             [0x89, b'M', b'C', b'A', b'P', b'0', b'\r', b'\n', ..] => {
-                Box::new(Bag::open(Mcap::new(path))?)
+                Box::new(Bag::open(Mcap::new(input))?)
             }
-            bytes if delimited_text::is_text(bytes) => Box::new(delimited_text::open(path, time)?),
+            bytes if delimited_text::is_text(bytes) => {
+                Box::new(delimited_text::open(&input, time)?)
+            }
             _ => return Err(LogError::UnknownFormat { expected: FORMATS }),
         };
         Ok(Log { source, clock: options.clock })
@@ -165,6 +178,42 @@ impl Log {
         clock: ClockChoice,
     ) -> Result<Vec<Option<i64>>, LogError> {
         self.source.exact_stamps(topic, clock)
+    }
+
+    /// Whether the file has messages on topics, whose order may differ from that of their stamps.
+    pub fn is_bag(&self) -> bool {
+        self.source.is_bag()
+    }
+
+    /// Whether each row of a text begins with its time.
+    pub(crate) fn has_stamps_first(&self) -> bool {
+        self.source.has_stamps_first()
+    }
+
+    /// Whether a file seems to be a text.
+    pub(crate) fn is_text(path: &Path) -> bool {
+        let prefix = Input::File(path.to_owned()).prefix(PREFIX);
+        prefix.map_or(true, |prefix| prefix.is_empty() || delimited_text::is_text(&prefix))
+    }
+
+    /// The only topic of a bag, or the column of time.
+    ///
+    /// # Errors
+    /// In words, with the topics, if there are several.
+    pub fn default_topic(&self) -> Result<String, String> {
+        let topics = self.topics();
+        match topics.as_slice() {
+            [only] => Ok(only.name.clone()),
+            [first, ..] if !self.is_bag() => {
+                Ok(self.source.time_name().unwrap_or_else(|| first.name.clone()))
+            }
+            topics => {
+                let names: Vec<_> =
+                    topics.iter().take(20).map(|topic| format!("`{}`", topic.name)).collect();
+                let (count, names) = (topics.len(), names.join(", "));
+                Err(format!("it has {count} topics; expected --topic with one of {names}"))
+            }
+        }
     }
 
     /// Remarks about the file, such as a truncated end.

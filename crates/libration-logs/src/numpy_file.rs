@@ -1,11 +1,10 @@
 //! Files of NumPy: arrays in `.npz`, or one in `.npy`.
 
-use std::path::Path;
-
-use libration_data::{ArrayValues, NamedArray, parse_npy, read_bounded, read_npz};
+use libration_data::{ArrayValues, NamedArray, parse_npy, read_npz};
 
 use crate::column::{Column, Values};
 use crate::error::LogError;
+use crate::input::Input;
 use crate::table::Table;
 
 /// Largest file, and largest sum of the arrays in it.
@@ -14,8 +13,8 @@ const LIMIT: usize = 1 << 31;
 const MOST_COLUMNS: usize = 4096;
 
 /// Reads the arrays with as many rows as the column of time.
-pub(crate) fn open(path: &Path, time: Option<&str>) -> Result<Table, LogError> {
-    table(&read_bounded(path, LIMIT as u64)?, time)
+pub(crate) fn open(input: &Input, time: Option<&str>) -> Result<Table, LogError> {
+    table(&input.bytes(LIMIT as u64)?, time)
 }
 
 fn table(bytes: &[u8], time: Option<&str>) -> Result<Table, LogError> {

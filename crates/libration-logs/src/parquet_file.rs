@@ -1,7 +1,6 @@
 //! Apache Parquet.
 
 use std::fs::File;
-use std::path::Path;
 
 use parquet::basic::{LogicalType, TimeUnit};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
@@ -12,6 +11,7 @@ use parquet::schema::types::ColumnDescriptor;
 
 use crate::column::{Column, MISSING, Values, missing};
 use crate::error::LogError;
+use crate::input::Input;
 use crate::table::Table;
 
 /// Records that are read at once.
@@ -26,10 +26,16 @@ impl From<ParquetError> for LogError {
 }
 
 /// Reads the columns of numbers. Lists and text are left out.
-pub(crate) fn open(path: &Path, time: Option<&str>) -> Result<Table, LogError> {
-    let reader = SerializedFileReader::new(File::open(path)?)?;
+pub(crate) fn open(input: &Input, time: Option<&str>) -> Result<Table, LogError> {
+    match input {
+        Input::File(path) => read(&SerializedFileReader::new(File::open(path)?)?, time),
+        Input::Memory(bytes) => read(&SerializedFileReader::new(bytes.clone())?, time),
+    }
+}
+
+fn read(reader: &dyn FileReader, time: Option<&str>) -> Result<Table, LogError> {
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
-    let units = units(&reader);
+    let units = units(reader);
     let (mut columns, mut ignored, mut cells) = (Vec::new(), Vec::new(), 0);
     for (index, descriptor) in schema.columns().iter().enumerate() {
         let name = descriptor.path().string();
@@ -37,7 +43,7 @@ pub(crate) fn open(path: &Path, time: Option<&str>) -> Result<Table, LogError> {
             ignored.push(format!("`{name}` is a list: ignored"));
             continue;
         }
-        let Some(values) = values(&reader, index, descriptor, &mut cells)? else {
+        let Some(values) = values(reader, index, descriptor, &mut cells)? else {
             ignored.push(format!("`{name}` has no numbers: ignored"));
             continue;
         };
@@ -51,7 +57,7 @@ pub(crate) fn open(path: &Path, time: Option<&str>) -> Result<Table, LogError> {
 }
 
 /// The units that `libration` writes.
-fn units(reader: &SerializedFileReader<File>) -> Vec<(String, String)> {
+fn units(reader: &dyn FileReader) -> Vec<(String, String)> {
     let entries = reader.metadata().file_metadata().key_value_metadata();
     let text = entries
         .and_then(|entries| entries.iter().find(|entry| entry.key == "libration.units"))
@@ -75,7 +81,7 @@ fn per_second(descriptor: &ColumnDescriptor) -> Option<i64> {
 
 /// The values of a column in all row groups; none if they are no numbers.
 fn values(
-    reader: &SerializedFileReader<File>,
+    reader: &dyn FileReader,
     index: usize,
     descriptor: &ColumnDescriptor,
     cells: &mut u64,

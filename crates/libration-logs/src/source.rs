@@ -16,6 +16,18 @@ pub(crate) trait Source: Send {
     fn stamps(&self, topic: &str, clock: ClockChoice) -> Result<Vec<f64>, LogError>;
     /// The time stamps of a topic in file order, in ns from the zero of the clock itself; none for a message without the clock.
     fn exact_stamps(&self, topic: &str, clock: ClockChoice) -> Result<Vec<Option<i64>>, LogError>;
+    /// Whether there are messages on topics.
+    fn is_bag(&self) -> bool {
+        false
+    }
+    /// Whether each row of a text begins with its time.
+    fn has_stamps_first(&self) -> bool {
+        false
+    }
+    /// The name of the column of time.
+    fn time_name(&self) -> Option<String> {
+        None
+    }
     /// Remarks about the file, such as a truncated end.
     fn notes(&self) -> Vec<String> {
         Vec::new()

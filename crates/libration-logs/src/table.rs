@@ -12,6 +12,8 @@ pub(crate) struct Table {
     columns: Vec<Column>,
     time: usize,
     notes: Vec<String>,
+    /// Whether the first column of the file is that of time.
+    time_is_first: bool,
 }
 
 /// Smallest whole number that is taken for a clock since 1970, whatever its column is called: milliseconds.
@@ -35,7 +37,8 @@ impl Table {
             }
             None => named.unwrap_or(0),
         };
-        Ok(Table { format, columns, time, notes })
+        let time_is_first = time == 0;
+        Ok(Table { format, columns, time, notes, time_is_first })
     }
 
     /// Whether a column has time stamps, from its name or the size of its numbers.
@@ -51,6 +54,13 @@ impl Table {
         };
         let is_named = is_time_name(&column.name) && unit_in_name(&column.name).is_some();
         index == self.time || is_epoch || is_named || column.per_second.is_some()
+    }
+
+    /// The time from the first to the last stamp in s.
+    fn span(&self, index: usize) -> f64 {
+        let times = self.columns[index].times();
+        let times = times.since(&times);
+        times.last().map_or(0.0, |last| last.1)
     }
 
     fn origin(&self) -> Times {
@@ -79,6 +89,7 @@ impl Source for Table {
             message_type: "time stamps".to_owned(),
             count: self.columns[i].count(),
             clocks: vec![ClockChoice::Log],
+            span: self.span(i),
         };
         stamps.map(info).collect()
     }
@@ -108,6 +119,14 @@ impl Source for Table {
         let index =
             position(&self.columns, topic).ok_or_else(|| unknown("topic", topic, &self.columns))?;
         Ok(self.columns[index].times().nanoseconds())
+    }
+
+    fn has_stamps_first(&self) -> bool {
+        self.format == "text" && self.time_is_first
+    }
+
+    fn time_name(&self) -> Option<String> {
+        Some(self.columns[self.time].name.clone())
     }
 
     fn notes(&self) -> Vec<String> {

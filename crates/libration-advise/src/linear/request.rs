@@ -8,6 +8,7 @@ use libration::control::clock::{Recorded, RecordedError};
 use libration::linear::{
     CostWeights, LinearLoop, LinearLoopError, LinearPlant, Matrix, MissingCommand,
 };
+use libration_logs::{StampOptions, read_time_stamps};
 use libration_settings::linear_loop::{Design, LinearLoopTable, OperatingPoint, Part};
 use libration_settings::{Document, Fault, Number, SettingsError, suggestions};
 
@@ -16,7 +17,6 @@ use super::redesign_toml::RedesignToml;
 use super::request_file::RequestFile;
 use super::stated_deadlines::StatedDeadlines;
 use crate::control::{skew_of, uneven};
-use crate::jitter_measurement;
 use crate::timed_loop::{StatedTiming, TimedLoop};
 
 /// A loop around a linear plant, designed, with its timing.
@@ -247,7 +247,7 @@ fn timing(
         let path = &table.time_stamps;
         let wrong =
             |why: String| Fault::new("loop.time-stamps", format!("cannot use `{path}`: {why}"));
-        let stamps = jitter_measurement::read_time_stamps(Path::new(path)).map_err(wrong)?;
+        let stamps = read_time_stamps(Path::new(path), &StampOptions::default()).map_err(wrong)?;
         replay(&mut timing, &stamps, period).map_err(|error| wrong(error.to_string()))?;
     }
     Ok(timing)

@@ -10,7 +10,7 @@ use libration_analyze::LatencyOption;
 use libration_settings::initial_value_problem::InitialValueProblem;
 
 use super::timing::{feedback, finite, latency, law, weights};
-use super::{LinearArgs, SystemArgs};
+use super::{LinearArgs, SystemArgs, TopicArgs};
 use crate::error::Failure;
 
 /// Arguments of `advise`.
@@ -48,9 +48,11 @@ pub(crate) struct AdviseArgs {
         allow_hyphen_values = true
     )]
     pub(super) jitter: Option<Jitter>,
-    /// File of measured time stamps instead of --jitter: from `measure-jitter --output`, or a log
+    /// File of measured time stamps instead of --jitter: from `measure-jitter --output`, or a log (text, CSV, Parquet, NumPy, MCAP)
     #[arg(long, value_name = "FILE", conflicts_with_all = ["jitter", "skew"])]
     pub(crate) jitter_file: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) topic: TopicArgs,
     /// Relative rate error of the clock, e.g. 1e-4; positive: slow, negative: fast
     #[arg(
         long,

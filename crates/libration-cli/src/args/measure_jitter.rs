@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use libration_advise::jitter_measurement::{Plan, Priority};
 
+use super::TopicArgs;
+
 /// Arguments of `measure-jitter`.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
@@ -24,13 +26,15 @@ pub(crate) struct MeasureJitterArgs {
     /// Write the time stamps to FILE as CSV, with a column `time_ns` (with --priority both: those of ordinary)
     #[arg(long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Analyze the time stamps of FILE (in s or ns) without a measurement
+    /// Analyze the time stamps of FILE without a measurement: text, CSV, Parquet, NumPy or MCAP
     #[arg(
         long,
         value_name = "FILE",
         conflicts_with_all = ["rate", "seconds", "load", "priority", "output"]
     )]
     pub(crate) from: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) topic: TopicArgs,
     /// Print the result as JSON, with all digits
     #[arg(long)]
     pub(crate) json: bool,

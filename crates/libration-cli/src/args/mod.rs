@@ -3,6 +3,7 @@
 mod advise;
 mod analyze;
 mod bench;
+mod clock;
 mod equation_advice;
 mod gains;
 mod identify;
@@ -18,6 +19,7 @@ pub(crate) mod simd;
 mod simulate;
 mod system;
 mod timing;
+mod topic;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -34,6 +36,7 @@ use crate::error::Failure;
 pub(crate) use advise::AdviseArgs;
 pub(crate) use analyze::AnalyzeArgs;
 pub(crate) use bench::BenchArgs;
+pub(crate) use clock::ClockArgs;
 pub(crate) use gains::GainsArgs;
 pub(crate) use identify::IdentifyArgs;
 pub(crate) use linear::LinearArgs;
@@ -47,6 +50,7 @@ pub(crate) use rollout::{RolloutArgs, VerifyArgs};
 pub(crate) use simulate::SimulateArgs;
 pub(crate) use system::{StepArgs, SystemArgs};
 pub(crate) use timing::CostArgs;
+pub(crate) use topic::TopicArgs;
 
 /// Predict and measure the stability of simulations and control loops.
 #[derive(Debug, Parser)]
@@ -85,6 +89,7 @@ Examples:
   libration rollout --out data --transitions 1e8
                                              a data set of rollouts, as Parquet
   libration bench                            speed of simulations on this machine
+  libration clock run.mcap --topic /cmd      the clock of a topic of a log
   libration measure-jitter --rate 500        wake-up times of a loop of 500 Hz
   libration list                             all studies, systems and integrators
 
@@ -113,6 +118,8 @@ pub(crate) enum Command {
     Verify(VerifyArgs),
     /// Measure the speed of simulations on this machine, and its hardware limits
     Bench(BenchArgs),
+    /// Analyze the clocks of a log: rate, jitter, drift, latency between topics, and what they do to a loop
+    Clock(ClockArgs),
     /// Measure the jitter of a periodic loop on this machine
     MeasureJitter(MeasureJitterArgs),
     /// List studies, systems and integrators
@@ -238,6 +245,16 @@ pub(crate) fn parse() -> Result<Arguments, Failure> {
     let command = Arguments::command().color(color_choice(&args));
     let matches = command.try_get_matches_from(args)?;
     Ok(Arguments::from_arg_matches(&matches)?)
+}
+
+impl AdviseArgs {
+    /// Parses the words of a command line of `advise`.
+    pub(crate) fn parse_words(words: Vec<String>) -> Result<Self, Failure> {
+        match Arguments::try_parse_from(words)?.command {
+            Command::Advise(args) => Ok(args),
+            _ => Err(Failure::usage("the command is not advise")),
+        }
+    }
 }
 
 /// Returns the value of `--color`, even if the rest of the command line is wrong.

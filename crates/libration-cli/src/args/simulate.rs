@@ -9,7 +9,7 @@ use libration_analyze::trajectory::{FloatType, Format};
 
 use super::number::{count, trajectory_steps, whole_number};
 use super::timing::TimingArgs;
-use super::{LinearSimulationArgs, StepArgs, SystemArgs, simd};
+use super::{LinearSimulationArgs, StepArgs, SystemArgs, TopicArgs, simd};
 
 /// Arguments of `simulate`.
 #[derive(Args, Debug)]
@@ -60,9 +60,11 @@ pub(crate) struct SimulateArgs {
     pub(crate) threads: usize,
     #[command(flatten)]
     pub(crate) timing: TimingArgs,
-    /// File of measured time stamps (in s or ns, one per line); their intervals are the lengths of the steps
+    /// File of measured time stamps (text, CSV, Parquet, NumPy, MCAP); their intervals are the lengths of the steps
     #[arg(long, value_name = "FILE")]
     pub(crate) time_stamps: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) topic: TopicArgs,
     /// Seed of --jitter, --skew, --loss and --noise
     #[arg(long, value_name = "N", value_parser = seed, allow_hyphen_values = true, default_value = "0")]
     pub(crate) seed: u64,

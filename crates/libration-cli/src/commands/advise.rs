@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use libration_advise as advise;
-use libration_advise::{Advice, AdviseError, LoopAdvice, Request, rounded};
+use libration_advise::{Advice, AdviseError, Budget, LoopAdvice, Request, linear, rounded};
 use libration_work::Work;
 use serde::Serialize;
 
@@ -25,6 +25,38 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
     let request = load_request(args)?;
     let compute = |work: &Work<'_>| advise::advise(work, &request);
     deliver(args, quiet, compute, describe, advise::page, Advice::holds)
+}
+
+/// The part of advice on a loop that a clock changes.
+pub(super) struct Verdict {
+    pub(super) answer: String,
+    pub(super) warnings: Vec<String>,
+    pub(super) budgets: Vec<Budget>,
+    pub(super) holds: bool,
+}
+
+/// Computes advice on a loop, without printing it; `command` repeats it.
+pub(super) fn verdict(args: &AdviseArgs, command: &str, quiet: bool) -> Result<Verdict, Failure> {
+    let stop = interrupt::listen();
+    if let Some(mut request) = super::advise_linear::load_request(args)? {
+        command.clone_into(&mut request.invocation);
+        let reporter = Reporter::new(quiet);
+        let advice = linear::advise(&Work::new(&reporter, stop), &request);
+        reporter.clear();
+        let advice = advice.map_err(failure)?;
+        let (holds, linear::LinearAdvice { answer, warnings, budgets, .. }) =
+            (advice.holds(), advice);
+        return Ok(Verdict { answer, warnings, budgets, holds });
+    }
+    let mut request = load_request(args)?;
+    command.clone_into(&mut request.invocation);
+    let reporter = Reporter::new(quiet);
+    let advice = advise::advise(&Work::new(&reporter, stop), &request);
+    reporter.clear();
+    let advice = advice.map_err(failure)?;
+    let holds = advice.holds();
+    let budgets = advice.looped.map_or_else(Vec::new, |looped| looped.budgets);
+    Ok(Verdict { answer: advice.answer, warnings: advice.warnings, budgets, holds })
 }
 
 /// Computes advice, prints it as text or JSON, and writes its page if the options ask for one.
@@ -70,7 +102,9 @@ fn load_request(args: &AdviseArgs) -> Result<Request, Failure> {
             ));
         };
         let replaying =
-            time_stamps::read(path, "--jitter-file", |stamps| control.with_time_stamps(&stamps))?;
+            time_stamps::read(path, "--jitter-file", &args.topic.options(), |stamps| {
+                control.with_time_stamps(&stamps)
+            })?;
         request.control = Some(replaying);
     }
     Ok(request)

@@ -29,8 +29,9 @@ pub(super) fn load_request(args: &AdviseArgs) -> Result<Option<LinearRequest>, F
     request.redesign = args.linear.redesign;
     request.invocation = command_line();
     if let Some(path) = &args.jitter_file {
-        request =
-            time_stamps::read(path, "--jitter-file", |stamps| request.with_time_stamps(&stamps))?;
+        request = time_stamps::read(path, "--jitter-file", &args.topic.options(), |stamps| {
+            request.with_time_stamps(&stamps)
+        })?;
     }
     Ok(Some(request))
 }

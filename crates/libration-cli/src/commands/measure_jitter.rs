@@ -5,9 +5,8 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use libration::control::clock::Recorded;
-use libration_advise::jitter_measurement::{
-    JitterMeasurementError, Plan, Priority, Quantile, Statistics, WakeupTimes,
-};
+use libration_advise::jitter_measurement::{JitterMeasurementError, Plan, Priority, WakeupTimes};
+use libration_logs::{Quantile, Statistics};
 use serde_json::{Value, json};
 
 use super::time_stamps;
@@ -19,7 +18,7 @@ use crate::{interrupt, terminal};
 /// Measures the jitter of a loop, or reads time stamps, and prints statistics.
 pub(crate) fn run(args: &MeasureJitterArgs, quiet: bool) -> Result<(), Failure> {
     if let Some(path) = &args.from {
-        let stamps = time_stamps::read(path, "--from", |stamps| {
+        let stamps = time_stamps::read(path, "--from", &args.topic.options(), |stamps| {
             // Time stamps that a replay rejects are rejected here, too.
             Recorded::steps_between(&stamps).map(|_| stamps)
         })?;
@@ -53,7 +52,7 @@ pub(crate) fn run(args: &MeasureJitterArgs, quiet: bool) -> Result<(), Failure> 
             }
             outcome => outcome.map_err(Failure::run)?,
         };
-        let statistics = Statistics::of_loop(&wakeups);
+        let statistics = Statistics::of_loop(&wakeups.times, wakeups.period);
         if let Some((path, file)) = file.take() {
             write(file, &plan, name, &wakeups)
                 .map_err(|error| Failure::run(unwritable(path, &error)))?;
@@ -91,7 +90,7 @@ fn named(priority: Priority) -> &'static str {
     }
 }
 
-fn print_json(value: &Value) -> Result<(), Failure> {
+pub(super) fn print_json(value: &Value) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(value).map_err(Failure::run)?;
     Ok(terminal::print(&(text + "\n"))?)
 }
@@ -116,7 +115,7 @@ fn write(file: OutputFile, plan: &Plan, name: &str, wakeups: &WakeupTimes) -> st
 }
 
 /// Returns the statistics as text.
-fn describe(head: &str, statistics: &Statistics) -> String {
+pub(super) fn describe(head: &str, statistics: &Statistics) -> String {
     let mut text = format!("{head}\n");
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "  {name:<22} {value}");
@@ -181,7 +180,8 @@ fn meaning(first: f64) -> &'static str {
     }
 }
 
-fn listed(quantiles: &[Quantile]) -> String {
+/// Quantiles as text.
+pub(super) fn listed(quantiles: &[Quantile]) -> String {
     let one = |q: &Quantile| match q.part {
         0.0 => format!("min {}", time(q.value)),
         1.0 => format!("max {}", time(q.value)),
@@ -191,16 +191,16 @@ fn listed(quantiles: &[Quantile]) -> String {
 }
 
 /// A time with three digits.
-fn time(seconds: f64) -> String {
-    let (value, unit) = match seconds {
-        s if s >= 0.9995 => (s, "s"),
-        s if s >= 0.9995e-3 => (s * 1e3, "ms"),
-        s if s >= 0.9995e-6 => (s * 1e6, "µs"),
-        s => (s * 1e9, "ns"),
+pub(super) fn time(seconds: f64) -> String {
+    let (value, unit) = match seconds.abs() {
+        s if s >= 0.9995 => (seconds, "s"),
+        s if s >= 0.9995e-3 => (seconds * 1e3, "ms"),
+        s if s >= 0.9995e-6 => (seconds * 1e6, "µs"),
+        _ => (seconds * 1e9, "ns"),
     };
-    let digits = if value >= 100.0 {
+    let digits = if value.abs() >= 100.0 {
         0
-    } else if value >= 10.0 {
+    } else if value.abs() >= 10.0 {
         1
     } else {
         2

@@ -6,6 +6,10 @@ mod analyze;
 mod analyze_equations;
 mod analyze_linear;
 mod bench;
+mod clock;
+mod clock_effect;
+mod clock_page;
+mod clock_text;
 mod closed_loop;
 mod completions;
 mod config_file;
@@ -45,6 +49,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::Gains(args) => gains::run(&args),
         Command::Identify(args) => identify::run(&args, arguments.quiet),
         Command::Probe(args) => probe::run(&args, arguments.quiet),
+        Command::Clock(args) => clock::run(&args, arguments.quiet),
         Command::MeasureJitter(args) => measure_jitter::run(&args, arguments.quiet),
         Command::List(args) => list::run(&args),
         Command::Completions(args) => completions::run(&args),

@@ -147,7 +147,11 @@ fn request(args: &SimulateArgs) -> Result<Request, Failure> {
         every: args.every,
         ensemble: args.ensemble()?,
         timing: args.timing.timing(),
-        record: args.time_stamps.as_deref().map(|path| recorded(path, step.dt)).transpose()?,
+        record: args
+            .time_stamps
+            .as_deref()
+            .map(|path| recorded(path, args, step.dt))
+            .transpose()?,
         seed: args.seed,
     })
 }
@@ -170,8 +174,10 @@ pub(super) fn linear_file(
 }
 
 /// The steps between the time stamps of a file, in multiples of `dt` seconds.
-fn recorded(path: &Path, dt: f64) -> Result<Vec<f64>, Failure> {
-    time_stamps::read(path, "--time-stamps", |stamps| Recorded::steps_in(&stamps, dt))
+fn recorded(path: &Path, args: &SimulateArgs, dt: f64) -> Result<Vec<f64>, Failure> {
+    time_stamps::read(path, "--time-stamps", &args.topic.options(), |stamps| {
+        Recorded::steps_in(&stamps, dt)
+    })
 }
 
 fn into_file(path: &Path, rows: WriteRows<'_>, watcher: &Watcher) -> Result<Outcome, Failure> {

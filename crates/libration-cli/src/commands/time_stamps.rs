@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use libration::control::clock::RecordedError;
-use libration_advise::jitter_measurement;
+use libration_logs::{StampOptions, read_time_stamps};
 
 use crate::error::Failure;
 
@@ -11,11 +11,12 @@ use crate::error::Failure;
 pub(super) fn read<T>(
     path: &Path,
     flag: &str,
+    options: &StampOptions,
     make: impl FnOnce(Vec<f64>) -> Result<T, RecordedError>,
 ) -> Result<T, Failure> {
     let wrong = |reason: String| {
         Failure::usage(format!("cannot use `{}` ({flag}): {reason}", path.display()))
     };
-    let stamps = jitter_measurement::read_time_stamps(path).map_err(wrong)?;
+    let stamps = read_time_stamps(path, options).map_err(wrong)?;
     make(stamps).map_err(|error| wrong(error.to_string()))
 }

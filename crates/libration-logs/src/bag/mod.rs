@@ -40,6 +40,9 @@ struct Topic {
     signals: Vec<String>,
     /// Number of messages with another publish time than log time.
     published: usize,
+    /// The earliest and the latest log time in ns.
+    first: i64,
+    last: i64,
     /// Whether the first message has a time in its header.
     has_header: bool,
 }
@@ -188,6 +191,8 @@ impl Topic {
             count: 0,
             signals: Vec::new(),
             published: 0,
+            first: i64::MAX,
+            last: i64::MIN,
             has_header: false,
         }
     }
@@ -199,6 +204,8 @@ impl Topic {
             self.has_header = self.decoder.header_time(message.data).is_some();
         }
         self.count += 1;
+        self.first = self.first.min(message.log);
+        self.last = self.last.max(message.log);
         self.published += usize::from(message.publish != message.log && message.publish != 0);
     }
 
@@ -230,6 +237,7 @@ impl<S: MessageStream> Source for Bag<S> {
             message_type: topic.message_type.clone(),
             count: topic.count,
             clocks: topic.clocks(),
+            span: seconds_between(topic.first, topic.last),
         };
         self.topics.iter().map(info).collect()
     }
@@ -275,6 +283,10 @@ impl<S: MessageStream> Source for Bag<S> {
         })?;
         within_limit(stamps.len())?;
         Ok(stamps)
+    }
+
+    fn is_bag(&self) -> bool {
+        true
     }
 
     fn notes(&self) -> Vec<String> {

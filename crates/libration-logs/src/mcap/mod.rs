@@ -6,26 +6,25 @@
 mod chunk;
 mod record;
 
-use std::fs::File;
-use std::io::{BufReader, Read};
-use std::path::{Path, PathBuf};
+use std::io::Read;
 
 use record::{Channels, Record, discard, read_header};
 
 use crate::bag::{Event, Message, MessageStream};
 use crate::error::LogError;
+use crate::input::Input;
 
 /// A file.
 pub(crate) struct Mcap {
-    path: PathBuf,
+    input: Input,
 }
 
 /// Bytes in front of the first record.
 const MAGIC: usize = 8;
 
 impl Mcap {
-    pub(crate) fn new(path: &Path) -> Self {
-        Mcap { path: path.to_owned() }
+    pub(crate) fn new(input: Input) -> Self {
+        Mcap { input }
     }
 }
 
@@ -35,7 +34,7 @@ impl MessageStream for Mcap {
     }
 
     fn read(&self, visit: &mut dyn FnMut(Event<'_>) -> bool) -> Result<Vec<String>, LogError> {
-        let mut file = BufReader::with_capacity(1 << 16, File::open(&self.path)?);
+        let mut file = self.input.reader()?;
         file.read_exact(&mut [0; MAGIC])?;
         let mut reading = Reading { channels: Channels::default(), visit, stopped: false };
         let mut damage = Damage::default();

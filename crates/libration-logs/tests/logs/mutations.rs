@@ -11,7 +11,7 @@ const SAMPLES: [&str; 7] =
 
 /// Mutations of each sample; `cargo xtask torture` sets more.
 fn count() -> u64 {
-    std::env::var("LIBRATION_MUTATIONS").ok().and_then(|count| count.parse().ok()).unwrap_or(1000)
+    std::env::var("LIBRATION_MUTATIONS").ok().and_then(|count| count.parse().ok()).unwrap_or(500)
 }
 
 /// Random bits (G. Marsaglia, *Xorshift RNGs*, Journal of Statistical Software 8, 2003).
@@ -62,15 +62,15 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
 }
 
 /// Reads all that a log offers.
-fn read_all(path: &std::path::Path) -> bool {
-    let Ok(log) = Log::open(path, &ReadOptions::default()) else { return false };
-    for topic in log.topics().iter().take(3) {
+fn read_all(bytes: Vec<u8>) -> bool {
+    let Ok(log) = Log::from_bytes(bytes, &ReadOptions::default()) else { return false };
+    for topic in log.topics().iter().take(1) {
         for clock in ClockChoice::ALL {
             let _ = log.stamps_of(&topic.name, clock);
         }
     }
     let signals = log.signals();
-    for signal in signals.iter().step_by(signals.len().div_ceil(4).max(1)) {
+    for signal in signals.iter().step_by(signals.len().div_ceil(2).max(1)) {
         let _ = log.series(&signal.name);
     }
     let _ = log.notes();
@@ -79,18 +79,15 @@ fn read_all(path: &std::path::Path) -> bool {
 
 #[test]
 fn no_mutation_of_a_file_leads_to_a_panic() {
-    let folder = tempfile::tempdir().unwrap();
     for name in SAMPLES {
         let sample = fs::read(path(name)).unwrap();
         let mut random = Random(0x9e37_79b9_7f4a_7c15);
-        let path = folder.path().join(name);
         let start = std::time::Instant::now();
         let mut opened = 0_u64;
         for _ in 0..count() {
             let mut bytes = sample.clone();
             mutate(&mut bytes, &mut random);
-            fs::write(&path, &bytes).unwrap();
-            opened += u64::from(read_all(&path));
+            opened += u64::from(read_all(bytes));
         }
         eprintln!("{name}: {opened} of {} open, {:?}", count(), start.elapsed());
     }

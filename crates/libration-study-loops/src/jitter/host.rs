@@ -7,8 +7,7 @@ use libration::ensemble::{All, Loops, Setup};
 use libration::number::Wide;
 use libration::system::BaselineOnly;
 use libration::{Method, State};
-use libration_advise::jitter_measurement;
-use libration_advise::jitter_measurement::Statistics;
+use libration_logs::{StampOptions, Statistics, read_time_stamps};
 use libration_report::notation::{count, number, seconds};
 use libration_report::page::Page;
 use libration_report::record::{Cell, Finding, Record, RecordError, Table, Tolerance};
@@ -31,7 +30,7 @@ const GAINS: Feedback = Feedback { position: 10.0, velocity: 2.0 };
 pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
     let Some(path) = &lab.config.get::<JitterSettings>().time_stamps else { return Ok(()) };
     let wrong = |why: String| StudyError::Exact(format!("reading `{}`: {why}", path.display()));
-    let stamps = jitter_measurement::read_time_stamps(path).map_err(wrong)?;
+    let stamps = read_time_stamps(path, &StampOptions::default()).map_err(wrong)?;
     let statistics = Statistics::of(&stamps, None);
     let steps: Vec<f64> =
         stamps.windows(2).map(|pair| (pair[1] - pair[0]) / statistics.mean).collect();

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use libration_advise::jitter_measurement;
+use libration_logs::{StampOptions, read_time_stamps};
 use libration_settings::{Fault, optional_path};
 use libration_study::Settings;
 use schemars::JsonSchema;
@@ -52,5 +52,5 @@ impl Settings for JitterSettings {
 fn time_stamps(key: &'static str, path: Option<&Path>) -> Result<(), Fault> {
     let Some(path) = path else { return Ok(()) };
     let wrong = |why| Fault::new(key, format!("cannot use `{}`: {why}", path.display()));
-    jitter_measurement::read_time_stamps(path).map(|_| ()).map_err(wrong)
+    read_time_stamps(path, &StampOptions::default()).map(|_| ()).map_err(wrong)
 }

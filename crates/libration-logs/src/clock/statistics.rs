@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Spectrum, WakeupTimes};
+use super::Spectrum;
 
 /// Statistics of the intervals between time stamps.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -56,15 +56,13 @@ const PARTS: [f64; 7] = [0.0, 0.01, 0.5, 0.9, 0.99, 0.999, 1.0];
 const LAGS: usize = 8;
 
 impl Statistics {
-    /// Statistics of a loop with known deadlines.
-    pub fn of_loop(wakeups: &WakeupTimes) -> Self {
+    /// Statistics of a loop whose wake-up `k` had its deadline `k` periods after the first, in ns.
+    pub fn of_loop(times: &[u64], period: u64) -> Self {
         let seconds = |nanoseconds: u64| nanoseconds as f64 * 1e-9;
-        let stamps: Vec<f64> = wakeups.times.iter().map(|&time| seconds(time)).collect();
-        let period = seconds(wakeups.period);
-        let late: Vec<f64> = (0..)
-            .zip(&wakeups.times)
-            .map(|(k, &time)| seconds(time.saturating_sub(k * wakeups.period)))
-            .collect();
+        let stamps: Vec<f64> = times.iter().map(|&time| seconds(time)).collect();
+        let late: Vec<f64> =
+            (0..).zip(times).map(|(k, &time)| seconds(time.saturating_sub(k * period))).collect();
+        let period = seconds(period);
         Statistics { lateness: Some(Lateness::of(late, period)), ..Self::of(&stamps, Some(period)) }
     }
 
@@ -112,11 +110,16 @@ fn covariance(deviations: &[f64], lag: usize) -> f64 {
 /// Quantiles of numbers in any order.
 fn quantiles(mut values: Vec<f64>) -> Vec<Quantile> {
     values.sort_unstable_by(f64::total_cmp);
+    quantiles_at(&PARTS, &values)
+}
+
+/// Quantiles of sorted numbers.
+pub(super) fn quantiles_at(parts: &[f64], sorted: &[f64]) -> Vec<Quantile> {
     let at = |part: f64| {
-        let place = (part * values.len() as f64).ceil().max(1.0) as usize - 1;
-        values.get(place).copied()
+        let place = (part * sorted.len() as f64).ceil().max(1.0) as usize - 1;
+        sorted.get(place).copied()
     };
-    PARTS.into_iter().filter_map(|part| Some(Quantile { part, value: at(part)? })).collect()
+    parts.iter().filter_map(|&part| Some(Quantile { part, value: at(part)? })).collect()
 }
 
 impl Lateness {
@@ -155,9 +158,8 @@ mod tests {
 
     #[test]
     fn lateness_is_counted_from_deadlines_on_a_grid() {
-        let times = vec![3_000, 1_005_000, 2_000_000, 5_500_000, 5_501_000, 5_502_000];
-        let wakeups = WakeupTimes { period: 1_000_000, times, stopped: false };
-        let found = Statistics::of_loop(&wakeups).lateness.unwrap();
+        let times = [3_000, 1_005_000, 2_000_000, 5_500_000, 5_501_000, 5_502_000];
+        let found = Statistics::of_loop(&times, 1_000_000).lateness.unwrap();
         // 3, 5, 0, 2500, 1501 and 502 µs.
         assert_eq!(found.overruns, 2);
         assert_eq!(found.quantiles.last().unwrap().value, 2.5e-3);

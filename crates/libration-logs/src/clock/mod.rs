@@ -1,0 +1,19 @@
+//! Statistics of recorded clocks: intervals and their law, order, drift between two clocks, and latencies between two topics.
+
+mod drift;
+mod latency;
+mod law;
+mod law_fit;
+mod phase;
+mod spectrum;
+mod statistics;
+mod topic_clock;
+
+pub use drift::Drift;
+pub use latency::{Latency, Matching};
+pub use law::{Law, LawKind};
+pub use law_fit::{Fit, LawFit, Verdict};
+pub use phase::{PhaseLag, phase_lags, rate_of_phase};
+pub use spectrum::{Band, Spectrum};
+pub use statistics::{Lateness, Quantile, Statistics};
+pub use topic_clock::TopicClock;

@@ -1,0 +1,70 @@
+//! The time stamps of a loop in a file of any format.
+
+use std::path::Path;
+
+use libration::control::clock::{Recorded, RecordedError};
+use libration_data::read_text_bounded;
+
+use crate::{ClockChoice, Log, ReadOptions};
+
+/// Largest size of a text of time stamps in bytes: ten million stamps of about 20 bytes.
+const LIMIT: u64 = 1 << 28;
+
+/// Which time stamps of a file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StampOptions {
+    /// The topic of a bag, or the column of a table. Default: the only topic, or the column of time.
+    pub topic: Option<String>,
+    /// The clock of a bag.
+    pub clock: ClockChoice,
+}
+
+/// Reads the time stamps of a file, in s.
+///
+/// Messages of a bag may be in another order than their stamps, which are sorted. A text without a topic has a stamp at the beginning
+/// of each line, unless another column is named as one of time.
+///
+/// # Errors
+/// In words, if the file cannot be read or its time stamps are invalid.
+pub fn read_time_stamps(path: &Path, options: &StampOptions) -> Result<Vec<f64>, String> {
+    let words = |error: &dyn std::fmt::Display| error.to_string();
+    let mut opened = None;
+    if options.topic.is_none() {
+        opened = open_if_not_lines(path, options)?;
+        if opened.is_none() {
+            let text = read_text_bounded(path, LIMIT).map_err(|error| words(&error))?;
+            let stamps = Recorded::stamps_in(&text).and_then(checked);
+            return stamps.map_err(|error| words(&error));
+        }
+    }
+    let read = ReadOptions { time: None, clock: options.clock };
+    let log = match opened {
+        Some(log) => log,
+        None => Log::open(path, &read).map_err(|error| words(&error))?,
+    };
+    let topic = match &options.topic {
+        Some(topic) => topic.clone(),
+        None => log.default_topic()?,
+    };
+    let mut stamps = log.stamps(&topic).map_err(|error| words(&error))?;
+    if log.is_bag() {
+        stamps.sort_unstable_by(f64::total_cmp);
+    }
+    checked(stamps).map_err(|error| words(&error))
+}
+
+/// The log, unless it is a text with a stamp at the beginning of each line.
+fn open_if_not_lines(path: &Path, options: &StampOptions) -> Result<Option<Log>, String> {
+    match Log::open(path, &ReadOptions { time: None, clock: options.clock }) {
+        Ok(log) if log.has_stamps_first() => Ok(None),
+        Ok(log) => Ok(Some(log)),
+        // The reader of lines has the position of an error in a text.
+        Err(_) if Log::is_text(path) => Ok(None),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+fn checked(stamps: Vec<f64>) -> Result<Vec<f64>, RecordedError> {
+    Recorded::steps_between(&stamps)?;
+    Ok(stamps)
+}
