@@ -1,4 +1,5 @@
-"""Writes the logs that the tests of libration-logs read, with mcap 1.6.0, mcap-ros2-support 0.6.0, pyarrow 26.0.1 and NumPy 2.4.6.
+"""Writes the logs that the tests of libration-logs read, with mcap 1.6.0, mcap-ros2-support 0.6.0, rosbags 0.11.9, pyulog 1.3.0,
+pyarrow 26.0.1 and NumPy 2.4.6.
 
     python tools/make_log_files.py crates/libration-logs/tests/data
 """
@@ -6,6 +7,7 @@
 import json
 import pathlib
 import random
+import struct
 import sys
 
 import mcap.writer
@@ -15,6 +17,9 @@ import pyarrow.parquet as pq
 from mcap.well_known import MessageEncoding, SchemaEncoding
 from mcap_ros2.reader import read_ros2_messages
 from mcap_ros2.writer import Writer as RosWriter
+from pyulog import ULog
+from rosbags.rosbag1 import Writer as Writer1
+from rosbags.typesys import Stores, get_typestore
 
 FOLDER = pathlib.Path(sys.argv[1])
 FOLDER.mkdir(parents=True, exist_ok=True)
@@ -177,6 +182,58 @@ def expected(name):
     (FOLDER / name).with_suffix(".json").write_text(json.dumps(rows))
 
 
+def rosbag1(path, compression):
+    """Joint states of ROS 1 at 50 Hz."""
+    store = get_typestore(Stores.ROS1_NOETIC)
+    kind = store.types["sensor_msgs/msg/JointState"]
+    header, time = store.types["std_msgs/msg/Header"], store.types["builtin_interfaces/msg/Time"]
+    path.unlink(missing_ok=True)
+    writer = Writer1(path)
+    if compression:
+        writer.set_compression(Writer1.CompressionFormat.LZ4)
+    with writer:
+        connection = writer.add_connection("/joint_states", kind.__msgtype__, typestore=store)
+        for k in range(40):
+            stamp = START + 20_000_000 * k
+            own = header(k, time(stamp // 10**9, stamp % 10**9), "base")
+            empty = np.zeros(0)
+            message = kind(own, ["a", "bc"], np.array([0.5 * k, -1.0]), empty, empty)
+            writer.write(connection, stamp + 1000 * k, store.serialize_ros1(message, kind.__msgtype__))
+
+
+def ulog(path):
+    """A log as PX4 writes it; pyulog, which cannot write new files, reads it for comparison."""
+    out = bytearray(b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 1000))
+
+    def message(letter, body):
+        out.extend(struct.pack("<HB", len(body), ord(letter)) + body)
+
+    message("B", bytes(40))
+    message("F", b"vehicle_imu:uint64_t timestamp;uint64_t timestamp_sample;float[3] gyro;uint8_t flag;uint8_t[3] _padding0;pair p;")
+    message("F", b"pair:int16_t a;uint8_t[6] _padding0;double b;")
+    message("F", b"rate:uint64_t timestamp;float x;")
+    for ident, instance, name in [(0, 0, b"vehicle_imu"), (1, 1, b"vehicle_imu"), (2, 0, b"rate")]:
+        message("A", struct.pack("<BH", instance, ident) + name)
+    for k in range(40):
+        now = 5_000_000 + 4000 * k + (k * 37) % 100
+        for ident in (0, 1):
+            body = struct.pack("<HQQfffB3xh6xd", ident, now + ident, now - 300, 0.5 * k, 1.0, -2.0, 7, -k, 1e-3 * k)
+            message("D", body)
+        if k % 4 == 0:
+            message("D", struct.pack("<HQf", 2, now + 50, k))
+    message("O", struct.pack("<H", 12))
+    path.write_bytes(out)
+    read = ULog(str(path))
+    rows = {}
+    for data in read.data_list:
+        name = data.name if data.multi_id == 0 else f"{data.name}/{data.multi_id}"
+        rows[name] = {key: [float(x) for x in values] for key, values in data.data.items() if "padding" not in key}
+    path.with_suffix(".json").write_text(json.dumps(rows))
+
+
+rosbag1(FOLDER / "ros1.bag", False)
+rosbag1(FOLDER / "ros1_lz4.bag", True)
+ulog(FOLDER / "px4.ulg")
 ros_bag(FOLDER / "zstd.mcap", mcap.writer.CompressionType.ZSTD, 160)
 ros_bag(FOLDER / "lz4.mcap", mcap.writer.CompressionType.LZ4, 60)
 ros_bag(FOLDER / "none.mcap", mcap.writer.CompressionType.NONE, 30)

@@ -3,6 +3,7 @@
 use std::io::{BufRead, Read};
 
 use crate::column::{Column, MISSING, Values, missing};
+use crate::cyclictest::{self, Output};
 use crate::error::LogError;
 use crate::input::Input;
 use crate::table::Table;
@@ -11,6 +12,9 @@ use crate::table::Table;
 const LONGEST_LINE: u64 = 1 << 20;
 /// Largest number of cells in memory: 2 GiB of numbers.
 const MOST_CELLS: u64 = 1 << 28;
+
+/// Bytes that determine the kind of a text.
+const PREFIX: u64 = 4096;
 
 /// Whether the first bytes of a file are text.
 pub(crate) fn is_text(prefix: &[u8]) -> bool {
@@ -25,6 +29,9 @@ pub(crate) fn is_text(prefix: &[u8]) -> bool {
 
 /// Reads a table in text.
 pub(crate) fn open(input: &Input, time: Option<&str>) -> Result<Table, LogError> {
+    if let Some(output) = Output::recognise(&input.prefix(PREFIX)?) {
+        return cyclictest::open(input, output);
+    }
     let (columns, notes) = read(input.reader()?)?;
     Table::new("text", columns, time, notes)
 }
@@ -64,7 +71,7 @@ fn read(mut input: impl BufRead) -> Result<(Vec<Column>, Vec<String>), LogError>
 }
 
 /// Reads a line of at most [`LONGEST_LINE`] bytes; false at the end.
-fn read_line(input: &mut impl BufRead, line: &mut String) -> Result<bool, LogError> {
+pub(crate) fn read_line(input: &mut impl BufRead, line: &mut String) -> Result<bool, LogError> {
     let mut bytes = std::mem::take(line).into_bytes();
     bytes.clear();
     input.by_ref().take(LONGEST_LINE + 1).read_until(b'\n', &mut bytes)?;

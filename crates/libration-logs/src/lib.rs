@@ -6,6 +6,7 @@
 mod bag;
 pub mod clock;
 mod column;
+mod cyclictest;
 mod delimited_text;
 mod error;
 mod input;
@@ -16,10 +17,12 @@ mod nearest_name;
 mod numpy_file;
 mod parquet_file;
 mod ros;
+mod rosbag;
 mod source;
 mod table;
 mod time_stamps;
 mod time_unit;
+mod ulog;
 
 pub use clock::{Band, Lateness, Quantile, Spectrum, Statistics};
 pub use error::LogError;

@@ -6,8 +6,10 @@ use crate::bag::Bag;
 use crate::error::LogError;
 use crate::input::Input;
 use crate::mcap::Mcap;
+use crate::rosbag::Rosbag;
 use crate::source::Source;
-use crate::{delimited_text, numpy_file, parquet_file};
+use crate::ulog::Ulog;
+use crate::{delimited_text, numpy_file, parquet_file, rosbag, ulog};
 
 /// A log: an opened file, whose format its first bytes determine.
 pub struct Log {
@@ -120,6 +122,8 @@ impl Log {
             [0x89, b'M', b'C', b'A', b'P', b'0', b'\r', b'\n', ..] => {
                 Box::new(Bag::open(Mcap::new(input))?)
             }
+            bytes if bytes.starts_with(&ulog::MAGIC) => Box::new(Bag::open(Ulog::new(input))?),
+            bytes if bytes.starts_with(rosbag::MAGIC) => Box::new(Bag::open(Rosbag::new(input))?),
             bytes if delimited_text::is_text(bytes) => {
                 Box::new(delimited_text::open(&input, time)?)
             }
@@ -203,6 +207,7 @@ impl Log {
     pub fn default_topic(&self) -> Result<String, String> {
         let topics = self.topics();
         match topics.as_slice() {
+            [] => Err("it has no time stamps".to_owned()),
             [only] => Ok(only.name.clone()),
             [first, ..] if !self.is_bag() => {
                 Ok(self.source.time_name().unwrap_or_else(|| first.name.clone()))
@@ -223,4 +228,4 @@ impl Log {
 }
 
 /// What [`Log::open`] reads.
-const FORMATS: &str = "MCAP, CSV or other text, Parquet, or NumPy (.npy, .npz)";
+const FORMATS: &str = "MCAP, ROS 1 bag, ULog, CSV or other text, Parquet, or NumPy (.npy, .npz)";

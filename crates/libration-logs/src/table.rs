@@ -14,6 +14,7 @@ pub(crate) struct Table {
     notes: Vec<String>,
     /// Whether the first column of the file is that of time.
     time_is_first: bool,
+    has_stamps: bool,
 }
 
 /// Smallest whole number that is taken for a clock since 1970, whatever its column is called: milliseconds.
@@ -38,7 +39,19 @@ impl Table {
             None => named.unwrap_or(0),
         };
         let time_is_first = time == 0;
-        Ok(Table { format, columns, time, notes, time_is_first })
+        let (rows, count) = (columns[time].rows(), columns[time].count());
+        if count == 0 || count < rows / 2 {
+            return Err(LogError::Damaged(format!(
+                "only {count} of {rows} lines have a number in the column `{}`, which is the time; expected a table of numbers",
+                columns[time].name
+            )));
+        }
+        Ok(Table { format, columns, time, notes, time_is_first, has_stamps: true })
+    }
+
+    /// The same table, whose rows have no order in time.
+    pub(crate) fn without_stamps(self) -> Self {
+        Table { has_stamps: false, ..self }
     }
 
     /// Whether a column has time stamps, from its name or the size of its numbers.
@@ -83,7 +96,8 @@ impl Source for Table {
     }
 
     fn topics(&self) -> Vec<TopicInfo> {
-        let stamps = (0..self.columns.len()).filter(|&i| self.is_stamps(i));
+        let all = if self.has_stamps { self.columns.len() } else { 0 };
+        let stamps = (0..all).filter(|&i| self.is_stamps(i));
         let info = |i: usize| TopicInfo {
             name: self.columns[i].name.clone(),
             message_type: "time stamps".to_owned(),

@@ -63,7 +63,9 @@ impl Decoder {
     /// Why messages have no time in a header.
     pub(crate) fn why_no_header(&self, message_type: &str) -> String {
         match self {
-            Decoder::Ros(_) => format!("`{message_type}` does not begin with a header or a time"),
+            Decoder::Ros(_) => format!(
+                "`{message_type}` has no header stamp: it does not begin with a header or a time"
+            ),
             Decoder::Json => "its JSON has no header.stamp".to_owned(),
             Decoder::Opaque(reason) => reason.clone(),
         }

@@ -19,6 +19,15 @@ pub(crate) enum Step {
 pub(crate) struct RosDecoder {
     definition: Definition,
     wire: Wire,
+    stamp: Option<Stamp>,
+}
+
+/// Where a message has the time at which it was made.
+enum Stamp {
+    /// A structure of seconds and nanoseconds.
+    Seconds(Vec<Step>),
+    /// A number of microseconds.
+    Microseconds(Vec<Step>),
 }
 
 impl RosDecoder {
@@ -27,7 +36,7 @@ impl RosDecoder {
     /// # Errors
     /// In words, if the text cannot be understood.
     pub(crate) fn of_text(root: &str, text: &str, wire: Wire) -> Result<Self, String> {
-        Ok(RosDecoder { definition: definition::parse(root, text)?, wire })
+        Ok(Self::new(definition::parse(root, text)?, wire))
     }
 
     /// A decoder for a definition in OMG IDL (`ros2idl`).
@@ -35,7 +44,18 @@ impl RosDecoder {
     /// # Errors
     /// In words, if the text cannot be understood.
     pub(crate) fn of_idl(root: &str, text: &str) -> Result<Self, String> {
-        Ok(RosDecoder { definition: idl::parse(root, text)?, wire: Wire::Cdr })
+        Ok(Self::new(idl::parse(root, text)?, Wire::Cdr))
+    }
+
+    fn new(definition: Definition, wire: Wire) -> Self {
+        let stamp = definition.header_stamp().map(Stamp::Seconds);
+        RosDecoder { definition, wire, stamp }
+    }
+
+    /// The same decoder with a field of microseconds as the time of a message, if it has the field.
+    pub(crate) fn with_microseconds(mut self, field: &str) -> Self {
+        self.stamp = self.definition.path(field).map(Stamp::Microseconds);
+        self
     }
 
     /// The names of the numbers in a message, at most `most`.
@@ -58,10 +78,14 @@ impl RosDecoder {
         Walker::new(&self.definition, self.wire, data)?.value(path)
     }
 
-    /// The time in ns of a message that begins with a header or a time.
+    /// The time in ns of a message that begins with a header or a time, or has the field of microseconds.
     pub(crate) fn header_time(&self, data: &[u8]) -> Option<i64> {
-        let path = self.definition.header_stamp()?;
-        let mut path = path.to_vec();
+        let mut path = match self.stamp.as_ref()? {
+            Stamp::Seconds(path) => path.clone(),
+            Stamp::Microseconds(path) => {
+                return (self.value(data, path)? as i64).checked_mul(1000);
+            }
+        };
         let mut part = |index: usize| {
             path.push(Step::Field(index));
             let value = Walker::new(&self.definition, self.wire, data)?.value(&path);

@@ -2,6 +2,7 @@
 
 mod bags;
 mod mutations;
+mod other_bags;
 mod tables;
 
 use std::path::PathBuf;

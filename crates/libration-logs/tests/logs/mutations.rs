@@ -79,13 +79,19 @@ fn read_all(bytes: Vec<u8>) -> bool {
 
 #[test]
 fn no_mutation_of_a_file_leads_to_a_panic() {
-    for name in SAMPLES {
-        let sample = fs::read(path(name)).unwrap();
+    let texts: [(&str, &[u8]); 3] = [
+        ("CSV", b"time_ns,x [m],y\n1700000000000000000,1,nan\n1700000000010000000,,2e5\n1700000000020000000,-3,\n"),
+        ("cyclictest -v", b"T: 0 ( 12) I:500 C: 3\n 0: 0: 5\n 1: 0: 9\n 0: 1: 7\n 0: 2: 6\n"),
+        ("cyclictest -h", b"# Histogram\n000003 000010\t000000\n000004 000089\t000001\n# Total: 99 1\n"),
+    ];
+    let files = SAMPLES.map(|name| (name, fs::read(path(name)).unwrap()));
+    let files = files.iter().map(|(name, bytes)| (*name, bytes.as_slice()));
+    for (name, sample) in files.chain(texts) {
         let mut random = Random(0x9e37_79b9_7f4a_7c15);
         let start = std::time::Instant::now();
         let mut opened = 0_u64;
         for _ in 0..count() {
-            let mut bytes = sample.clone();
+            let mut bytes = sample.to_vec();
             mutate(&mut bytes, &mut random);
             opened += u64::from(read_all(bytes));
         }
