@@ -179,7 +179,7 @@ def expected(name):
             value = own.position[3] if hasattr(own, "position") else own.twist.angular.z if hasattr(own, "twist") else own.pairs[1].b
             row = [message.log_time_ns, message.publish_time_ns, stamp.sec * 10**9 + stamp.nanosec, value]
             rows.setdefault(message.channel.topic, []).append(row)
-    (FOLDER / name).with_suffix(".json").write_text(json.dumps(rows))
+    (FOLDER / name).with_suffix(".json").write_text(json.dumps(rows) + "\n")
 
 
 def rosbag1(path, compression):
@@ -228,7 +228,7 @@ def ulog(path):
     for data in read.data_list:
         name = data.name if data.multi_id == 0 else f"{data.name}/{data.multi_id}"
         rows[name] = {key: [float(x) for x in values] for key, values in data.data.items() if "padding" not in key}
-    path.with_suffix(".json").write_text(json.dumps(rows))
+    path.with_suffix(".json").write_text(json.dumps(rows) + "\n")
 
 
 rosbag1(FOLDER / "ros1.bag", False)

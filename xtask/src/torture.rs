@@ -1,11 +1,14 @@
-//! `cargo xtask torture`: processes that write are killed, fifty times each.
+//! `cargo xtask torture`: processes that write are killed, fifty times each, and logs are damaged, a million times each.
 
 use crate::{Outcome, command};
 
 /// Kills of each kind; the tests by themselves do with a few.
 const KILLS: &str = "50";
 
-/// Runs the tests that kill, with many kills.
+/// Mutations of each sample of a log, more than 10⁷ in total; the tests by themselves do with a few hundred.
+const MUTATIONS: &str = "800000";
+
+/// Runs the tests that kill, with many kills, and those that damage logs, with many mutations.
 pub(crate) fn run() -> Outcome {
     for tests in [
         "test --package libration-data --test data kills::",
@@ -13,5 +16,6 @@ pub(crate) fn run() -> Outcome {
     ] {
         command::run(command::cargo(tests).env("LIBRATION_KILLS", KILLS))?;
     }
-    Ok(())
+    let logs = "test --release --package libration-logs --test logs mutations::";
+    command::run(command::cargo(logs).env("LIBRATION_MUTATIONS", MUTATIONS))
 }

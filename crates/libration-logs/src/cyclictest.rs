@@ -7,10 +7,10 @@ use std::collections::BTreeMap;
 use std::io::BufRead;
 
 use crate::column::{Column, Values};
-use crate::delimited_text::read_line;
 use crate::error::LogError;
 use crate::input::Input;
 use crate::table::Table;
+use crate::text_line::read_line;
 
 /// The interval of the first thread in ns, unless the output has it: the default of the program.
 const INTERVAL: i64 = 1_000_000;
@@ -163,7 +163,7 @@ fn quantiles(thread: usize, lates: &[i64], counts: &[i64]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ClockChoice;
+    use crate::signal::ClockChoice;
     use crate::source::Source;
 
     const VERBOSE: &str = "Max CPUs = 8\nT: 0 ( 1234) P:80 I:500 C: 10 Min: 3\n\

@@ -1,20 +1,16 @@
 //! CSV, TSV and other tables in text.
 
-use std::io::{BufRead, Read};
+use std::io::BufRead;
 
-use crate::column::{Column, MISSING, Values, missing};
-use crate::cyclictest::{self, Output};
+use crate::column::Column;
+use crate::column_builder::{ColumnBuilder, number};
 use crate::error::LogError;
 use crate::input::Input;
 use crate::table::Table;
+use crate::text_line::read_line;
 
-/// Largest line in bytes.
-const LONGEST_LINE: u64 = 1 << 20;
 /// Largest number of cells in memory: 2 GiB of numbers.
 const MOST_CELLS: u64 = 1 << 28;
-
-/// Bytes that determine the kind of a text.
-const PREFIX: u64 = 4096;
 
 /// Whether the first bytes of a file are text.
 pub(crate) fn is_text(prefix: &[u8]) -> bool {
@@ -29,9 +25,6 @@ pub(crate) fn is_text(prefix: &[u8]) -> bool {
 
 /// Reads a table in text.
 pub(crate) fn open(input: &Input, time: Option<&str>) -> Result<Table, LogError> {
-    if let Some(output) = Output::recognise(&input.prefix(PREFIX)?) {
-        return cyclictest::open(input, output);
-    }
     let (columns, notes) = read(input.reader()?)?;
     Table::new("text", columns, time, notes)
 }
@@ -70,31 +63,11 @@ fn read(mut input: impl BufRead) -> Result<(Vec<Column>, Vec<String>), LogError>
     Ok(rows.into_columns())
 }
 
-/// Reads a line of at most [`LONGEST_LINE`] bytes; false at the end.
-pub(crate) fn read_line(input: &mut impl BufRead, line: &mut String) -> Result<bool, LogError> {
-    let mut bytes = std::mem::take(line).into_bytes();
-    bytes.clear();
-    input.by_ref().take(LONGEST_LINE + 1).read_until(b'\n', &mut bytes)?;
-    if bytes.len() as u64 > LONGEST_LINE {
-        let value = bytes.len() as u64;
-        return Err(LogError::TooLarge {
-            what: "length of a line in bytes",
-            value,
-            limit: LONGEST_LINE,
-        });
-    }
-    *line = match String::from_utf8(bytes) {
-        Ok(text) => text,
-        Err(error) => String::from_utf8_lossy(error.as_bytes()).into_owned(),
-    };
-    Ok(!line.is_empty())
-}
-
 /// The rows of a table while they are read.
 struct Rows {
     delimiter: Option<char>,
     names: Vec<String>,
-    values: Vec<Builder>,
+    values: Vec<ColumnBuilder>,
     rows: usize,
     /// Number of rows with another number of cells.
     ragged: usize,
@@ -114,7 +87,7 @@ impl Rows {
             }
             _ => (1..=cells.len()).map(|i| format!("column_{i}")).collect(),
         };
-        let values = names.iter().map(|_| Builder::default()).collect();
+        let values = names.iter().map(|_| ColumnBuilder::default()).collect();
         let mut rows = Rows { delimiter, names, values, rows: 0, ragged: 0 };
         if !is_header {
             rows.push(text)?;
@@ -143,8 +116,9 @@ impl Rows {
             notes.push(format!("{ragged} of {} rows do not have {cells} cells", self.rows));
         }
         let columns = self.names.into_iter().zip(self.values);
-        let columns = columns.filter(|(_, values)| values.numbers > 0);
-        let columns = columns.map(|(name, values)| Column::new(name, values.values)).collect();
+        let columns = columns.filter(|(_, values)| values.count() > 0);
+        let columns =
+            columns.map(|(name, values)| Column::new(name, values.into_values())).collect();
         (columns, notes)
     }
 }
@@ -169,86 +143,10 @@ fn name(cell: &str) -> String {
     cell.trim_start_matches('%').trim_matches(['"', '\'']).trim().to_owned()
 }
 
-/// The text of a number in a cell; `candump -L` writes parentheses.
-fn number(cell: &str) -> Option<f64> {
-    let bare = cell.strip_prefix('(').and_then(|cell| cell.strip_suffix(')')).unwrap_or(cell);
-    match bare {
-        "true" | "True" => Some(1.0),
-        "false" | "False" => Some(0.0),
-        _ => bare.parse().ok(),
-    }
-}
-
-/// A column while it is read: whole numbers as long as all are whole.
-struct Builder {
-    values: Values,
-    numbers: usize,
-}
-
-impl Default for Builder {
-    fn default() -> Self {
-        Builder { values: Values::Whole(Vec::new()), numbers: 0 }
-    }
-}
-
-impl Builder {
-    fn push(&mut self, cell: &str) {
-        let bare = cell.strip_prefix('(').and_then(|cell| cell.strip_suffix(')')).unwrap_or(cell);
-        let Some(value) = number(bare) else {
-            return self.push_missing();
-        };
-        self.numbers += 1;
-        if let Values::Whole(all) = &mut self.values {
-            if let Ok(whole) = bare.parse::<i64>() {
-                return all.push(whole);
-            }
-            self.leave_whole(value);
-        }
-        if let Values::Nanoseconds(all) = &mut self.values {
-            if let Some(nanoseconds) = nanoseconds(bare) {
-                return all.push(nanoseconds);
-            }
-            let seconds = |&x: &i64| if x == MISSING { missing() } else { x as f64 / 1e9 };
-            self.values = Values::Floats(all.iter().map(seconds).collect());
-        }
-        if let Values::Floats(all) = &mut self.values {
-            all.push(value);
-        }
-    }
-
-    /// Continues with decimals: exactly if the first is a number of seconds since 1970.
-    fn leave_whole(&mut self, value: f64) {
-        let Values::Whole(all) = &mut self.values else { return };
-        let is_epoch = (5e8..5e9).contains(&value);
-        let scaled = |&x: &i64| if x == MISSING { Some(x) } else { x.checked_mul(1_000_000_000) };
-        let exact: Option<Vec<i64>> = is_epoch.then(|| all.iter().map(scaled).collect()).flatten();
-        let float = |&x: &i64| if x == MISSING { missing() } else { x as f64 };
-        self.values = exact
-            .map_or_else(|| Values::Floats(all.iter().map(float).collect()), Values::Nanoseconds);
-    }
-
-    fn push_missing(&mut self) {
-        match &mut self.values {
-            Values::Whole(all) | Values::Nanoseconds(all) => all.push(MISSING),
-            Values::Floats(all) => all.push(missing()),
-        }
-    }
-}
-
-/// Decimal seconds with at most nine digits behind the point, in ns.
-fn nanoseconds(text: &str) -> Option<i64> {
-    let (whole, fraction) = text.split_once('.').unwrap_or((text, ""));
-    let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
-    if whole.is_empty() || fraction.len() > 9 || !digits(whole) || !digits(fraction) {
-        return None;
-    }
-    format!("{whole}{fraction:0<9}").parse().ok()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ClockChoice;
+    use crate::signal::ClockChoice;
     use crate::source::Source;
 
     fn table(text: &str) -> Table {

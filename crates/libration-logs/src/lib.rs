@@ -6,6 +6,7 @@
 mod bag;
 pub mod clock;
 mod column;
+mod column_builder;
 mod cyclictest;
 mod delimited_text;
 mod error;
@@ -18,13 +19,16 @@ mod numpy_file;
 mod parquet_file;
 mod ros;
 mod rosbag;
+mod signal;
 mod source;
 mod table;
+mod text_line;
 mod time_stamps;
 mod time_unit;
 mod ulog;
 
 pub use clock::{Band, Lateness, Quantile, Spectrum, Statistics};
 pub use error::LogError;
-pub use log::{ClockChoice, Log, ReadOptions, Series, SignalInfo, TopicInfo};
+pub use log::{Log, ReadOptions};
+pub use signal::{ClockChoice, Series, SignalInfo, TopicInfo};
 pub use time_stamps::{StampOptions, read_time_stamps};

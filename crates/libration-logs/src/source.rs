@@ -1,6 +1,7 @@
 //! What a reader of one format offers.
 
-use crate::{ClockChoice, LogError, Series, SignalInfo, TopicInfo};
+use crate::error::LogError;
+use crate::signal::{ClockChoice, Series, SignalInfo, TopicInfo};
 
 /// An opened file of some format.
 pub(crate) trait Source: Send {

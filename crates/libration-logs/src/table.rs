@@ -2,9 +2,9 @@
 
 use crate::column::{Column, Times, Values};
 use crate::error::LogError;
+use crate::signal::{ClockChoice, Series, SignalInfo, TopicInfo};
 use crate::source::Source;
 use crate::time_unit::{is_time_name, unit_in_name};
-use crate::{ClockChoice, Series, SignalInfo, TopicInfo};
 
 /// A table with a column of time.
 pub(crate) struct Table {

@@ -48,7 +48,7 @@ pub(crate) struct AdviseArgs {
         allow_hyphen_values = true
     )]
     pub(super) jitter: Option<Jitter>,
-    /// File of measured time stamps instead of --jitter: from `measure-jitter --output`, or a log (text, CSV, Parquet, NumPy, MCAP)
+    /// File of measured time stamps instead of --jitter: from `measure-jitter --output`, or any log that `clock` reads
     #[arg(long, value_name = "FILE", conflicts_with_all = ["jitter", "skew"])]
     pub(crate) jitter_file: Option<PathBuf>,
     #[command(flatten)]

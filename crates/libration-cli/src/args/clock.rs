@@ -10,7 +10,7 @@ use super::TopicArgs;
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct ClockArgs {
-    /// Log: MCAP, CSV or other text, Parquet, NumPy; its first bytes determine the format
+    /// Log: MCAP, ROS 1 bag, ULog, CSV or other text, cyclictest, Parquet, NumPy; its first bytes determine the format
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
     #[command(flatten)]

@@ -26,7 +26,7 @@ pub(crate) struct MeasureJitterArgs {
     /// Write the time stamps to FILE as CSV, with a column `time_ns` (with --priority both: those of ordinary)
     #[arg(long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Analyze the time stamps of FILE without a measurement: text, CSV, Parquet, NumPy or MCAP
+    /// Analyze the time stamps of FILE without a measurement: any log that `clock` reads
     #[arg(
         long,
         value_name = "FILE",

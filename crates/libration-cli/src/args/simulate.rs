@@ -60,7 +60,7 @@ pub(crate) struct SimulateArgs {
     pub(crate) threads: usize,
     #[command(flatten)]
     pub(crate) timing: TimingArgs,
-    /// File of measured time stamps (text, CSV, Parquet, NumPy, MCAP); their intervals are the lengths of the steps
+    /// File of measured time stamps, as any log that `clock` reads; their intervals are the lengths of the steps
     #[arg(long, value_name = "FILE")]
     pub(crate) time_stamps: Option<PathBuf>,
     #[command(flatten)]

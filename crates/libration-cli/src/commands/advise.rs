@@ -32,6 +32,8 @@ pub(super) struct Verdict {
     pub(super) answer: String,
     pub(super) warnings: Vec<String>,
     pub(super) budgets: Vec<Budget>,
+    /// The period of the loop in s; none without a loop.
+    pub(super) period: Option<f64>,
     pub(super) holds: bool,
 }
 
@@ -44,9 +46,9 @@ pub(super) fn verdict(args: &AdviseArgs, command: &str, quiet: bool) -> Result<V
         let advice = linear::advise(&Work::new(&reporter, stop), &request);
         reporter.clear();
         let advice = advice.map_err(failure)?;
-        let (holds, linear::LinearAdvice { answer, warnings, budgets, .. }) =
-            (advice.holds(), advice);
-        return Ok(Verdict { answer, warnings, budgets, holds });
+        let holds = advice.holds();
+        let linear::LinearAdvice { answer, warnings, budgets, period, .. } = advice;
+        return Ok(Verdict { answer, warnings, budgets, period: Some(period), holds });
     }
     let mut request = load_request(args)?;
     command.clone_into(&mut request.invocation);
@@ -55,8 +57,9 @@ pub(super) fn verdict(args: &AdviseArgs, command: &str, quiet: bool) -> Result<V
     reporter.clear();
     let advice = advice.map_err(failure)?;
     let holds = advice.holds();
+    let period = advice.looped.as_ref().map(|looped| looped.period);
     let budgets = advice.looped.map_or_else(Vec::new, |looped| looped.budgets);
-    Ok(Verdict { answer: advice.answer, warnings: advice.warnings, budgets, holds })
+    Ok(Verdict { answer: advice.answer, warnings: advice.warnings, budgets, period, holds })
 }
 
 /// Computes advice, prints it as text or JSON, and writes its page if the options ask for one.

@@ -7,8 +7,12 @@ use libration_logs::clock::Latency;
 use serde::Serialize;
 
 use super::advise::{self, Verdict};
+use super::measure_jitter::time;
 use crate::args::{AdviseArgs, ClockArgs, quoted};
 use crate::error::Failure;
+
+/// Largest skew of a topic that is the clock of a loop.
+const OTHER_RATE: f64 = 0.05;
 
 /// What a clock and a latency do to a loop.
 #[derive(Debug, Serialize)]
@@ -28,11 +32,12 @@ pub(super) struct Effect {
     pub(super) command: String,
 }
 
-/// The loop with the recorded clock: with its own latency, or with the median and the 99 % quantile of the measured one.
+/// The loop with the recorded clock of mean interval `mean`, in s: with its own latency, or with the median and the 99 % quantile of the measured one.
 pub(super) fn effects(
     args: &ClockArgs,
     config: &Path,
     topic: Option<&str>,
+    mean: f64,
     latency: Option<&Latency>,
     quiet: bool,
 ) -> Result<Vec<Effect>, Failure> {
@@ -49,11 +54,25 @@ pub(super) fn effects(
         let words = advise_words(args, config, topic, latency);
         let command = quoted(words.clone());
         let advise_args = AdviseArgs::parse_words(words)?;
-        let Verdict { answer, warnings, budgets, holds } =
+        let Verdict { answer, mut warnings, budgets, period, holds } =
             advise::verdict(&advise_args, &command, quiet)?;
+        warnings.splice(0..0, period.and_then(|period| other_rate(period, mean)));
         Ok(Effect { case, latency, holds, answer, warnings, budgets, command })
     };
     cases.into_iter().map(effect).collect()
+}
+
+/// A warning if the mean interval of a topic is not the period of the loop.
+fn other_rate(period: f64, mean: f64) -> Option<String> {
+    let is_other = (mean / period - 1.0).abs() > OTHER_RATE;
+    is_other.then(|| {
+        format!(
+            "the mean interval of the topic is {}, the period of the loop {}: the topic is not the clock of this loop; \
+             help: choose a --topic with one message per period",
+            time(mean),
+            time(period)
+        )
+    })
 }
 
 /// The command line of `advise` with the clock of a topic and a latency in s.

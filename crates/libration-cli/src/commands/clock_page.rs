@@ -6,7 +6,7 @@ use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 use libration_report::report;
 
-use super::clock::ClockReport;
+use super::clock_report::ClockReport;
 use super::clock_text::{drift_words, law_words, matching_words, verdict_words};
 use super::measure_jitter::{listed, time};
 

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use libration_logs::clock::{Drift, Latency, Law, LawFit, Matching, PhaseLag, TopicClock, Verdict};
 
-use super::clock::ClockReport;
 use super::clock_effect::Effect;
+use super::clock_report::ClockReport;
 use super::measure_jitter::{self, listed, time};
 
 /// Returns the report as text.

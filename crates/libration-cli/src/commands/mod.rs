@@ -9,6 +9,7 @@ mod bench;
 mod clock;
 mod clock_effect;
 mod clock_page;
+mod clock_report;
 mod clock_text;
 mod closed_loop;
 mod completions;

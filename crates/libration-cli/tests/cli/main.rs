@@ -25,6 +25,7 @@ mod linear_redesign;
 mod linear_simulation;
 mod linear_weights;
 #[cfg(unix)]
+mod logs;
 mod long_files;
 #[cfg(target_os = "linux")]
 mod memory;

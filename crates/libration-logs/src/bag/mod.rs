@@ -5,6 +5,7 @@
 
 mod decoder;
 mod message_stream;
+mod topic;
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -12,9 +13,11 @@ pub(crate) use decoder::Decoder;
 use decoder::SignalPath;
 pub(crate) use message_stream::{Channel, Event, Message, MessageStream};
 
+use topic::Topic;
+
 use crate::error::LogError;
+use crate::signal::{ClockChoice, Series, SignalInfo, TopicInfo};
 use crate::source::Source;
-use crate::{ClockChoice, Series, SignalInfo, TopicInfo};
 
 /// Most values of a series, and most messages of a topic: 2 GiB of numbers.
 const MOST: usize = 1 << 27;
@@ -30,21 +33,6 @@ pub(crate) struct Bag<S> {
     notes: Vec<String>,
     /// The log time of the first message, in ns.
     origin: i64,
-}
-
-struct Topic {
-    name: String,
-    message_type: String,
-    decoder: Decoder,
-    count: usize,
-    signals: Vec<String>,
-    /// Number of messages with another publish time than log time.
-    published: usize,
-    /// The earliest and the latest log time in ns.
-    first: i64,
-    last: i64,
-    /// Whether the first message has a time in its header.
-    has_header: bool,
 }
 
 impl<S: MessageStream> Bag<S> {
@@ -180,41 +168,6 @@ impl<S: MessageStream> Bag<S> {
 /// A difference in ns as seconds.
 pub(crate) fn seconds_between(from: i64, to: i64) -> f64 {
     (i128::from(to) - i128::from(from)) as f64 / 1e9
-}
-
-impl Topic {
-    fn new(name: String, message_type: String, decoder: Decoder) -> Self {
-        Topic {
-            name,
-            message_type,
-            decoder,
-            count: 0,
-            signals: Vec::new(),
-            published: 0,
-            first: i64::MAX,
-            last: i64::MIN,
-            has_header: false,
-        }
-    }
-
-    fn add(&mut self, message: &Message<'_>) {
-        if self.count == 0 {
-            let names = self.decoder.signals(message.data);
-            self.signals = names.into_iter().map(|name| format!("{}.{name}", self.name)).collect();
-            self.has_header = self.decoder.header_time(message.data).is_some();
-        }
-        self.count += 1;
-        self.first = self.first.min(message.log);
-        self.last = self.last.max(message.log);
-        self.published += usize::from(message.publish != message.log && message.publish != 0);
-    }
-
-    fn clocks(&self) -> Vec<ClockChoice> {
-        let mut clocks = vec![ClockChoice::Log];
-        clocks.extend((self.published > 0).then_some(ClockChoice::Publish));
-        clocks.extend(self.has_header.then_some(ClockChoice::Header));
-        clocks
-    }
 }
 
 impl<S: MessageStream> Source for Bag<S> {

@@ -174,7 +174,7 @@ mod tests {
         assert_eq!(best(|n| 1.0 + 0.1 * gaussian(n)), ("gaussian", Verdict::Fits));
         assert_eq!(best(|n| 1.0 + 0.1 * uniform(n)), ("uniform", Verdict::Fits));
         assert_eq!(best(|n| 1.0 - 0.1 * uniform(n).ln()), ("exponential tail", Verdict::Fits));
-        let two = |n: u64| if n % 3 == 0 { 2.0 } else { 1.0 } + 0.01 * gaussian(n);
+        let two = |n: u64| if n.is_multiple_of(3) { 2.0 } else { 1.0 } + 0.01 * gaussian(n);
         assert_eq!(best(two), ("two-valued", Verdict::Fits));
         let laplace = |n: u64| {
             let u = uniform(n) - 0.5;
@@ -186,8 +186,9 @@ mod tests {
     #[test]
     fn that_no_law_fits_is_said() {
         // Three values, and rare ones far away.
-        let three =
-            |n: u64| [1.0, 1.5, 3.0][(n % 3) as usize] + if n % 97 == 0 { 20.0 } else { 0.0 };
+        let three = |n: u64| {
+            [1.0, 1.5, 3.0][(n % 3) as usize] + if n.is_multiple_of(97) { 20.0 } else { 0.0 }
+        };
         assert_eq!(best(three).1, Verdict::None);
         assert_eq!(best(|_| 1.0).1, Verdict::Constant);
         assert_eq!(LawFit::of(&[1.0, 2.0]).verdict, Verdict::TooFew);

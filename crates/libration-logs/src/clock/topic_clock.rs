@@ -60,7 +60,8 @@ impl TopicClock {
         if statistics.mean <= 0.0 {
             return Err(LogError::Damaged(format!("all time stamps of `{topic}` are equal")));
         }
-        let info = log.topics().into_iter().find(|info| info.name == topic);
+        let fits = |name: &str| name == topic || name.strip_prefix('/') == Some(topic);
+        let info = log.topics().into_iter().find(|info| fits(&info.name));
         let has_header = info.as_ref().is_some_and(|i| i.clocks.contains(&ClockChoice::Header));
         let log_against_header = match has_header {
             true => Drift::between(

@@ -10,7 +10,8 @@ use crate::{open, path};
 type Expected = BTreeMap<String, Vec<(i64, i64, i64, f64)>>;
 
 fn expected(name: &str) -> Expected {
-    serde_json::from_str(&std::fs::read_to_string(path(name)).unwrap()).unwrap()
+    let text = std::fs::read_to_string(path(name)).expect(name);
+    serde_json::from_str(&text).expect(name)
 }
 
 const VALUES: [(&str, &str); 3] = [

@@ -14,5 +14,5 @@ fn path(name: &str) -> PathBuf {
 }
 
 fn open(name: &str, clock: ClockChoice) -> Log {
-    Log::open(&path(name), &ReadOptions { clock, ..ReadOptions::default() }).unwrap()
+    Log::open(&path(name), &ReadOptions { clock, ..ReadOptions::default() }).expect(name)
 }

@@ -6,8 +6,18 @@ use libration_logs::{ClockChoice, Log, ReadOptions};
 
 use crate::path;
 
-const SAMPLES: [&str; 7] =
-    ["zstd.mcap", "lz4.mcap", "none.mcap", "json.mcap", "table.npz", "matrix.npy", "table.parquet"];
+const SAMPLES: [&str; 10] = [
+    "zstd.mcap",
+    "lz4.mcap",
+    "none.mcap",
+    "json.mcap",
+    "ros1.bag",
+    "ros1_lz4.bag",
+    "px4.ulg",
+    "table.npz",
+    "matrix.npy",
+    "table.parquet",
+];
 
 /// Mutations of each sample; `cargo xtask torture` sets more.
 fn count() -> u64 {

@@ -1,0 +1,161 @@
+//! `libration clock`, and logs wherever time stamps are taken, through the binary.
+
+use std::fs;
+
+use predicates::prelude::*;
+
+use super::advise::{ADVISE, json, libration};
+
+/// A log that the packages `mcap` and `mcap-ros2-support` wrote.
+fn sample(name: &str) -> String {
+    format!("{}/../libration-logs/tests/data/{name}", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A loop of a hundred hertz, as the sample has one.
+const LOOP: &str = "\
+[system.oscillator]\nomega2 = 10.0\n\n[controller.pd]\nposition = 10.0\nvelocity = 2.0\n\n[loop]\nperiod = 0.01\n";
+
+#[test]
+fn the_topics_of_a_bag_are_listed() {
+    let found = json(&["clock", &sample("zstd.mcap")]);
+    let names: Vec<_> = found["topics"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|topic| topic["name"].as_str().unwrap())
+        .collect();
+    assert_eq!(names, ["/joint_states", "/cmd", "/statistics"]);
+    assert_eq!(found["topics"][0]["clocks"].as_array().unwrap().len(), 3);
+    let text = libration(&["clock", &sample("truncated.mcap")]).success();
+    text.stdout(predicate::str::contains("note: the end of the file is missing"));
+}
+
+#[test]
+fn latency_drift_and_phase_of_two_topics_are_those_that_were_written() {
+    let found =
+        json(&["clock", &sample("zstd.mcap"), "--topic", "/joint_states", "--against", "/cmd"]);
+    let latency = &found["latency"];
+    assert_eq!(latency["matching"], "header-stamps");
+    assert_eq!((&latency["count"], &latency["unanswered"]), (&144.into(), &16.into()));
+    // Uniform from 3 to 5 ms; 144 draws have a mean within four deviations of 0.58 / 12 ms.
+    let mean = latency["mean"].as_f64().unwrap();
+    assert!((mean - 4e-3).abs() < 4.0 * 0.58e-3 / 12.0, "{mean}");
+    assert_eq!(latency["law"]["fits"][0]["name"], "uniform");
+    let lag = &latency["phase_of_99_percent"][0];
+    let last = latency["quantiles"].as_array().unwrap().iter().find(|q| q["part"] == 0.99).unwrap();
+    assert_eq!(lag["degrees"].as_f64(), last["value"].as_f64().map(|x| 360.0 * x));
+    assert_eq!(found["clock"]["backward"], 2);
+    assert!(found["clock"]["log_against_header"]["skew_ppm"].is_f64());
+    let command = found["advise_command"].as_str().unwrap();
+    assert!(command.contains("--topic /joint_states --latency 0.0049"), "{command}");
+}
+
+#[test]
+fn a_loop_is_told_what_its_recorded_clock_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let config = folder.path().join("loop.toml");
+    fs::write(&config, LOOP).unwrap();
+    let config = config.to_str().unwrap();
+    let bag = sample("zstd.mcap");
+    let page = folder.path().join("clock.html");
+    let words =
+        ["clock", &bag, "--topic", "/joint_states", "--against", "/cmd", "--config", config];
+    let found = json(&[&words[..], &["--page", page.to_str().unwrap()]].concat());
+    let effects = found["effects"].as_array().unwrap();
+    assert_eq!(effects.len(), 2);
+    for effect in effects {
+        assert_eq!(effect["holds"], true);
+        let budgets = effect["budgets"].as_array().unwrap();
+        let of = |kind: &str| budgets.iter().find(|budget| budget["kind"] == kind).unwrap();
+        assert_eq!(
+            of("latency")["stated"].as_f64().map(|x| (1e3 * x).round()),
+            effect["latency"].as_f64().map(|x| (1e3 * x).round())
+        );
+        // The jitter is that of the record.
+        let rms = found["clock"]["statistics"]["jitter_rms"].as_f64().unwrap();
+        assert!((of("jitter")["stated"].as_f64().unwrap() - rms).abs() < 1e-9);
+    }
+    assert!(fs::read_to_string(&page).unwrap().contains("Distribution of the latency"));
+    // The same command on its own has the same answer.
+    let command = effects[1]["command"].as_str().unwrap();
+    let words: Vec<&str> = command.split(' ').skip(1).collect();
+    assert_eq!(json(&words)["answer"], effects[1]["answer"]);
+}
+
+#[test]
+fn logs_are_taken_wherever_time_stamps_are() {
+    let bag = sample("zstd.mcap");
+    let words = [
+        &ADVISE[..],
+        &[
+            "10,2",
+            "--period",
+            "0.01",
+            "--jitter-file",
+            &bag,
+            "--topic",
+            "/joint_states",
+            "--clock",
+            "header",
+        ],
+    ]
+    .concat();
+    let advised = json(&words);
+    let statistics =
+        json(&["measure-jitter", "--from", &bag, "--topic", "joint_states", "--clock", "header"]);
+    let stated = advised["loop"]["budgets"][1]["stated"].as_f64().unwrap();
+    assert!((stated - statistics["jitter_rms"].as_f64().unwrap()).abs() < 1e-9, "{stated}");
+    for (name, topic) in [
+        ("px4.ulg", "rate"),
+        ("ros1.bag", "/joint_states"),
+        ("table.npz", "stamp"),
+        ("table.parquet", "stamp"),
+    ] {
+        libration(&["measure-jitter", "--from", &sample(name), "--topic", topic]).success();
+    }
+    // One topic, or a column of time, needs no option.
+    for name in ["ros1_lz4.bag", "table.npz", "table.parquet", "matrix.npy"] {
+        libration(&["measure-jitter", "--from", &sample(name)]).success();
+    }
+    let steps = ["--integrator", "rk4", "--dt", "0.01", "--steps", "20", "--system", "oscillator"];
+    let words = [&["simulate", "--time-stamps", &bag, "--topic", "/cmd"], &steps[..]].concat();
+    libration(&words).success();
+}
+
+#[test]
+fn wrong_input_names_the_option_the_value_and_what_is_allowed() {
+    let bag = sample("zstd.mcap");
+    let folder = tempfile::tempdir().unwrap();
+    let config = folder.path().join("loop.toml");
+    fs::write(&config, LOOP).unwrap();
+    let noise = folder.path().join("noise");
+    fs::write(&noise, [0_u8, 1, 2, 3]).unwrap();
+    let cases: [(&[&str], &str); 8] = [
+        (
+            &["clock", &bag, "--topic", "/cmds"],
+            "(--topic): the file has no topic `/cmds`; expected one of `/joint_states`, `/cmd`",
+        ),
+        (
+            &["clock", &bag, "--topic", "/cmd", "--against", "/no"],
+            "(--against): the file has no topic `/no`",
+        ),
+        (&["clock", &bag, "--topic", "/statistics", "--clock", "publish"], "has no publish times"),
+        (&["clock", &bag, "--against", "/cmd"], "--topic"),
+        (
+            &["clock", &bag, "--config", config.to_str().unwrap()],
+            "expected --topic with one of `/joint_states`",
+        ),
+        (&["clock", noise.to_str().unwrap()], "the format is unknown; expected MCAP"),
+        (
+            &["clock", &sample("table.npz"), "--time", "tim"],
+            "(--time): the file has no column `tim`",
+        ),
+        (
+            &["measure-jitter", "--from", &bag],
+            "(--from): it has 3 topics; expected --topic with one of",
+        ),
+    ];
+    for (words, wanted) in cases {
+        libration(words).code(2).stderr(predicate::str::contains(wanted));
+    }
+}
