@@ -12,7 +12,7 @@ const FLOORS: [&[&str]; 13] = [
     &["libration"],
     &["libration-data", REPORT, "libration-work"],
     &["libration-logs", "libration-settings"],
-    &["libration-analyze", "libration-identify", "libration-probe"],
+    &["libration-analyze", "libration-energy", "libration-identify", "libration-probe"],
     &["libration-advise", "libration-env"],
     &["libration-study"],
     &["libration-study-batch", "libration-study-loops", "libration-study-motion"],

@@ -1,0 +1,61 @@
+//! The audit of energy traces.
+
+use crate::cause::OscillationCause;
+use crate::findings::{answer, findings};
+use crate::power_law::PowerLaw;
+use crate::trace::checked;
+use crate::{
+    DriftCause, EnergyReport, EnergyTrace, Estimate, LargestDt, Requirement, Run, TraceError,
+    WalkCause,
+};
+
+/// Audits the energies of runs of the same system at several time steps.
+///
+/// # Errors
+///
+/// Returns an error for fewer than two traces, equal time steps, numbers that are not finite, constant energies, runs that are too short
+/// and runs of different durations.
+pub fn audit(traces: &[EnergyTrace], requirement: Requirement) -> Result<EnergyReport, TraceError> {
+    requirement.check()?;
+    let sorted = checked(traces)?;
+    let mut runs = Vec::with_capacity(sorted.len());
+    for trace in &sorted {
+        let run =
+            Run::of(trace).ok_or_else(|| TraceError::Overflow { title: trace.title.clone() })?;
+        runs.push(run);
+    }
+    let oscillation_cause = OscillationCause::of(&runs);
+    let drift_cause = DriftCause::of(&runs);
+    let walk_cause = WalkCause::of(&runs);
+    let law = |sizes: &dyn Fn(&Run) -> Option<Estimate>| {
+        let points: Vec<(f64, Estimate)> =
+            runs.iter().filter_map(|run| Some((run.dt, sizes(run)?))).collect();
+        PowerLaw::fit(&points)
+    };
+    let oscillation_law = law(&|run| run.resolves_oscillation().then_some(run.oscillation));
+    let drift_law = law(&|run| run.drifts().then_some(run.drift_rate));
+    let walk_law = law(&|run| run.present_walk().map(|walk| walk.diffusion));
+    let largest_dt = LargestDt::search(
+        &runs,
+        requirement,
+        (oscillation_cause, drift_cause, walk_cause),
+        drift_law.map(|law| law.exponent.value),
+    );
+    let mut report = EnergyReport {
+        answer: String::new(),
+        findings: Vec::new(),
+        runs,
+        oscillation_cause,
+        oscillation_law,
+        drift_cause,
+        drift_law,
+        walk_cause,
+        walk_law,
+        largest_dt,
+        libration_version: env!("CARGO_PKG_VERSION"),
+        repeat_command: String::new(),
+    };
+    report.findings = findings(&report, &sorted);
+    report.answer = answer(&report);
+    Ok(report)
+}

@@ -1,0 +1,278 @@
+//! The findings and the answer of an audit.
+
+use libration_report::notation::{number, plural};
+
+use crate::FindingKind as Kind;
+use crate::{
+    DriftCause, EnergyReport, EnergyTrace, Estimate, Finding, LargestDt, OscillationCause,
+    PowerLaw, Run, WalkCause,
+};
+
+/// Exponents of a drift rate below this are of first order.
+const FIRST_ORDER: f64 = 1.5;
+/// Correlation of neighbouring samples below which a trace is thinned: a phase of 60° per sample, far beyond the accuracy of any step.
+const THINNED: f64 = 0.5;
+/// Roundings of single precision by which a step with 1 to 10⁴ terms may change the energy.
+const SINGLE: f64 = 6e-8;
+
+/// All findings, faults first.
+pub(crate) fn findings(report: &EnergyReport, traces: &[&EnergyTrace]) -> Vec<Finding> {
+    let mut found = Vec::new();
+    found.extend(drift(report));
+    found.extend(oscillation(report));
+    found.extend(walk(report));
+    found.extend(short_run(report));
+    found.extend(different_start(&report.runs));
+    found.extend(thinned(traces));
+    found.extend(coarse(report));
+    found.sort_by_key(|finding| !finding.is_fault);
+    found
+}
+
+/// A number with its interval.
+pub(crate) fn interval(estimate: Estimate, digits: usize) -> String {
+    let Estimate { value, low, high } = estimate;
+    format!("{} ({} to {})", number(value, digits), number(low, digits), number(high, digits))
+}
+
+fn exponent(law: Option<PowerLaw>) -> String {
+    law.map_or_else(
+        || "the other runs resolve none".to_owned(),
+        |law| format!("it is proportional to dt^{}", interval(law.exponent, 3)),
+    )
+}
+
+/// Largest relative change of an energy in a step that double precision explains: a hundred roundings.
+const DOUBLE: f64 = 100.0 * f64::EPSILON;
+
+fn drift(report: &EnergyReport) -> Option<Finding> {
+    let run = report.runs.iter().find(|run| run.drifts())?;
+    let is_double = (run.drift_rate.value * run.dt).abs() < DOUBLE * run.largest_energy;
+    if is_double && matches!(report.drift_cause, DriftCause::Rounding | DriftCause::Unclear) {
+        return None;
+    }
+    let rates = format!(
+        "the energy drifts by {} per second at dt = {} s",
+        interval(run.drift_rate, 3),
+        number(run.dt, 4)
+    );
+    let relative = match run.is_exponential {
+        true => "; it grows or falls exponentially",
+        false => "",
+    };
+    let law = exponent(report.drift_law);
+    let is_first_order = report.drift_law.is_some_and(|law| law.exponent.value < FIRST_ORDER);
+    let (kind, why) = match report.drift_cause {
+        DriftCause::Unresolved => return None,
+        DriftCause::StepIndependent => (
+            Kind::StepIndependentDrift,
+            "whatever the step: the force is no gradient of this energy, or the system is damped or driven".to_owned(),
+        ),
+        DriftCause::Rounding => (
+            Kind::RoundingDrift,
+            format!("and the faster, the shorter the step: rounding with a bias in each step{}", precision(run)),
+        ),
+        DriftCause::Truncation if is_first_order => (
+            Kind::FirstOrderDrift,
+            "at a rate of first order in the step, as of explicit Euler".to_owned(),
+        ),
+        DriftCause::Truncation => (Kind::TruncationDrift, "by truncation".to_owned()),
+        DriftCause::Unclear => {
+            (Kind::UnclearDrift, "and the runs do not tell how the rate depends on the step".to_owned())
+        }
+    };
+    Some(Finding::new(kind, format!("{rates}{relative}, {why}; {law}")))
+}
+
+/// That a trace shows single precision; else nothing.
+fn precision(run: &Run) -> &'static str {
+    match run.is_single_precision {
+        true => "; all energies are numbers of single precision",
+        false => "",
+    }
+}
+
+fn oscillation(report: &EnergyReport) -> Option<Finding> {
+    if report.oscillation_cause != OscillationCause::StepIndependent {
+        return None;
+    }
+    let (first, last) = (report.runs.first()?, report.runs.last()?);
+    Some(Finding::new(
+        Kind::StepIndependentOscillation,
+        format!(
+            "the energy fluctuates by {} at dt = {} s and by {} at dt = {} s (standard deviations): {}",
+            interval(first.oscillation, 3),
+            number(first.dt, 4),
+            interval(last.oscillation, 3),
+            number(last.dt, 4),
+            "it is not the energy that the simulation conserves"
+        ),
+    ))
+}
+
+fn walk(report: &EnergyReport) -> Option<Finding> {
+    let run = report.runs.iter().find(|run| run.present_walk().is_some())?;
+    let diffusion = run.present_walk()?.diffusion;
+    let per_step = (diffusion.value * run.dt).sqrt() / run.largest_energy;
+    if per_step < DOUBLE {
+        return None;
+    }
+    let size = format!(
+        "the energy wanders as a random walk of {} of itself per step at dt = {} s",
+        number(per_step, 2),
+        number(run.dt, 4)
+    );
+    let law = exponent(report.walk_law);
+    let single = match per_step > 0.01 * SINGLE && per_step < 100.0 * SINGLE {
+        true => "; single precision rounds by 6e-8",
+        false => "",
+    };
+    let (kind, why) = match report.walk_cause {
+        WalkCause::Absent => return None,
+        // Slow motions of a system do the same, and no fault is needed to explain them.
+        WalkCause::Truncation => return None,
+        WalkCause::Rounding => (Kind::RoundingWalk, "farther with shorter steps: rounding"),
+        WalkCause::StepIndependent => {
+            (Kind::StepIndependentWalk, "as far with each step: random forces")
+        }
+        WalkCause::Unclear => {
+            (Kind::UnclearWalk, "and the runs do not tell how it depends on the step")
+        }
+    };
+    Some(Finding::new(
+        kind,
+        format!("{size}, {why}{single}{}; its variance per second: {law}", precision(run)),
+    ))
+}
+
+fn short_run(report: &EnergyReport) -> Option<Finding> {
+    let largest = report.largest_dt.as_ref()?;
+    let duration = largest.resolving_duration?;
+    let run =
+        report.runs.iter().rev().find(|run| Some(run.dt) <= largest.dt).or(report.runs.first())?;
+    Some(Finding::new(
+        Kind::ShortRun,
+        format!(
+            "over {} s the interval of the drift, {} per second, is no small part of the tolerance; runs of about {} s would resolve it",
+            number(largest.horizon, 4),
+            interval(run.drift_rate, 2),
+            number(duration, 2)
+        ),
+    ))
+}
+
+fn different_start(runs: &[Run]) -> Option<Finding> {
+    let by_start = |a: &&Run, b: &&Run| a.energy_at_start.total_cmp(&b.energy_at_start);
+    let (low, high) = (runs.iter().min_by(by_start)?, runs.iter().max_by(by_start)?);
+    let most = runs.iter().map(|run| run.largest_deviation).fold(0.0, f64::max);
+    (high.energy_at_start - low.energy_at_start > 2.0 * most).then(|| {
+        Finding::new(
+            Kind::DifferentStart,
+            format!(
+                "`{}` starts with the energy {} and `{}` with {}, farther apart than any deviation of a run",
+                low.title,
+                number(low.energy_at_start, 8),
+                high.title,
+                number(high.energy_at_start, 8)
+            ),
+        )
+    })
+}
+
+fn thinned(traces: &[&EnergyTrace]) -> Option<Finding> {
+    let thin = |trace: &&&EnergyTrace| trace.dt.is_none() && neighbours(&trace.energies) < THINNED;
+    let trace = traces.iter().find(thin)?;
+    Some(Finding::new(
+        Kind::Thinned,
+        format!(
+            "neighbouring energies of `{}` hardly agree (correlation {}): it seems thinned, and its time step is shorter than the {} s between samples",
+            trace.title,
+            number(neighbours(&trace.energies), 2),
+            number(trace.spacing(), 4)
+        ),
+    ))
+}
+
+/// The correlation of neighbouring values, by their mean squared difference (von Neumann).
+fn neighbours(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let variance = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>();
+    let changes = values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum::<f64>();
+    1.0 - 0.5 * changes / variance.max(f64::MIN_POSITIVE)
+}
+
+fn coarse(report: &EnergyReport) -> Option<Finding> {
+    let run = report.runs.iter().find(|run| !run.resolves_oscillation())?;
+    let allowed = report.largest_dt.map(|largest| largest.tolerance * largest.scale)?;
+    // What is far below the tolerance does not matter.
+    (run.resolution > 0.1 * allowed).then(|| {
+        Finding::new(
+            Kind::CoarseEnergy,
+            format!(
+                "energies of `{}` are stored in steps of {}, as large as their fluctuation",
+                run.title,
+                number(run.resolution, 2)
+            ),
+        )
+    })
+}
+
+/// The answer in a few sentences.
+pub(crate) fn answer(report: &EnergyReport) -> String {
+    let faults: Vec<String> = report
+        .findings
+        .iter()
+        .filter(|finding| finding.is_fault)
+        .map(|finding| finding.kind.to_string())
+        .collect();
+    let names = match faults.len() {
+        0 => format!("{}: no fault.", plural(report.runs.len(), "run")),
+        count => format!("{}: {}.", plural(count, "fault"), faults.join(", ")),
+    };
+    let order = match (report.oscillation_cause, report.oscillation_law) {
+        (OscillationCause::Truncation, Some(law)) => {
+            format!(" The energy oscillates with order {}.", interval(law.exponent, 3))
+        }
+        (OscillationCause::Unclear, _) => {
+            " How the oscillation depends on the step is unclear.".to_owned()
+        }
+        _ => String::new(),
+    };
+    let drift = match (report.drift_cause, report.drift_law) {
+        (DriftCause::Unresolved, _) => {
+            let bound = report.runs.iter().map(|run| run.drift_rate.largest_size());
+            format!(
+                " No drift is resolved: at most {} per second.",
+                number(bound.fold(0.0, f64::max), 2)
+            )
+        }
+        (DriftCause::Truncation, Some(law)) => {
+            format!(" The drift rate has order {}.", interval(law.exponent, 3))
+        }
+        _ => String::new(),
+    };
+    format!("{names}{order}{drift}{}", report.largest_dt.as_ref().map_or_else(String::new, longest))
+}
+
+fn longest(largest: &LargestDt) -> String {
+    let required = format!(
+        "a deviation of {}{} over {} s",
+        number(largest.tolerance, 3),
+        if largest.scale == 1.0 { "" } else { " of the energy" },
+        number(largest.horizon, 4)
+    );
+    let Some(dt) = largest.dt else {
+        return format!(" No step meets {required}.");
+    };
+    let least = if largest.is_limited_by_runs { "at least " } else { "" };
+    let range = match (largest.low, largest.high) {
+        _ if largest.is_limited_by_runs && largest.low == Some(dt) => String::new(),
+        (Some(low), Some(high)) => format!(" ({} to {} s)", number(low, 3), number(high, 3)),
+        _ => " (it may be that no step does)".to_owned(),
+    };
+    let beyond = match largest.is_extrapolated {
+        true => ", shorter than those of the runs",
+        false => "",
+    };
+    format!(" The largest step for {required}: {least}{} s{range}{beyond}.", number(dt, 3))
+}

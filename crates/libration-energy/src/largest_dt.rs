@@ -1,0 +1,218 @@
+//! The largest time step for a tolerance over a horizon.
+
+use serde::Serialize;
+
+use crate::estimate::NORMAL_95;
+use crate::{DriftCause, Estimate, OscillationCause, Run, TraceError, WalkCause};
+
+/// How far below the shortest step laws are continued.
+const SHORTER: f64 = 1e-3;
+/// Ratio of neighbouring steps of the search.
+const RATIO: f64 = 1.001;
+/// Energies that are as large as this many deviations have a relative tolerance.
+const RELATIVE: f64 = 10.0;
+
+/// What is required of the energy.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Requirement {
+    /// Largest deviation from the energy at the start, relative to it; in its unit, if the energy is close to 0.
+    pub tolerance: f64,
+    /// Duration in s; none for that of the shortest run.
+    pub horizon: Option<f64>,
+}
+
+impl Default for Requirement {
+    fn default() -> Self {
+        Requirement { tolerance: 1e-4, horizon: None }
+    }
+}
+
+impl Requirement {
+    pub(crate) fn check(&self) -> Result<(), TraceError> {
+        let named = [("tolerance", Some(self.tolerance)), ("horizon", self.horizon)];
+        for (what, value) in named {
+            if let Some(value) = value.filter(|x| !(x.is_finite() && *x > 0.0)) {
+                return Err(TraceError::Requirement { what, value });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The largest time step that meets the requirement, by the laws of oscillation, drift and walk.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LargestDt {
+    /// Tolerance and horizon.
+    pub tolerance: f64,
+    /// Duration in s.
+    pub horizon: f64,
+    /// The energy that the tolerance is relative to; 1 for an energy close to 0.
+    pub scale: f64,
+    /// The step in s by the values of the laws; none if no step of the range meets the requirement.
+    pub dt: Option<f64>,
+    /// The step that meets it at the unfavourable ends of all intervals.
+    pub low: Option<f64>,
+    /// The step that meets it at the favourable ends.
+    pub high: Option<f64>,
+    /// Whether the longest step of the runs meets the requirement: longer steps are unknown.
+    pub is_limited_by_runs: bool,
+    /// Whether the step is shorter than those of the runs.
+    pub is_extrapolated: bool,
+    /// Duration of runs in s that would resolve the drift; none if it is resolved, or does not matter.
+    pub resolving_duration: Option<f64>,
+}
+
+/// The part of an interval that a law takes.
+#[derive(Clone, Copy)]
+enum End {
+    Low,
+    Value,
+    High,
+}
+
+/// Sizes at the steps of the runs, and the exponent below them.
+struct Law {
+    points: Vec<(f64, Estimate)>,
+    exponent_below: f64,
+}
+
+impl Law {
+    /// The size at a step: between neighbours a power law, below the shortest step the law of the cause.
+    fn at(&self, dt: f64, end: End) -> f64 {
+        let size = |estimate: &Estimate| match end {
+            End::Low => estimate.low,
+            End::Value => estimate.value,
+            End::High => estimate.high,
+        };
+        let Some(first) = self.points.first() else { return 0.0 };
+        if dt <= first.0 {
+            return size(&first.1) * (dt / first.0).powf(self.exponent_below);
+        }
+        let above = self.points.partition_point(|(step, _)| *step < dt);
+        match (self.points.get(above - 1), self.points.get(above)) {
+            (Some(short), Some(long)) => {
+                let (a, b) = (size(&short.1), size(&long.1));
+                let part = (dt / short.0).ln() / (long.0 / short.0).ln();
+                match a > 0.0 && b > 0.0 {
+                    true => a * (b / a).powf(part),
+                    false => a + (b - a) * part,
+                }
+            }
+            (Some(last), None) => size(&last.1),
+            (None, _) => 0.0,
+        }
+    }
+}
+
+fn oscillation(runs: &[Run], cause: OscillationCause) -> Law {
+    let point = |run: &Run| {
+        let Estimate { value, low, high } = run.oscillation;
+        let size = |x: f64| match value > 0.0 {
+            true => run.largest_deviation * x / value,
+            false => run.largest_deviation,
+        };
+        (run.dt, Estimate { value: size(value), low: size(low), high: size(high) })
+    };
+    let points: Vec<(f64, Estimate)> = runs.iter().map(point).collect();
+    let exponent_below = match (cause, &points[..]) {
+        (OscillationCause::Truncation, [short, long, ..]) => {
+            crate::power_law::local_exponent(*short, *long).value.round().max(1.0)
+        }
+        _ => 0.0,
+    };
+    Law { points, exponent_below }
+}
+
+fn drift(runs: &[Run], cause: DriftCause, order: Option<f64>) -> Law {
+    let mut points: Vec<(f64, Estimate)> = runs
+        .iter()
+        .map(|run| {
+            let rate = run.drift_rate;
+            let value = if run.drifts() { rate.value.abs() } else { 0.0 };
+            (
+                run.dt,
+                Estimate { value, low: rate.smallest_size().min(value), high: rate.largest_size() },
+            )
+        })
+        .collect();
+    // A drift by truncation at a step is no larger than at a longer one.
+    if matches!(cause, DriftCause::Unresolved | DriftCause::Truncation) {
+        let mut bound = f64::INFINITY;
+        for (_, rate) in points.iter_mut().rev() {
+            bound = bound.min(rate.high);
+            rate.high = bound.max(rate.value);
+        }
+    }
+    let exponent_below = match cause {
+        DriftCause::Truncation => order.unwrap_or(1.0).round().max(1.0),
+        DriftCause::Rounding => -1.0,
+        _ => 0.0,
+    };
+    Law { points, exponent_below }
+}
+
+fn walk(runs: &[Run], cause: WalkCause) -> Law {
+    let none = Estimate { value: 0.0, low: 0.0, high: 0.0 };
+    let point = |run: &Run| (run.dt, run.present_walk().map_or(none, |walk| walk.diffusion));
+    let exponent_below = if cause == WalkCause::Rounding { -1.0 } else { 0.0 };
+    Law { points: runs.iter().map(point).collect(), exponent_below }
+}
+
+impl LargestDt {
+    /// Searches the step, with runs that have the shortest step first. `order` is the exponent of the drift rate.
+    pub(crate) fn search(
+        runs: &[Run],
+        requirement: Requirement,
+        causes: (OscillationCause, DriftCause, WalkCause),
+        order: Option<f64>,
+    ) -> Option<Self> {
+        let (first, last) = (runs.first()?, runs.last()?);
+        let horizon = requirement.horizon.unwrap_or(first.duration);
+        let start = first.energy_at_start.abs();
+        let scale = if start > RELATIVE * first.largest_deviation { start } else { 1.0 };
+        let allowed = requirement.tolerance * scale;
+        let laws =
+            (oscillation(runs, causes.0), drift(runs, causes.1, order), walk(runs, causes.2));
+        let deviation = |dt: f64, end: End| {
+            let wander = NORMAL_95 * (laws.2.at(dt, end) * horizon).sqrt();
+            laws.0.at(dt, end) + laws.1.at(dt, end) * horizon + wander
+        };
+        let search = |end: End| {
+            let mut dt = last.dt;
+            while dt > SHORTER * first.dt {
+                if deviation(dt, end) <= allowed {
+                    return Some(dt);
+                }
+                dt /= RATIO;
+            }
+            None
+        };
+        let (dt, low, high) = (search(End::Value), search(End::High), search(End::Low));
+        Some(LargestDt {
+            tolerance: requirement.tolerance,
+            horizon,
+            scale,
+            dt,
+            low,
+            high,
+            is_limited_by_runs: dt == Some(last.dt),
+            is_extrapolated: dt.is_some_and(|dt| dt < first.dt),
+            resolving_duration: resolving_duration(runs, dt, horizon, allowed),
+        })
+    }
+}
+
+/// Duration of runs whose interval of the rate, over the horizon, is a fifth of the tolerance: with noise of a short memory it falls as
+/// the power 3/2 of the duration, under a random walk as its root.
+fn resolving_duration(runs: &[Run], dt: Option<f64>, horizon: f64, allowed: f64) -> Option<f64> {
+    let dt = dt?;
+    let run = runs.iter().rev().find(|run| run.dt <= dt).or(runs.first())?;
+    let half_width = run.drift_rate.high - run.drift_rate.value;
+    let ratio = 5.0 * half_width * horizon / allowed;
+    if run.drifts() || ratio <= 1.0 {
+        return None;
+    }
+    let power = if run.present_walk().is_some() { 2.0 } else { 2.0 / 3.0 };
+    // No run need be longer than the horizon.
+    Some((run.duration * ratio.powf(power)).min(horizon.max(run.duration)))
+}

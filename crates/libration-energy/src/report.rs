@@ -1,0 +1,41 @@
+//! The results of an audit.
+
+use serde::Serialize;
+
+use crate::{DriftCause, Finding, LargestDt, OscillationCause, PowerLaw, Run, WalkCause};
+
+/// The results of an audit of energy traces; the fields are the keys of `audit --json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct EnergyReport {
+    /// The answer in a few sentences.
+    pub answer: String,
+    /// Faults of the simulation, and facts that a reader of the numbers must know.
+    pub findings: Vec<Finding>,
+    /// The runs, that with the shortest time step first.
+    pub runs: Vec<Run>,
+    /// How the fluctuation of the energy depends on the step.
+    pub oscillation_cause: OscillationCause,
+    /// The law of its size; none if fewer than two runs resolve it.
+    pub oscillation_law: Option<PowerLaw>,
+    /// Why the energy drifts.
+    pub drift_cause: DriftCause,
+    /// The law of the drift rate, by the runs that resolve it.
+    pub drift_law: Option<PowerLaw>,
+    /// Why the energy wanders.
+    pub walk_cause: WalkCause,
+    /// The law of the diffusion, by the runs that have a walk.
+    pub walk_law: Option<PowerLaw>,
+    /// The largest step for the tolerance over the horizon.
+    pub largest_dt: Option<LargestDt>,
+    /// The version of libration.
+    pub libration_version: &'static str,
+    /// The command that repeats the audit.
+    pub repeat_command: String,
+}
+
+impl EnergyReport {
+    /// Whether no finding is a fault.
+    pub fn holds(&self) -> bool {
+        !self.findings.iter().any(|finding| finding.is_fault)
+    }
+}
