@@ -1,10 +1,13 @@
 //! `cargo xtask ci`: every check in order, up to the first that fails.
 
 use std::fmt::Write;
+use std::path::Path;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::{Outcome, codegen, command, dependencies, examples, python, report, test, tidy};
+use crate::{
+    Outcome, codegen, command, dependencies, examples, processor_time, python, report, test, tidy,
+};
 
 /// Name and function of a step.
 type Step = (&'static str, fn() -> Outcome);
@@ -14,26 +17,24 @@ const STEPS: [Step; 9] = [
     ("tidy", tidy::run),
     ("dependencies", dependencies::run),
     ("codegen", codegen::unless_read),
-    ("clippy", || {
-        command::run(&mut command::cargo("clippy --workspace --all-targets -- -D warnings"))
-    }),
+    ("clippy", clippy),
     ("documentation", documentation),
     ("report", report::run),
     ("test", || test::all(Some(&report::folder()))),
     ("examples", examples::run),
 ];
 
-/// Runs the steps and prints how long each took.
+/// Runs the steps and prints what each cost.
 pub(crate) fn run() -> Outcome {
     // Nothing but the tests needs the packages, which take a while to install: they say what failed.
     let packages = thread::spawn(|| python::interpreter().is_ok());
-    let mut durations = Vec::new();
+    let mut costs = Vec::new();
     let mut failure = None;
     for (i, (name, work)) in STEPS.iter().enumerate() {
         println!("\n=== {} of {}: {name}", i + 1, STEPS.len());
-        let start = Instant::now();
+        let (start, processor) = (Instant::now(), processor_time::of_children());
         let outcome = work();
-        durations.push(start.elapsed());
+        costs.push([start.elapsed(), processor_time::of_children() - processor]);
         let verdict = if outcome.is_ok() { "passed" } else { "failed" };
         println!("--- {name} {verdict} after {:.1} s", start.elapsed().as_secs_f64());
         if let Err(reason) = outcome {
@@ -43,32 +44,53 @@ pub(crate) fn run() -> Outcome {
     }
     // Not to be left half installed; the tests have told what is wrong with them.
     let _ = packages.join();
-    print!("\n{}", summary(&STEPS.map(|(name, _)| name), &durations, failure.is_some()));
+    print!("\n{}", summary(&STEPS.map(|(name, _)| name), &costs, failure.is_some()));
     failure.map_or(Ok(()), Err)
 }
 
+/// What `clippy` is given; [`documentation`] uses what it has checked.
+const LINTS: &str = "-D warnings";
+
+fn clippy() -> Outcome {
+    command::run(&mut command::cargo(&format!("clippy --workspace --all-targets -- {LINTS}")))
+}
+
+/// With the compiler and the arguments of `cargo clippy`: otherwise cargo would check all crates of the workspace once more.
 fn documentation() -> Outcome {
     let flags = std::env::var("RUSTDOCFLAGS").unwrap_or_default();
     let flags = format!("{flags} -D warnings");
-    command::run(
-        command::cargo("doc --workspace --no-deps").env("RUSTDOCFLAGS", flags.trim_start()),
-    )
+    let mut doc = command::cargo("doc --workspace --no-deps");
+    doc.env("RUSTDOCFLAGS", flags.trim_start());
+    let driver =
+        std::env::var_os("CARGO").map(|cargo| Path::new(&cargo).with_file_name("clippy-driver"));
+    if let Some(driver) = driver.filter(|driver| driver.exists()) {
+        let arguments: String =
+            LINTS.split(' ').map(|word| format!("{word}__CLIPPY_HACKERY__")).collect();
+        doc.env("RUSTC_WORKSPACE_WRAPPER", driver).env("CLIPPY_ARGS", arguments);
+    }
+    command::run(&mut doc)
 }
 
-/// The table at the end; steps without a duration did not run, the last with one may have failed.
-fn summary(names: &[&str], durations: &[Duration], failed: bool) -> String {
-    let mut table = String::new();
+/// The table at the end, with the duration and the processor time of each step.
+///
+/// Steps without costs did not run; the last with them may have failed. The installation of packages counts for the steps during which its
+/// programs end.
+fn summary(names: &[&str], costs: &[[Duration; 2]], failed: bool) -> String {
+    let seconds = |time: Duration| format!("{:.1} s", time.as_secs_f64());
+    let mut table = format!("{:<26}{:>9}{:>11}\n", "step", "duration", "processor");
     for (i, name) in names.iter().enumerate() {
         let verdict = match i + 1 {
-            n if n > durations.len() => "not run",
-            n if n == durations.len() && failed => "FAILED",
+            n if n > costs.len() => "not run",
+            n if n == costs.len() && failed => "FAILED",
             _ => "passed",
         };
-        let seconds =
-            durations.get(i).map_or(String::new(), |d| format!("{:.1} s", d.as_secs_f64()));
+        let [duration, processor] =
+            costs.get(i).map_or([String::new(), String::new()], |both| both.map(seconds));
         // Writing to a string cannot fail.
-        let _ = writeln!(table, "{name:<16}{verdict:<10}{seconds:>9}");
+        let _ = writeln!(table, "{name:<16}{verdict:<10}{duration:>9}{processor:>11}");
     }
+    let sum = |i: usize| seconds(costs.iter().map(|both| both[i]).sum());
+    let _ = writeln!(table, "{:<26}{:>9}{:>11}", "all steps", sum(0), sum(1));
     table
 }
 
@@ -78,16 +100,16 @@ mod tests {
 
     #[test]
     fn the_summary_names_what_failed_and_what_did_not_run() {
-        let durations = [Duration::from_millis(1500), Duration::from_secs(61)];
-        let table = summary(&["format", "tidy", "test"], &durations, true);
+        let costs = [[1500, 2000], [61_000, 120_000]].map(|both| both.map(Duration::from_millis));
+        let table = summary(&["format", "tidy", "test"], &costs, true);
         assert_eq!(
             table,
-            "format          passed        1.5 s\n\
-             tidy            FAILED       61.0 s\n\
-             test            not run            \n"
+            "step                       duration  processor\n\
+             format          passed        1.5 s      2.0 s\n\
+             tidy            FAILED       61.0 s    120.0 s\n\
+             test            not run                       \n\
+             all steps                    62.5 s    122.0 s\n"
         );
-        assert!(
-            summary(&["format", "tidy"], &durations, false).lines().all(|l| l.contains("passed"))
-        );
+        assert!(!summary(&["format", "tidy"], &costs, false).contains("FAILED"));
     }
 }

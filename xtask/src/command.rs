@@ -1,10 +1,13 @@
 //! Programs that a task runs: in the workspace's folder, without standard input.
 
 use std::ffi::OsStr;
+use std::io::Read;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::thread;
+use std::time::Duration;
 
-use crate::{Outcome, workspace};
+use crate::{Outcome, processor_time, workspace};
 
 /// A command in the workspace's folder that never waits for a keyboard.
 pub(crate) fn program(path: impl AsRef<OsStr>) -> Command {
@@ -37,17 +40,50 @@ pub(crate) fn silent(command: &mut Command) -> Outcome {
     Err(format!("`{}` ended with {} and said {said:?}", shown(command), output.status))
 }
 
+/// Result of a program, what it said, and its processor time.
+pub(crate) struct Ended {
+    pub(crate) outcome: Outcome,
+    pub(crate) said: String,
+    pub(crate) processor: Duration,
+}
+
 /// Runs `command` to its end, and keeps all that it says until then.
-pub(crate) fn kept(command: &mut Command) -> (Outcome, String) {
-    match command.output() {
-        Ok(output) => {
-            let said = [output.stdout, output.stderr].concat();
-            let failed = || Err(format!("`{}` failed ({})", shown(command), output.status));
-            let outcome = if output.status.success() { Ok(()) } else { failed() };
-            (outcome, String::from_utf8_lossy(&said).into_owned())
-        }
-        Err(error) => (Err(not_started(command, &error)), String::new()),
+pub(crate) fn kept(command: &mut Command) -> Ended {
+    let nothing = |error: std::io::Error, command: &Command| Ended {
+        outcome: Err(not_started(command, &error)),
+        said: String::new(),
+        processor: Duration::ZERO,
+    };
+    let mut child = match command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn() {
+        Ok(child) => child,
+        Err(error) => return nothing(error, command),
+    };
+    let (out, err) = (child.stdout.take(), child.stderr.take());
+    let said = thread::scope(|scope| {
+        let out = scope.spawn(|| all_of(out));
+        let err = all_of(err);
+        [out.join().unwrap_or_default(), err].concat()
+    });
+    let processor = processor_time::at_the_end_of(&child);
+    let status = match child.wait() {
+        Ok(status) => status,
+        Err(error) => return nothing(error, command),
+    };
+    let failed = || Err(format!("`{}` failed ({status})", shown(command)));
+    Ended {
+        outcome: if status.success() { Ok(()) } else { failed() },
+        said: String::from_utf8_lossy(&said).into_owned(),
+        processor,
     }
+}
+
+/// What a stream says to its end, or until it cannot be read.
+fn all_of(stream: Option<impl Read>) -> Vec<u8> {
+    let mut said = Vec::new();
+    if let Some(mut stream) = stream {
+        let _ = stream.read_to_end(&mut said);
+    }
+    said
 }
 
 /// Returns the standard output of `command`.

@@ -6,6 +6,7 @@ mod command;
 mod dependencies;
 mod examples;
 mod instructions;
+mod processor_time;
 mod python;
 mod report;
 mod scratch;
@@ -35,7 +36,7 @@ enum Action {
     With(fn(&[String]) -> Outcome),
 }
 
-const TASKS: [Task; 10] = [
+const TASKS: [Task; 11] = [
     Task {
         name: "ci",
         summary: "all of the below up to `report`, with format, lints and documentation",
@@ -60,6 +61,11 @@ const TASKS: [Task; 10] = [
         name: "test",
         summary: "all tests, with a Python environment and the wheel; with arguments `cargo test` alone",
         action: Action::With(test::run),
+    },
+    Task {
+        name: "wheel",
+        summary: "builds the wheel of the Python package and installs it into target/python",
+        action: Action::Plain(wheel::install),
     },
     Task {
         name: "python",

@@ -1,11 +1,12 @@
 //! Test programs, several at a time: each alone would leave cores idle while it waits for its slowest test.
 
+use std::cmp::Reverse;
 use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::process::Command;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Condvar, Mutex, PoisonError};
 use std::thread;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
@@ -18,6 +19,14 @@ const LONG: [&str; 6] = ["lab", "cli", "browser", "advise", "engine", "replay"];
 pub(crate) struct Suite {
     pub(crate) name: String,
     pub(crate) command: Command,
+    /// Suites that need what this one makes. They are run only if it passes, and before all others that wait.
+    pub(crate) then: Vec<Suite>,
+}
+
+impl Suite {
+    pub(crate) fn new(name: impl Into<String>, command: Command) -> Self {
+        Self { name: name.into(), command, then: Vec::new() }
+    }
 }
 
 /// Builds all test programs of the workspace, and says how each is run, those that take longest first.
@@ -33,34 +42,93 @@ pub(crate) fn built() -> Result<Vec<Suite>, String> {
     Ok(suites)
 }
 
-/// Runs them all, some at a time, and prints what each said when it ends.
+/// What a suite took.
+struct Cost {
+    name: String,
+    duration: Duration,
+    processor: Duration,
+}
+
+/// Suites that wait, and how many run that others follow.
+struct Queue {
+    waiting: VecDeque<Suite>,
+    ahead: usize,
+}
+
+/// Runs them all, some at a time, and prints what each said when it ends, and at last what each cost.
 ///
 /// # Errors
 /// Names all that failed.
 pub(crate) fn run(suites: Vec<Suite>) -> Outcome {
     // One more than there are cores: some wait for a browser.
-    let workers = (thread::available_parallelism().map_or(1, usize::from) + 1).min(suites.len());
-    let (waiting, failures) = (Mutex::new(VecDeque::from(suites)), Mutex::new(Vec::new()));
-    let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
+    let workers = thread::available_parallelism().map_or(1, usize::from) + 1;
+    let queue = Mutex::new(Queue { waiting: VecDeque::from(suites), ahead: 0 });
+    let (changed, results) = (Condvar::new(), Mutex::new(Vec::new()));
     thread::scope(|scope| {
         for _ in 0..workers {
             scope.spawn(|| {
-                while let Some(mut suite) = next() {
+                while let Some(mut suite) = next(&queue, &changed) {
                     let start = Instant::now();
-                    let (outcome, said) = command::kept(&mut suite.command);
-                    let seconds = start.elapsed().as_secs_f64();
-                    println!("\n{said}\n--- {} ended after {seconds:.1} s", suite.name);
-                    if let Err(reason) = outcome {
-                        failures.lock().unwrap_or_else(PoisonError::into_inner).push(reason);
+                    let ended = command::kept(&mut suite.command);
+                    let cost = Cost {
+                        name: suite.name,
+                        duration: start.elapsed(),
+                        processor: ended.processor,
+                    };
+                    println!("\n{}\n--- {} ended after {}", ended.said, cost.name, shown(&cost));
+                    if !suite.then.is_empty() {
+                        let mut queue = queue.lock().unwrap_or_else(PoisonError::into_inner);
+                        queue.ahead -= 1;
+                        if ended.outcome.is_ok() {
+                            suite.then.into_iter().rev().for_each(|s| queue.waiting.push_front(s));
+                        }
+                        changed.notify_all();
                     }
+                    let mut results = results.lock().unwrap_or_else(PoisonError::into_inner);
+                    results.push((cost, ended.outcome));
                 }
             });
         }
     });
-    match failures.into_inner().unwrap_or_else(PoisonError::into_inner) {
-        failures if failures.is_empty() => Ok(()),
-        failures => Err(failures.join("; ")),
+    let results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let (costs, outcomes): (Vec<Cost>, Vec<Outcome>) = results.into_iter().unzip();
+    print!("\n{}", table(costs));
+    let failures: Vec<String> = outcomes.into_iter().filter_map(Outcome::err).collect();
+    if failures.is_empty() { Ok(()) } else { Err(failures.join("; ")) }
+}
+
+/// The suite to run next; waits while one runs that others follow.
+fn next(queue: &Mutex<Queue>, changed: &Condvar) -> Option<Suite> {
+    let mut queue = queue.lock().unwrap_or_else(PoisonError::into_inner);
+    loop {
+        if let Some(suite) = queue.waiting.pop_front() {
+            queue.ahead += usize::from(!suite.then.is_empty());
+            return Some(suite);
+        }
+        if queue.ahead == 0 {
+            return None;
+        }
+        queue = changed.wait(queue).unwrap_or_else(PoisonError::into_inner);
     }
+}
+
+fn shown(cost: &Cost) -> String {
+    let [duration, processor] = [cost.duration, cost.processor].map(|time| time.as_secs_f64());
+    format!("{duration:.1} s, {processor:.1} s of processor")
+}
+
+/// What each suite cost, those that cost most first, and the sum.
+fn table(mut costs: Vec<Cost>) -> String {
+    costs.sort_by_key(|cost| Reverse(cost.processor));
+    let sum = costs.iter().map(|cost| cost.processor).sum::<Duration>();
+    let line = |name: &str, duration: String, processor: Duration| {
+        format!("{name:<44}{duration:>9}{:>9.1} s\n", processor.as_secs_f64())
+    };
+    let lines = costs.iter().map(|cost| {
+        line(&cost.name, format!("{:.1} s", cost.duration.as_secs_f64()), cost.processor)
+    });
+    let head = format!("{:<44}{:>9}{:>11}\n", "suite", "duration", "processor");
+    head + &lines.collect::<String>() + &line("all suites", String::new(), sum)
 }
 
 /// A test program in the output of cargo.
@@ -76,7 +144,7 @@ impl Program {
     fn suite(self) -> Suite {
         let mut command = command::program(self.path);
         command.current_dir(&self.folder).env("CARGO_MANIFEST_DIR", self.folder);
-        Suite { name: self.name, command }
+        Suite::new(self.name, command)
     }
 }
 
@@ -114,10 +182,36 @@ mod tests {
 
     #[test]
     fn all_are_run_and_all_that_failed_are_named() {
-        let suite =
-            |arguments: &str| Suite { name: arguments.into(), command: command::cargo(arguments) };
+        let suite = |arguments: &str| Suite::new(arguments, command::cargo(arguments));
         assert_eq!(run(vec![suite("--version"), suite("--list")]), Ok(()));
         let failed = run(vec![suite("--wrong"), suite("--version"), suite("--false")]).unwrap_err();
         assert!(failed.contains("cargo --wrong") && failed.contains("cargo --false"), "{failed}");
+    }
+
+    #[test]
+    fn suites_that_follow_another_are_run_only_if_it_passes() {
+        let first = |arguments: &str| {
+            let then = vec![Suite::new("later", command::cargo("--later"))];
+            vec![Suite { then, ..Suite::new("first", command::cargo(arguments)) }]
+        };
+        let failed = run(first("--version")).unwrap_err();
+        assert!(failed.contains("cargo --later"), "{failed}");
+        let failed = run(first("--wrong")).unwrap_err();
+        assert!(failed.contains("cargo --wrong") && !failed.contains("--later"), "{failed}");
+    }
+
+    #[test]
+    fn the_table_begins_with_what_costs_most_and_ends_with_the_sum() {
+        let cost = |name: &str, duration, processor| Cost {
+            name: name.to_owned(),
+            duration: Duration::from_millis(duration),
+            processor: Duration::from_millis(processor),
+        };
+        let table = table(vec![cost("a", 2000, 500), cost("b", 1000, 1500)]);
+        let rows: Vec<Vec<&str>> =
+            table.lines().map(|line| line.split_whitespace().collect()).collect();
+        assert_eq!(rows[1], ["b", "1.0", "s", "1.5", "s"]);
+        assert_eq!(rows[2], ["a", "2.0", "s", "0.5", "s"]);
+        assert_eq!(rows[3], ["all", "suites", "2.0", "s"]);
     }
 }

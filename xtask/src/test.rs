@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::suites::{self, Suite};
-use crate::{Outcome, command, python};
+use crate::{Outcome, command, python, wheel};
 
 /// Prepares the Python environment and runs everything; with `arguments`, nothing but `cargo test --workspace` with them.
 pub(crate) fn run(arguments: &[String]) -> Outcome {
@@ -18,18 +18,19 @@ pub(crate) fn run(arguments: &[String]) -> Outcome {
 pub(crate) fn all(report: Option<&Path>) -> Outcome {
     let interpreter = python::interpreter()?;
     let mut suites = suites::built()?;
-    let this = std::env::current_exe().map_err(|error| error.to_string())?;
-    let mut package = command::program(this);
-    package.arg("python");
-    // It takes longest: it builds the wheel first.
-    suites.insert(0, Suite { name: "the Python package".into(), command: package });
+    // It takes longest: the tests of the package follow it.
+    suites.insert(0, wheel::suite(&interpreter)?);
     // It waits for cargo, which builds the wheel meanwhile.
     let examples = command::cargo("test --workspace --doc");
-    suites.push(Suite { name: "examples in the documentation".into(), command: examples });
+    suites.push(Suite::new("examples in the documentation", examples));
     for suite in &mut suites {
-        suite.command.env("LIBRATION_PYTHON", &interpreter);
-        if let Some(folder) = report {
-            suite.command.env("LIBRATION_REPORT", folder);
+        for each in
+            std::iter::once(&mut suite.command).chain(suite.then.iter_mut().map(|s| &mut s.command))
+        {
+            each.env("LIBRATION_PYTHON", &interpreter);
+            if let Some(folder) = report {
+                each.env("LIBRATION_REPORT", folder);
+            }
         }
     }
     suites::run(suites)
