@@ -159,11 +159,13 @@ def test_a_wrong_directional_derivative_is_found(make, version):
         return [finding["kind"] for finding in report.findings]
 
     # 0.1 s × 0.01 is a thousandth of the row of the step; 0.001 s × 0.01 are less than the 1e-4 that derivatives may differ.
+    text = f"fmi{version}GetDirectionalDerivative is -1.01 of the derivative of x1 (m/s) by x0 (m), but differences are -1"
     for dt, is_finding in ((0.1, True), (0.001, False)):
-        wrong, right = audit("wrong derivative", dt), audit(None, dt)
-        assert ("derivatives-differ" in kinds(wrong)) == is_finding and "derivatives-differ" not in kinds(right)
-        text = f"fmi{version}GetDirectionalDerivative is -1.01 of the derivative of x1 (m/s) by x0 (m), but differences are -1"
-        assert text in wrong.notes and not any("GetDirectional" in note for note in right.notes)
+        wrong = audit("wrong derivative", dt)
+        assert ("derivatives-differ" in kinds(wrong)) == is_finding and text in wrong.notes
+    # The longer the step, the larger is what a false difference would weigh.
+    right = audit(None, 0.1)
+    assert "derivatives-differ" not in kinds(right) and not any("GetDirectional" in note for note in right.notes)
     assert wrong.results["reference"]["source"] == f"fmi{version}GetDirectionalDerivative"
 
 

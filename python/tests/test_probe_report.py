@@ -124,10 +124,11 @@ def test_a_call_repeats_the_audit_of_a_function_of_jax():
 
 def test_a_call_repeats_the_audit_of_a_model_of_mujoco(tmp_path):
     mujoco = pytest.importorskip("mujoco")
-    text = "<mujoco><worldbody><body><joint axis='0 1 0'/><geom size='.1' pos='0 0 -1'/></body></worldbody></mujoco>"
-    report = probe.mujoco(mujoco.MjModel.from_xml_string(text), dt=0.001)
-    assert report.repeat_command == "libration.probe.mujoco(model, dt=0.001)"
+    # Calls do not depend on the time step; an audit of fewer steps is shorter.
+    text = "<mujoco><option timestep='.1'/><worldbody><body><joint axis='0 1 0'/><geom size='.1' pos='0 0 -1'/></body></worldbody></mujoco>"
+    report = probe.mujoco(mujoco.MjModel.from_xml_string(text), dt=0.05)
+    assert report.repeat_command == "libration.probe.mujoco(model, dt=0.05)"
     path = tmp_path / "pendulum.xml"
     path.write_text(text, encoding="utf-8")
-    assert probe.mujoco(path, dt=0.001).repeat_command == f"libration probe --mujoco {path} --dt 0.001"
+    assert probe.mujoco(path, dt=0.05).repeat_command == f"libration probe --mujoco {path} --dt 0.05"
     assert probe.mujoco(str(path), state="default").repeat_command == f"libration.probe.mujoco({str(path)!r}, state='default')"
