@@ -19,6 +19,7 @@ from .ensemble import Ensemble
 from .environments import Environments
 from .equations import EquationSystem
 from .gains import GainReport, gains
+from .identification import Identification, identify
 from .laboratory import STUDIES, Finding, Results, run_lab
 from .linear import (
     LQG,
@@ -56,6 +57,7 @@ __all__ = [
     "GainReport",
     "Gaussian",
     "IMPLICIT_INTEGRATORS",
+    "Identification",
     "INTEGRATORS",
     "LQG",
     "LQR",
@@ -86,6 +88,7 @@ __all__ = [
     "datasets",
     "first_difference",
     "gains",
+    "identify",
     "plants",
     "policies",
     "probe",

@@ -239,9 +239,12 @@ def common(given: dict[str, Any]) -> dict[str, Any]:
     if substeps is not None:
         substeps = count("substeps", substeps, 1, 1_000_000)
         positive("dt/substeps", dt / substeps)
-    late = {
-        name: ends(name, given[name], least=0.0) for name in ("observation_delay", "action_delay")
+    # An identified loop gives its range of delays for the steps of these environments.
+    stated = {
+        name: given[name].action_delay(dt, substeps) if hasattr(given[name], "action_delay") else given[name]
+        for name in ("observation_delay", "action_delay")
     }
+    late = {name: ends(name, value, least=0.0) for name, value in stated.items()}
     substeps, late_steps = delays(dt, substeps, late)
     limit = given["max_episode_steps"]
     unlimited = isinstance(limit, numbers.Real) and limit == math.inf

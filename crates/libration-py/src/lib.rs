@@ -12,6 +12,7 @@ mod checked_mutex;
 mod datasets;
 mod equations;
 mod error;
+mod identify;
 mod laboratory;
 mod linear_analysis;
 mod linear_loops;
@@ -45,6 +46,8 @@ mod _native {
     use crate::equations::{
         _analyze_equations, _equation_plant, _equation_summary, _simulate_equations,
     };
+    #[pymodule_export]
+    use crate::identify::_identify;
     #[pymodule_export]
     use crate::laboratory::{_advise, _advise_equations, _run_lab};
     #[pymodule_export]
