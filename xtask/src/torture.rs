@@ -6,7 +6,7 @@ use crate::{Outcome, command};
 const KILLS: &str = "50";
 
 /// Mutations of each sample of a log, more than 10⁷ in total; the tests by themselves do with a few hundred.
-const MUTATIONS: &str = "800000";
+const MUTATIONS: &str = "200000";
 
 /// Runs the tests that kill, with many kills, and those that damage logs, with many mutations.
 pub(crate) fn run() -> Outcome {

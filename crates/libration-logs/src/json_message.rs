@@ -5,10 +5,17 @@ use serde_json::Value;
 /// Elements of an array that are listed.
 const MOST_ELEMENTS: usize = 64;
 
+/// Largest message in bytes: its values take many times as much memory.
+const LONGEST: usize = 1 << 24;
+
+fn parse(data: &[u8]) -> Option<Value> {
+    (data.len() <= LONGEST).then(|| serde_json::from_slice(data).ok()).flatten()
+}
+
 /// The names of the numbers in a message.
 pub(crate) fn signals(data: &[u8], most: usize) -> Vec<String> {
     let mut names = Vec::new();
-    if let Ok(value) = serde_json::from_slice::<Value>(data) {
+    if let Some(value) = parse(data) {
         collect(&value, "", most, &mut names);
     }
     names
@@ -45,7 +52,7 @@ pub(crate) fn path(name: &str) -> Option<Vec<String>> {
 
 /// The number at a path.
 pub(crate) fn value(data: &[u8], path: &[String]) -> Option<f64> {
-    let whole: Value = serde_json::from_slice(data).ok()?;
+    let whole = parse(data)?;
     let place = path.iter().try_fold(&whole, |value, step| match value {
         Value::Array(all) => all.get(step.parse::<usize>().ok()?),
         value => value.get(step),
@@ -55,7 +62,7 @@ pub(crate) fn value(data: &[u8], path: &[String]) -> Option<f64> {
 
 /// The time in `header.stamp` or `timestamp` as objects of `sec` and `nsec` or `nanosec`, in ns.
 pub(crate) fn header_time(data: &[u8]) -> Option<i64> {
-    let whole: Value = serde_json::from_slice(data).ok()?;
+    let whole = parse(data)?;
     let stamp = whole.pointer("/header/stamp").or_else(|| whole.get("timestamp"))?;
     let part = |names: [&str; 3]| names.iter().find_map(|name| stamp.get(*name)?.as_i64());
     let seconds = part(["sec", "secs", "seconds"])?;

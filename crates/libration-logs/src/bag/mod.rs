@@ -22,7 +22,7 @@ use crate::source::Source;
 /// Most values of a series, and most messages of a topic: 2 GiB of numbers.
 const MOST: usize = 1 << 27;
 /// Most channels of a bag.
-const MOST_CHANNELS: usize = 1 << 16;
+const MOST_CHANNELS: usize = 1 << 14;
 
 /// A bag.
 pub(crate) struct Bag<S> {

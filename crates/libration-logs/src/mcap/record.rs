@@ -14,8 +14,12 @@ pub(super) const DATA_END: u8 = 15;
 
 /// Largest message, schema or channel in bytes.
 const LIMIT: u64 = 1 << 28;
-/// Largest sum of all schemas in bytes.
+/// Largest sum of all schemas in bytes, and of all names of topics.
 const SCHEMAS: usize = 1 << 26;
+/// Largest schema that is parsed in bytes.
+const LONGEST_SCHEMA: usize = 1 << 22;
+/// Largest sum of all schemas that are parsed in bytes: each channel parses its own.
+const PARSED: usize = 1 << 28;
 
 /// The code and the length of the next record; none at the end.
 pub(super) fn read_header(input: &mut impl Read) -> io::Result<Option<(u8, u64)>> {
@@ -62,6 +66,8 @@ pub(super) struct Channels {
     known: HashMap<u16, (u16, String)>,
     bytes: Vec<u8>,
     data_from: usize,
+    topic_bytes: usize,
+    parsed_bytes: usize,
     /// Number of messages that are too long.
     long: usize,
 }
@@ -135,10 +141,19 @@ impl Channels {
         if self.known.get(&id) == Some(&key) {
             return Record::Other;
         }
+        self.topic_bytes += topic.len();
+        if self.topic_bytes > SCHEMAS {
+            return Record::Other;
+        }
         self.known.insert(id, key);
         let schema = self.schemas.get(&schema);
+        let length = schema.map_or(0, |schema| schema.text.len());
+        self.parsed_bytes = self.parsed_bytes.saturating_add(length);
         let message_type = schema.map_or_else(|| encoding.to_owned(), |schema| schema.name.clone());
-        let decoder = decoder(encoding, schema);
+        let decoder = match length > LONGEST_SCHEMA || self.parsed_bytes > PARSED {
+            true => Decoder::Opaque("its schema is too long to be parsed".to_owned()),
+            false => decoder(encoding, schema),
+        };
         Record::Channel(Channel { id: u32::from(id), topic, message_type, decoder })
     }
 }

@@ -19,9 +19,11 @@ const SAMPLES: [&str; 10] = [
     "table.parquet",
 ];
 
-/// Mutations of each sample; `cargo xtask torture` sets more.
-fn count() -> u64 {
-    std::env::var("LIBRATION_MUTATIONS").ok().and_then(|count| count.parse().ok()).unwrap_or(500)
+/// Mutations of a sample, five times as many of a small one; `cargo xtask torture` sets more.
+fn count(sample: &[u8]) -> u64 {
+    let count = std::env::var("LIBRATION_MUTATIONS").ok().and_then(|count| count.parse().ok());
+    let count: u64 = count.unwrap_or(1000);
+    if sample.len() > 10_000 { count } else { 5 * count }
 }
 
 /// Random bits (G. Marsaglia, *Xorshift RNGs*, Journal of Statistical Software 8, 2003).
@@ -100,11 +102,11 @@ fn no_mutation_of_a_file_leads_to_a_panic() {
         let mut random = Random(0x9e37_79b9_7f4a_7c15);
         let start = std::time::Instant::now();
         let mut opened = 0_u64;
-        for _ in 0..count() {
+        for _ in 0..count(sample) {
             let mut bytes = sample.to_vec();
             mutate(&mut bytes, &mut random);
             opened += u64::from(read_all(bytes));
         }
-        eprintln!("{name}: {opened} of {} open, {:?}", count(), start.elapsed());
+        eprintln!("{name}: {opened} of {} open, {:?}", count(sample), start.elapsed());
     }
 }
