@@ -100,6 +100,9 @@ fn topic_clock(page: &mut Page, clock: &TopicClock) {
     line("repeated stamps", statistics.repeats.to_string());
     line("stamps that go back", clock.backward.to_string());
     line("law of intervals", verdict_words(&clock.law));
+    if let Some(lateness) = &clock.lateness {
+        line("law of lateness on the grid", verdict_words(lateness));
+    }
     if let Some(drift) = &clock.log_against_header {
         line("log clock - header", drift_words(drift));
     }

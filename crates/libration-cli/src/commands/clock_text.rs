@@ -86,6 +86,9 @@ fn topic_clock(clock: &TopicClock, text: &mut String) {
     };
     line(text, "order", order);
     law(&clock.law, "intervals", text);
+    if let Some(lateness) = &clock.lateness {
+        law(lateness, "lateness", text);
+    }
     if let Some(drift) = &clock.log_against_header {
         line(text, "log clock - header", drift_words(drift));
     }

@@ -8,6 +8,7 @@ mod message_stream;
 mod topic;
 
 use std::collections::{BTreeMap, HashMap};
+use std::sync::{Arc, Mutex, PoisonError};
 
 pub(crate) use decoder::Decoder;
 use decoder::SignalPath;
@@ -24,6 +25,12 @@ const MOST: usize = 1 << 27;
 /// Most channels of a bag.
 const MOST_CHANNELS: usize = 1 << 14;
 
+/// The stamps of a topic by each clock, in ns.
+type Stamps = [Vec<Option<i64>>; 3];
+
+/// Topics whose stamps are kept.
+const KEPT: usize = 2;
+
 /// A bag.
 pub(crate) struct Bag<S> {
     stream: S,
@@ -33,6 +40,8 @@ pub(crate) struct Bag<S> {
     notes: Vec<String>,
     /// The log time of the first message, in ns.
     origin: i64,
+    /// The stamps of the topics that were read last.
+    cache: Mutex<Vec<(usize, Arc<Stamps>)>>,
 }
 
 impl<S: MessageStream> Bag<S> {
@@ -90,7 +99,14 @@ impl<S: MessageStream> Bag<S> {
         if unknown > 0 {
             notes.push(format!("{unknown} messages have an unknown channel: ignored"));
         }
-        Ok(Bag { stream, topics, of_channel, notes, origin: origin.unwrap_or(0) })
+        Ok(Bag {
+            stream,
+            topics,
+            of_channel,
+            notes,
+            origin: origin.unwrap_or(0),
+            cache: Mutex::default(),
+        })
     }
 
     fn topic(&self, name: &str) -> Result<usize, LogError> {
@@ -144,6 +160,27 @@ impl<S: MessageStream> Bag<S> {
             ClockChoice::Publish => Some(message.publish),
             ClockChoice::Header => self.topics[topic].decoder.header_time(message.data),
         }
+    }
+
+    /// The stamps of a topic, which are read once.
+    fn stamps_of(&self, topic: usize) -> Result<Arc<Stamps>, LogError> {
+        let kept = || self.cache.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, stamps)) = kept().iter().find(|(own, _)| *own == topic) {
+            return Ok(stamps.clone());
+        }
+        let mut stamps = Stamps::default();
+        self.visit(topic, |message| {
+            for (clock, own) in ClockChoice::ALL.into_iter().zip(&mut stamps) {
+                own.push(self.time(topic, clock, message));
+            }
+            stamps[0].len() < MOST
+        })?;
+        within_limit(stamps[0].len())?;
+        let stamps = Arc::new(stamps);
+        let mut cache = kept();
+        cache.truncate(KEPT - 1);
+        cache.insert(0, (topic, stamps.clone()));
+        Ok(stamps)
     }
 
     fn check_clock(&self, topic: usize, clock: ClockChoice) -> Result<(), LogError> {
@@ -229,13 +266,9 @@ impl<S: MessageStream> Source for Bag<S> {
     fn exact_stamps(&self, topic: &str, clock: ClockChoice) -> Result<Vec<Option<i64>>, LogError> {
         let topic = self.topic(topic)?;
         self.check_clock(topic, clock)?;
-        let mut stamps = Vec::new();
-        self.visit(topic, |message| {
-            stamps.push(self.time(topic, clock, message));
-            stamps.len() < MOST
-        })?;
-        within_limit(stamps.len())?;
-        Ok(stamps)
+        let stamps = self.stamps_of(topic)?;
+        let index = ClockChoice::ALL.iter().position(|own| *own == clock).unwrap_or(0);
+        Ok(stamps[index].clone())
     }
 
     fn is_bag(&self) -> bool {

@@ -28,6 +28,8 @@ pub struct TopicClock {
     pub statistics: Statistics,
     /// The law of the intervals.
     pub law: LawFit,
+    /// The law of the lateness behind a grid of deadlines; none unless neighbouring intervals show that there is one.
+    pub lateness: Option<LawFit>,
     /// The drift of the log clock against the header clock.
     pub log_against_header: Option<Drift>,
 }
@@ -80,8 +82,78 @@ impl TopicClock {
             largest_step_back,
             rate: 1.0 / statistics.mean,
             law: LawFit::of(&intervals),
+            lateness: lateness(&seconds, &intervals).map(|late| LawFit::of(&late)),
             statistics,
             log_against_header,
         })
+    }
+}
+
+/// Correlation of neighbouring intervals from which on wake-ups are late on their own, each on a grid: half way to −0.5.
+const GRID: f64 = -0.25;
+
+/// By how much each stamp is behind the line of least squares through all stamps over their number on the grid, which counts gaps; none
+/// if neighbouring intervals do not show that there is a grid.
+fn lateness(stamps: &[f64], intervals: &[f64]) -> Option<Vec<f64>> {
+    let mut sorted = intervals.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let median = sorted[sorted.len() / 2].max(f64::MIN_POSITIVE);
+    let periods = |interval: f64| (interval / median).round().max(1.0);
+    let deviation = |&interval: &f64| interval - periods(interval) * median;
+    let deviations: Vec<f64> = intervals.iter().map(deviation).collect();
+    if correlation(&deviations) > GRID {
+        return None;
+    }
+    let mut number = 0.0;
+    let mut numbers = vec![0.0];
+    for &interval in intervals {
+        number += periods(interval);
+        numbers.push(number);
+    }
+    let (x, y) = (mean(&numbers), mean(stamps));
+    let square: f64 = numbers.iter().map(|n| (n - x).powi(2)).sum();
+    let product: f64 = numbers.iter().zip(stamps).map(|(n, t)| (n - x) * (t - y)).sum();
+    let slope = product / square;
+    Some(numbers.iter().zip(stamps).map(|(n, t)| t - y - slope * (n - x)).collect())
+}
+
+/// The correlation of neighbours; 0 of values that do not vary.
+fn correlation(values: &[f64]) -> f64 {
+    let mean = mean(values);
+    let square: f64 = values.iter().map(|x| (x - mean).powi(2)).sum();
+    let product: f64 = values.windows(2).map(|pair| (pair[0] - mean) * (pair[1] - mean)).sum();
+    if square > 0.0 { product / square } else { 0.0 }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use libration::random::{Address, Purpose};
+
+    use super::*;
+    use crate::ReadOptions;
+    use crate::clock::Verdict;
+
+    #[test]
+    fn late_wake_ups_on_a_grid_have_the_law_of_their_lateness() {
+        let noise = |n: u64| {
+            let address = Address { seed: 3, trajectory: 0, step: n, purpose: Purpose::StepTime };
+            (50_000.0 * address.gaussian()[0]) as i64
+        };
+        // A deadline in a hundred is missed.
+        let numbers = (0..4000_u64).filter(|n| n % 100 != 50);
+        let stamps = numbers.map(|n| (1_000_000_000 + 1_000_000 * n as i64 + noise(n)).to_string());
+        let text = format!("time_ns\n{}\n", stamps.collect::<Vec<_>>().join("\n"));
+        let log = Log::from_bytes(text.into_bytes(), &ReadOptions::default()).unwrap();
+        let clock = TopicClock::of(&log, "time_ns", ClockChoice::Log).unwrap();
+        let lateness = clock.lateness.unwrap();
+        assert_eq!(lateness.verdict, Verdict::Fits);
+        assert_eq!(lateness.fits[0].name, "gaussian");
+        assert_eq!(clock.statistics.gaps, 40);
+        // Intervals of a few lengths have none of the laws.
+        assert_ne!(clock.law.verdict, Verdict::Fits);
     }
 }

@@ -22,7 +22,7 @@ const SAMPLES: [&str; 10] = [
 /// Mutations of a sample, five times as many of a small one; `cargo xtask torture` sets more.
 fn count(sample: &[u8]) -> u64 {
     let count = std::env::var("LIBRATION_MUTATIONS").ok().and_then(|count| count.parse().ok());
-    let count: u64 = count.unwrap_or(1000);
+    let count: u64 = count.unwrap_or(500);
     if sample.len() > 10_000 { count } else { 5 * count }
 }
 
