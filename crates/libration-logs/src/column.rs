@@ -130,16 +130,18 @@ impl Times {
         }
     }
 
-    /// The times in ns, rounded if the file has decimals.
-    pub(crate) fn nanoseconds(&self) -> Vec<Option<i64>> {
+    /// The times of so many rows in ns, rounded if the file has decimals.
+    pub(crate) fn nanoseconds(&self, rows: usize) -> Vec<Option<i64>> {
+        let mut all = vec![None; rows];
         match self {
-            Times::Exact(own) => own.iter().map(|&(_, x)| Some(x)).collect(),
+            Times::Exact(own) => own.iter().for_each(|&(row, x)| all[row] = Some(x)),
             // A conversion to an integer saturates.
             Times::Floats(own) => own
                 .iter()
-                .map(|&(_, x)| x.is_finite().then_some((1e9 * x).round() as i64))
-                .collect(),
+                .filter(|(_, x)| x.is_finite())
+                .for_each(|&(row, x)| all[row] = Some((1e9 * x).round() as i64)),
         }
+        all
     }
 
     fn seconds(&self) -> Box<dyn Iterator<Item = (usize, f64)> + '_> {

@@ -219,7 +219,8 @@ impl<'a> Reading<'a> {
 /// The channel of a connection.
 fn channel(id: u32, header: &Header, data: &[u8]) -> Option<Channel> {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    let topic = text(header.field("topic")?);
+    // Some recorders write the topic in the data only.
+    let topic = text(header.field("topic").or_else(|| field(data, "topic"))?);
     let message_type = text(field(data, "type")?);
     let definition = text(field(data, "message_definition").unwrap_or_default());
     let decoder = RosDecoder::of_text(&message_type, &definition, Wire::Packed);

@@ -132,7 +132,8 @@ impl Source for Table {
     fn exact_stamps(&self, topic: &str, _: ClockChoice) -> Result<Vec<Option<i64>>, LogError> {
         let index =
             position(&self.columns, topic).ok_or_else(|| unknown("topic", topic, &self.columns))?;
-        Ok(self.columns[index].times().nanoseconds())
+        let column = &self.columns[index];
+        Ok(column.times().nanoseconds(column.rows()))
     }
 
     fn has_stamps_first(&self) -> bool {

@@ -21,11 +21,13 @@ pub(super) fn describe(report: &ClockReport) -> String {
         .max()
         .unwrap_or(0)
         .clamp(16, 48);
-    let _ = writeln!(
-        text,
-        "\n{:<width$} {:>9} {:>12}  {:<20} type",
-        "topic", "messages", "rate", "clocks"
-    );
+    if !report.topics.is_empty() {
+        let _ = writeln!(
+            text,
+            "\n{:<width$} {:>9} {:>12}  {:<20} type",
+            "topic", "messages", "rate", "clocks"
+        );
+    }
     for topic in &report.topics {
         let rate = topic.rate.map_or_else(|| "-".to_owned(), |rate| format!("{rate:.3} Hz"));
         let clocks = topic.clocks.join(", ");
@@ -34,6 +36,7 @@ pub(super) fn describe(report: &ClockReport) -> String {
     }
     match &report.clock {
         Some(clock) => topic_clock(clock, &mut text),
+        None if report.topics.is_empty() => text += "\nthe file has no time stamps\n",
         None => text += "\nhelp: choose a topic with --topic\n",
     }
     if let Some(found) = &report.latency {
@@ -169,6 +172,7 @@ pub(super) fn law_words(law: &Law) -> String {
 pub(super) fn matching_words(latency: &Latency) -> String {
     let how = match latency.matching {
         Matching::HeaderStamps => "equal header stamps",
+        Matching::Row => "rows",
         Matching::NearestPreceding => "the nearest preceding message",
     };
     format!(

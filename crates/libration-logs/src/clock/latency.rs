@@ -14,6 +14,8 @@ use crate::{ClockChoice, Log, LogError};
 pub enum Matching {
     /// By equal header stamps.
     HeaderStamps,
+    /// By the row of a table.
+    Row,
     /// With the nearest preceding message.
     NearestPreceding,
 }
@@ -63,7 +65,7 @@ const BINS: usize = 20;
 impl Latency {
     /// The latency from a topic to another of a log, by the log clock or the publish clock.
     ///
-    /// Messages with equal header stamps belong together, if at least half of the later topic's messages have such a match. Else each
+    /// Time stamps in a row of a table belong together. Messages with equal header stamps belong together, if at least half of the later topic's messages have such a match. Else each
     /// belongs to the nearest preceding message.
     ///
     /// # Errors
@@ -79,6 +81,7 @@ impl Latency {
         };
         let by_headers = headers.and_then(|(a, b)| by_header(&earlier, &a, &later, &b));
         let (matching, matched) = match by_headers {
+            _ if !log.is_bag() => (Matching::Row, by_row(&earlier, &later)),
             Some(matched) => (Matching::HeaderStamps, matched),
             None => (Matching::NearestPreceding, by_order(&earlier, &later)),
         };
@@ -154,6 +157,15 @@ fn by_header(
     (latencies.len() >= unmatched).then_some(Matched { latencies, unmatched, unanswered })
 }
 
+/// Latencies within a row.
+fn by_row(earlier: &[Option<i64>], later: &[Option<i64>]) -> Matched {
+    let pairs = || earlier.iter().zip(later);
+    let latencies: Vec<f64> = pairs().filter_map(|(a, b)| Some(seconds((*a)?, (*b)?))).collect();
+    let unmatched = later.iter().flatten().count() - latencies.len();
+    let unanswered = earlier.iter().flatten().count() - latencies.len();
+    Matched { latencies, unmatched, unanswered }
+}
+
 /// Latencies from the nearest preceding message.
 fn by_order(earlier: &[Option<i64>], later: &[Option<i64>]) -> Matched {
     let mut earlier: Vec<i64> = earlier.iter().flatten().copied().collect();
@@ -199,6 +211,15 @@ mod tests {
         let stamps = |all: &[i64]| all.iter().map(|&x| Some(x)).collect::<Vec<_>>();
         let found = by_order(&stamps(&[10, 30, 20]), &stamps(&[5, 12, 25, 26]));
         assert_eq!(found.latencies, [2e-9, 5e-9, 6e-9]);
+        assert_eq!((found.unmatched, found.unanswered), (1, 1));
+    }
+
+    #[test]
+    fn stamps_in_a_row_belong_together() {
+        let text = "start,end\n1700000000000000000,1700000000000400000\n1700000000010000000,\n,1700000000020500000\n";
+        let log = Log::from_bytes(text.into(), &Default::default()).unwrap();
+        let found = Latency::between(&log, "start", "end", ClockChoice::Log).unwrap();
+        assert_eq!((found.matching, found.count, found.mean), (Matching::Row, 1, 0.0004));
         assert_eq!((found.unmatched, found.unanswered), (1, 1));
     }
 
