@@ -131,3 +131,54 @@ fn innovations(rows: &[Row], ratio: f64) -> (Vec<Row>, f64) {
     }
     (whitened, logs)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_filter_gives_the_fit_and_the_likelihood_of_the_whole_covariance_matrix() {
+        const N: usize = 6;
+        let values = [0.3, -1.2, 2.5, 0.9, 3.1, 2.2];
+        let rows: Vec<Row> =
+            values.iter().enumerate().map(|(i, y)| ([1.0, i as f64 - 2.5, 0.0], *y)).collect();
+        let ratio = 0.7;
+        // Covariances of white noise and of a walk that starts at the first value: δ_ij + ratio·min(i, j).
+        let covariance = |i: usize, j: usize| f64::from(i == j) + ratio * i.min(j) as f64;
+        // Cholesky's factor, and its inverse on each column.
+        let mut factor = [[0.0; N]; N];
+        for i in 0..N {
+            for j in 0..=i {
+                let known: f64 = (0..j).map(|k| factor[i][k] * factor[j][k]).sum();
+                let rest = covariance(i, j) - known;
+                factor[i][j] = if i == j { rest.sqrt() } else { rest / factor[j][j] };
+            }
+        }
+        let mut whitened: Vec<Row> = Vec::new();
+        for i in 0..N {
+            let solve = |own: f64, entry: &dyn Fn(&Row) -> f64| {
+                let known: f64 = (0..i).map(|k| factor[i][k] * entry(&whitened[k])).sum();
+                (own - known) / factor[i][i]
+            };
+            let x = [0, 1].map(|c| solve(rows[i].0[c], &|row| row.0[c]));
+            let y = solve(rows[i].1, &|row| row.1);
+            whitened.push(([x[0], x[1], 0.0], y));
+        }
+        let whole = least_squares(&whitened, 2).unwrap();
+        let logs: f64 = (0..N).map(|i| 2.0 * factor[i][i].ln()).sum();
+        let freedom = (N - 2) as f64;
+        let variance = whole.residual / freedom;
+        let likelihood = -0.5 * (logs + whole.log_determinant + freedom * variance.ln());
+        let fit = Fit::of(&rows, ratio, 2).unwrap();
+        // Both are sums of about ten roundings.
+        let pairs = [
+            (fit.solution.coefficients[1], whole.coefficients[1]),
+            (fit.solution.inverse_diagonal[1], whole.inverse_diagonal[1]),
+            (fit.variance, variance),
+            (fit.likelihood, likelihood),
+        ];
+        for (filtered, dense) in pairs {
+            assert!((filtered / dense - 1.0).abs() < 1e-13, "{filtered} {dense}");
+        }
+    }
+}

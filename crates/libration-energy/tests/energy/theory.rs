@@ -107,18 +107,24 @@ fn chaotic_chains_and_molecular_dynamics_by_verlet_have_order_2_and_no_fault() {
 
 #[test]
 fn a_short_run_does_not_resolve_a_drift_and_says_which_run_does() {
-    let traces = [0.008, 0.004, 0.002].map(|dt| lennard_jones(End::Smooth, dt, 20.0));
-    // With the deviation of a step of 0.002 allowed, the drift over 10⁵ s decides.
-    let requirement = Requirement { tolerance: 2e-3, horizon: Some(1e5) };
-    let report = audit(&traces, requirement).unwrap();
-    let short = report.findings.iter().find(|finding| finding.kind == FindingKind::ShortRun);
-    let duration = report.largest_dt.unwrap().resolving_duration.unwrap();
-    assert!(short.is_some() && duration > 20.0 && duration <= 1e5, "{duration}");
-    // Runs of that length resolve it, but for the spread of the interval itself: a factor of 2.
-    let longer = [0.008, 0.004, 0.002].map(|dt| lennard_jones(End::Smooth, dt, 4.0 * 20.0));
+    let particles =
+        |duration: f64| [0.008, 0.004, 0.002].map(|dt| lennard_jones(End::Smooth, dt, duration));
     let width =
         |report: &EnergyReport| report.runs[0].drift_rate.high - report.runs[0].drift_rate.value;
-    let ratio = width(&report) / width(&audit(&longer, requirement).unwrap());
-    // The law of the prediction: 4^(3/2) = 8. Widths are estimates by 12 batches, with an error of 1/√(2·10) = 22 % each.
+    let traces = particles(20.0);
+    // The oscillation of a step of 0.002 is allowed, that of 0.004 is not, so that the run with 0.002 decides.
+    let tolerance = 1e-3;
+    let first = audit(&traces, Requirement { tolerance, horizon: None }).unwrap();
+    // A horizon over which the interval is eight times a fifth of the tolerance.
+    let allowed = tolerance * first.largest_dt.unwrap().scale;
+    let horizon = Some(8.0 * allowed / (5.0 * width(&first)));
+    let report = audit(&traces, Requirement { tolerance, horizon }).unwrap();
+    assert!(report.findings.iter().any(|finding| finding.kind == FindingKind::ShortRun));
+    // Under noise with a short memory the interval falls as the power 3/2 of the duration: 4^(3/2) = 8.
+    let duration = report.largest_dt.unwrap().resolving_duration.unwrap();
+    assert!((duration / 80.0 - 1.0).abs() < 1e-6, "{duration}");
+    let ratio =
+        width(&first) / width(&audit(&particles(duration), Requirement::default()).unwrap());
+    // Widths are estimates by at least 12 batches, with an error of 1/√(2·10) = 22 % each; three of both.
     assert!((ratio / 8.0).ln().abs() < 3.0 * 0.22 * 2.0_f64.sqrt(), "{ratio}");
 }
