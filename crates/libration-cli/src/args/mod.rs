@@ -2,6 +2,7 @@
 
 mod advise;
 mod analyze;
+mod audit;
 mod bench;
 mod clock;
 mod equation_advice;
@@ -35,6 +36,7 @@ use crate::error::Failure;
 
 pub(crate) use advise::AdviseArgs;
 pub(crate) use analyze::AnalyzeArgs;
+pub(crate) use audit::AuditArgs;
 pub(crate) use bench::BenchArgs;
 pub(crate) use clock::ClockArgs;
 pub(crate) use gains::GainsArgs;
@@ -82,6 +84,8 @@ Examples:
                                              limits of a control loop
   libration probe --command ./my_step --state 0,1 --dt 0.01
                                              an audit of the step of your simulator
+  libration audit h1.csv h2.csv --energy E --dt 0.01,0.005
+                                             what an energy drift is made of
   libration gains --mujoco robot.xml --dt 0.005
                                              the largest gains of its servos
   libration identify log.csv --command cmd --response q
@@ -106,6 +110,8 @@ pub(crate) enum Command {
     Advise(AdviseArgs),
     /// Audit the step of any simulator: MuJoCo models, programs, matrices
     Probe(ProbeArgs),
+    /// Audit energies of runs at several time steps, by any program: oscillation, drift, rounding, wrong forces
+    Audit(AuditArgs),
     /// Check whether gains of servos hold at a time step, and with which integrator
     Gains(GainsArgs),
     /// Identify dead time, lag, gain and noise of a loop from a log of its commands and responses

@@ -5,6 +5,8 @@ mod advise_linear;
 mod analyze;
 mod analyze_equations;
 mod analyze_linear;
+mod audit;
+mod audit_text;
 mod bench;
 mod clock;
 mod clock_effect;
@@ -49,6 +51,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::Bench(args) => bench::run(&args, arguments.quiet),
         Command::Gains(args) => gains::run(&args),
         Command::Identify(args) => identify::run(&args, arguments.quiet),
+        Command::Audit(args) => audit::run(&args),
         Command::Probe(args) => probe::run(&args, arguments.quiet),
         Command::Clock(args) => clock::run(&args, arguments.quiet),
         Command::MeasureJitter(args) => measure_jitter::run(&args, arguments.quiet),

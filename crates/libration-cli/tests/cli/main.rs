@@ -4,6 +4,7 @@
 
 mod advise;
 mod analyze;
+mod audit;
 mod bench;
 mod clocks;
 mod closed_loop;

@@ -1,0 +1,59 @@
+//! `libration audit`.
+
+use std::path::Path;
+
+use libration_energy::{EnergyTrace, Requirement, audit, page};
+use libration_logs::{Log, LogError, ReadOptions};
+use libration_report::notation::plural;
+
+use super::advise::command_line;
+use super::audit_text::describe;
+use super::result_file::ResultFile;
+use crate::args::AuditArgs;
+use crate::error::Failure;
+use crate::terminal;
+
+/// The column with the time step of a file.
+const TIME_STEP: &str = "dt";
+
+/// Audits energies and prints the report.
+pub(crate) fn run(args: &AuditArgs) -> Result<(), Failure> {
+    let file = ResultFile::create("--page", args.page.as_deref())?;
+    if !args.dt.is_empty() && args.dt.len() != args.files.len() {
+        return Err(Failure::usage(format!(
+            "--dt has {} for {}; expected one for each file",
+            plural(args.dt.len(), "time step"),
+            plural(args.files.len(), "file")
+        )));
+    }
+    let mut traces = Vec::with_capacity(args.files.len());
+    for (i, path) in args.files.iter().enumerate() {
+        let trace = read(args, path, args.dt.get(i).copied())
+            .map_err(|error| Failure::usage(format!("cannot use `{}`: {error}", path.display())))?;
+        traces.push(trace);
+    }
+    let requirement = Requirement { tolerance: args.tolerance, horizon: args.horizon };
+    let mut report = audit(&traces, requirement).map_err(Failure::usage)?;
+    report.repeat_command = command_line();
+    let text = match args.json {
+        true => serde_json::to_string_pretty(&report).map_err(Failure::run)? + "\n",
+        false => describe(&report),
+    };
+    terminal::print(&text)?;
+    file.write(|| page(&report))?;
+    if report.holds() { Ok(()) } else { Err(Failure::Disagreement) }
+}
+
+/// The energies of a file. Without `dt` the time step is that of a column, if there is one.
+fn read(args: &AuditArgs, path: &Path, dt: Option<f64>) -> Result<EnergyTrace, LogError> {
+    let options = ReadOptions { time: args.time.clone(), ..ReadOptions::default() };
+    let log = Log::open(path, &options)?;
+    let energies = log.series(&args.energy)?;
+    let has_steps = log.signals().iter().any(|signal| signal.name == TIME_STEP);
+    let dt = match dt {
+        None if has_steps => log.series(TIME_STEP)?.values.first().copied(),
+        dt => dt,
+    };
+    let title = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    Ok(EnergyTrace { title, dt, times: energies.time, energies: energies.values })
+}

@@ -1,0 +1,59 @@
+//! An audit of energies as text.
+
+use std::fmt::Write as _;
+
+use libration_energy::{EnergyReport, Estimate, PowerLaw};
+use libration_report::notation::number;
+
+/// Returns the report as text.
+pub(super) fn describe(report: &EnergyReport) -> String {
+    let mut text = format!("{}\n", report.answer);
+    for finding in &report.findings {
+        let kind = if finding.is_fault { "fault" } else { "warning" };
+        let _ = writeln!(text, "{kind}: {}: {}", finding.kind, finding.text);
+        let _ = writeln!(text, "help: {}", finding.help);
+    }
+    runs(report, &mut text);
+    let laws = [
+        ("oscillation", report.oscillation_law, report.oscillation_cause.text()),
+        ("drift rate", report.drift_law, report.drift_cause.text()),
+        ("variance of the walk", report.walk_law, report.walk_cause.text()),
+    ];
+    let _ = writeln!(text, "\n{:<22} {:<30} cause", "part", "exponent of dt");
+    for (part, law, cause) in laws {
+        let _ = writeln!(text, "{part:<22} {:<30} {cause}", exponent(law));
+    }
+    let _ = writeln!(text, "repeat with: {}", report.repeat_command);
+    text
+}
+
+fn runs(report: &EnergyReport, text: &mut String) {
+    let _ = writeln!(
+        text,
+        "\n{:<20} {:>10} {:>10} {:>34} {:>38} {:>12}",
+        "run", "dt s", "duration s", "oscillation", "drift 1/s", "walk in 1 s"
+    );
+    for run in &report.runs {
+        let walk = run.walk.filter(|walk| walk.is_present);
+        let walk =
+            walk.map_or_else(|| "-".to_owned(), |walk| number(walk.diffusion.value.sqrt(), 3));
+        let _ = writeln!(
+            text,
+            "{:<20} {:>10} {:>10} {:>34} {:>38} {:>12}",
+            run.title,
+            number(run.dt, 4),
+            number(run.duration, 4),
+            interval(run.oscillation),
+            interval(run.drift_rate),
+            walk
+        );
+    }
+}
+
+fn interval(Estimate { value, low, high }: Estimate) -> String {
+    format!("{} ({} to {})", number(value, 3), number(low, 3), number(high, 3))
+}
+
+fn exponent(law: Option<PowerLaw>) -> String {
+    law.map_or_else(|| "-".to_owned(), |law| interval(law.exponent))
+}
