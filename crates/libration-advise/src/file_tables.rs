@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use libration_settings::latency_presets::LatencyValue;
 use libration_settings::{Count, Number};
 use serde::Deserialize;
 
@@ -82,7 +83,7 @@ pub(super) struct ObserverTable {
 #[serde(default, deny_unknown_fields)]
 pub(super) struct LoopTable {
     pub(super) period: Number,
-    pub(super) latency: Number,
+    pub(super) latency: LatencyValue,
     pub(super) jitter: Number,
     pub(super) law: String,
     pub(super) skew: Number,
@@ -134,7 +135,7 @@ impl Default for LoopTable {
     fn default() -> Self {
         LoopTable {
             period: Number(0.01),
-            latency: zero(),
+            latency: LatencyValue(0.0),
             jitter: zero(),
             law: "gaussian".into(),
             skew: zero(),

@@ -10,6 +10,7 @@ mod fault;
 mod file;
 pub mod initial_value_problem;
 mod instruction_set;
+pub mod latency_presets;
 pub mod limits;
 pub mod linear_loop;
 pub mod optional_path;

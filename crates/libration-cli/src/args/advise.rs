@@ -30,7 +30,7 @@ pub(crate) struct AdviseArgs {
     /// Sample period of the loop in s [default: 0.01, or that of a sampled plant]
     #[arg(long, value_name = "SECONDS", value_parser = number, allow_hyphen_values = true)]
     pub(super) period: Option<f64>,
-    /// Latency of a command: 0.015 (in s) or 1.5steps (of --period); with --plant also one for each input, e.g. 0.003,0.01
+    /// Latency of a command: 0.015 (in s), 1.5steps (of --period) or preset:NAME; with --plant also one for each input, e.g. 0.003,0.01
     /// [default: 0]
     #[arg(
         long,

@@ -206,6 +206,9 @@ pub(crate) struct ListArgs {
         hide_possible_values = true
     )]
     pub(crate) examples: Option<String>,
+    /// List the presets of latencies, with their sources
+    #[arg(long, conflicts_with_all = ["file", "examples"])]
+    pub(crate) presets: bool,
     /// Print the result as JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -216,7 +219,8 @@ Examples:
   libration list
   libration list --examples
   libration list --examples cart-pole > mine.toml
-  libration list mine.toml";
+  libration list mine.toml
+  libration list --presets";
 
 /// Parses the name of an example; none stands for all.
 fn example(name: &str) -> Result<String, String> {

@@ -10,7 +10,7 @@ use libration_settings::equations::EquationSystem;
 use libration_study::Study;
 use serde_json::{Value, json};
 
-use super::equation_file;
+use super::{equation_file, presets};
 use crate::args::ListArgs;
 use crate::error::Failure;
 use crate::terminal;
@@ -24,6 +24,9 @@ pub(crate) fn run(args: &ListArgs) -> Result<(), Failure> {
             false => summary_text(&summary),
         };
         return Ok(terminal::print(&text)?);
+    }
+    if args.presets {
+        return Ok(terminal::print(&presets::listing(args.json))?);
     }
     if let Some(name) = &args.examples {
         return Ok(terminal::print(&examples(name, args.json)?)?);

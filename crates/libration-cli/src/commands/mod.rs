@@ -26,6 +26,7 @@ mod linear_closed_loop;
 mod list;
 mod measure_jitter;
 mod mujoco;
+mod presets;
 mod probe;
 mod probe_text;
 mod result_file;

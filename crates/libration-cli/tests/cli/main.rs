@@ -31,6 +31,7 @@ mod long_files;
 #[cfg(target_os = "linux")]
 mod memory;
 mod plant_files;
+mod presets;
 mod probe;
 #[cfg(unix)]
 mod probe_programs;

@@ -3,6 +3,7 @@
 use serde::Deserialize;
 
 use super::weights_table::{Weights, WeightsTable};
+use crate::latency_presets::LatencyValues;
 use crate::{Fault, Number};
 
 /// The table `[loop]` of a loop around a linear plant.
@@ -43,12 +44,21 @@ pub struct LinearLoopTable {
 
 /// One number for all channels, or one for each.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
-#[serde(untagged, expecting = "expected a number, or a list with one number for each channel")]
+#[serde(from = "LatencyValues")]
 pub enum Channels {
     /// For all.
     All(Number),
     /// For each.
     Each(Vec<Number>),
+}
+
+impl From<LatencyValues> for Channels {
+    fn from(values: LatencyValues) -> Self {
+        match values {
+            LatencyValues::All(seconds) => Channels::All(Number(seconds)),
+            LatencyValues::Each(all) => Channels::Each(all.into_iter().map(Number).collect()),
+        }
+    }
 }
 
 impl Default for LinearLoopTable {
