@@ -91,7 +91,8 @@ impl Run {
         let leakage = if present.is_some() { 0.0 } else { periods.leakage(batches.count()) };
         let unseen = (resolution + 24.0 / (PI * PI) * leakage) / duration;
         let width = |z: f64| student(z, trend.degrees_of_freedom) * trend.error + unseen;
-        let fluctuation = Fluctuation::of(&batches, &residuals, present);
+        let possible = walk.as_ref().filter(|walk| walk.is_possible);
+        let fluctuation = Fluctuation::of(&batches, &residuals, possible);
         let spacing = trace.spacing();
         let run = Run {
             title: trace.title.clone(),
@@ -210,7 +211,9 @@ impl Fluctuation {
         let variances = batches.variances(residuals);
         let mean = variances.iter().sum::<f64>() / count;
         let scatter = variances.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>();
-        let error = (scatter / (count - 1.0) / count).sqrt();
+        // The variance of the means has the error of a variance with as many degrees of freedom.
+        let error =
+            (scatter / (count - 1.0) / count).sqrt().hypot(white * (2.0 / (count - 2.0)).sqrt());
         let half_width = student(NORMAL_95, means.len() - 1) * error;
         let size = |variance: f64| (variance - wander + white).max(0.0).sqrt();
         let oscillation = Estimate {

@@ -95,3 +95,22 @@ fn a_thermostat_is_a_walk_that_does_not_depend_on_the_step() {
         assert!((diffusion.value / 1e-4).ln().abs() < 3.0 * 0.21, "{diffusion:?}");
     }
 }
+
+#[test]
+fn a_single_jump_of_one_run_is_no_fault() {
+    // Such as that of a particle that crosses the cutoff of a force. Its size says nothing of the step.
+    for (jump, at) in [(3e-3, 0.1), (3e-3, 0.5), (1e-2, 0.3)] {
+        let traces = [0.2, 0.1].map(|dt: f64| {
+            let mut noise = Noise(17);
+            let mut step = 0.0_f64;
+            let next = || {
+                step += 1.0;
+                let late = f64::from(dt < 0.15 && step * dt > at * 500.0);
+                1.0 + jump * late + dt * dt * (0.1 * noise.normal() + 0.2 * (3.0 * step * dt).sin())
+            };
+            trace("jump", dt, (500.0 / dt).round() as usize, 1, next, 1.0)
+        });
+        let report = audited(&traces);
+        assert!(report.holds(), "{jump} {at}: {:?} {:?}", report.findings, report.runs);
+    }
+}
