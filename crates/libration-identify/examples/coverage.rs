@@ -1,0 +1,168 @@
+//! How often 95 % intervals contain the truth, for noise that the model has and that it has not.
+//!
+//! `cargo run --release -p libration-identify --example coverage -- 10000`
+
+use std::sync::atomic::AtomicBool;
+
+use libration_identify::{
+    Hold, Identification, IdentifyError, NoiseKind, Recording, Request, ResponseKind,
+    SimulatedLoop, identify,
+};
+use libration_work::{Interrupted, Silent, Work};
+
+/// A kind of loop.
+struct Case {
+    name: &'static str,
+    noise: NoiseKind,
+    dead_time: f64,
+    lag: f64,
+    simulated: fn(SimulatedLoop) -> SimulatedLoop,
+    /// Noise that no model has.
+    foreign: fn(f64, u64) -> f64,
+}
+
+/// Dead times are those of the middle of a period, of a whole number of periods, and of a lag that is short for the samples.
+const CASES: [Case; 7] = [
+    Case {
+        name: "white, part of a period",
+        noise: NoiseKind::White,
+        dead_time: 0.0334,
+        lag: 0.05,
+        simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
+        foreign: |_, _| 0.0,
+    },
+    Case {
+        name: "white, whole periods",
+        noise: NoiseKind::White,
+        dead_time: 0.03,
+        lag: 0.05,
+        simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
+        foreign: |_, _| 0.0,
+    },
+    Case {
+        name: "white, short lag",
+        noise: NoiseKind::White,
+        dead_time: 0.0334,
+        lag: 0.005,
+        simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
+        foreign: |_, _| 0.0,
+    },
+    Case {
+        name: "coloured",
+        noise: NoiseKind::Coloured,
+        dead_time: 0.0334,
+        lag: 0.05,
+        simulated: |plain| SimulatedLoop { white: 0.05, coloured: (0.05, 0.04), ..plain },
+        foreign: |_, _| 0.0,
+    },
+    Case {
+        name: "disturbance",
+        noise: NoiseKind::Disturbance,
+        dead_time: 0.0334,
+        lag: 0.05,
+        simulated: |plain| SimulatedLoop { white: 0.02, disturbance: 0.03, ..plain },
+        foreign: |_, _| 0.0,
+    },
+    Case {
+        name: "coloured, fitted as white",
+        noise: NoiseKind::White,
+        dead_time: 0.0334,
+        lag: 0.05,
+        simulated: |plain| SimulatedLoop { white: 0.03, coloured: (0.06, 0.04), ..plain },
+        foreign: |_, _| 0.0,
+    },
+    Case {
+        name: "hum of 7 Hz, which no model has",
+        noise: NoiseKind::Coloured,
+        dead_time: 0.0334,
+        lag: 0.05,
+        simulated: |plain| SimulatedLoop { white: 0.03, ..plain },
+        foreign: |time, seed| 0.08 * (44.0 * time + seed as f64).sin(),
+    },
+];
+
+fn main() -> Result<(), IdentifyError> {
+    let count: u64 = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(200);
+    let stop = AtomicBool::new(false);
+    let work = Work::new(&Silent, &stop);
+    println!(
+        "{:<34} {:>9} {:>9} {:>9} {:>9} {:>13}",
+        "noise", "dead time", "lag", "latency", "gain", "contradicted"
+    );
+    for case in &CASES {
+        let trajectories: Vec<u64> = (0..count).collect();
+        let found = work.sweep("loops", &trajectories, |&trajectory| {
+            Ok::<_, Interrupted>(identified(case, trajectory).ok())
+        })?;
+        let found: Vec<Identification> = found.into_iter().flatten().collect();
+        let truths = [
+            ("dead_time", case.dead_time),
+            ("lag", case.lag),
+            ("latency", case.dead_time + case.lag),
+            ("gain", GAIN),
+        ];
+        let shares = truths.map(|(key, truth)| {
+            let holds = |one: &&Identification| {
+                one.parameter(key).and_then(|p| p.interval).is_some_and(|i| i.contains(truth))
+            };
+            100.0 * found.iter().filter(holds).count() as f64 / count as f64
+        });
+        let contradicted = found.iter().filter(|one| one.is_contradicted).count();
+        println!(
+            "{:<34} {:>7.2} % {:>7.2} % {:>7.2} % {:>7.2} % {:>11.2} %",
+            case.name,
+            shares[0],
+            shares[1],
+            shares[2],
+            shares[3],
+            100.0 * contradicted as f64 / count as f64
+        );
+    }
+    Ok(())
+}
+
+const GAIN: f64 = 1.3;
+
+/// The identification of one simulated loop.
+fn identified(case: &Case, trajectory: u64) -> Result<Identification, IdentifyError> {
+    let times: Vec<f64> = (0..400).map(|i| f64::from(i) * 0.01).collect();
+    // Random steps, held for four periods.
+    let mut word = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut commands = Vec::new();
+    for i in 0..times.len() {
+        if i % 4 == 0 {
+            word = word
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+        }
+        commands.push(if word >> 63 == 0 { 1.0 } else { -1.0 });
+    }
+    let blank = vec![0.0; times.len()];
+    let blank = Recording {
+        command_times: times.clone(),
+        commands: commands.clone(),
+        response_times: times.clone(),
+        responses: blank,
+    };
+    let plain = SimulatedLoop {
+        gain: GAIN,
+        load: 0.1,
+        ..SimulatedLoop::new(ResponseKind::Lag, &[case.dead_time, case.lag])
+    };
+    let mut responses = (case.simulated)(plain).responses(&blank, 1, trajectory);
+    for (response, &time) in responses.iter_mut().zip(&times) {
+        *response += (case.foreign)(time, trajectory);
+    }
+    let recording = Recording::new(&times, &commands, &times, &responses)?;
+    let request = Request {
+        responses: vec![ResponseKind::Lag],
+        noises: vec![case.noise],
+        holds: vec![Hold::Zero],
+        largest_dead_time: Some(0.2),
+        arrivals: false,
+        bootstrap: 0,
+        ..Request::default()
+    };
+    let stop = AtomicBool::new(false);
+    identify(&recording, &request, &Work::new(&Silent, &stop))
+}

@@ -1,0 +1,38 @@
+//! Recordings of any numbers.
+
+use std::sync::atomic::AtomicBool;
+
+use libration_identify::{Recording, Request, identify, loop_file, page};
+use libration_work::{Silent, Work};
+
+use crate::loops::Draws;
+
+#[test]
+fn no_numbers_lead_to_a_panic_and_results_are_finite_or_refused() {
+    let mut draws = Draws(99);
+    let sizes = [1e-300, 1e-12, 1.0, 1e9, 1e150, 1e300];
+    let stop = AtomicBool::new(false);
+    let mut identified = 0;
+    for round in 0..24 {
+        let count = 40 + (round * 7) % 60;
+        let [time, command, response] = [0, 1, 2].map(|i| sizes[(round + i * (round + 1)) % 6]);
+        let mut now = 0.0;
+        let mut times = Vec::new();
+        for _ in 0..count {
+            // Some stamps repeat.
+            now += (draws.uniform() + 0.4).max(0.0) * time;
+            times.push(now);
+        }
+        let commands: Vec<f64> =
+            (0..count).map(|_| (2.0 * draws.uniform()).round() * command).collect();
+        let responses: Vec<f64> = (0..count).map(|_| draws.uniform() * response).collect();
+        let Ok(recording) = Recording::new(&times, &commands, &times, &responses) else { continue };
+        let request = Request { bootstrap: 10, ..Request::default() };
+        if let Ok(found) = identify(&recording, &request, &Work::new(&Silent, &stop)) {
+            identified += 1;
+            assert!(found.parameters.iter().all(|p| p.value.is_finite()), "{}", found.answer);
+            assert!(page(&found).len() > 1000 && loop_file(&found).contains("[loop]"));
+        }
+    }
+    assert!(identified > 8, "{identified}");
+}
