@@ -15,6 +15,7 @@ from ._native import __version__
 from . import datasets, plants, policies
 from .analysis import Advice, Analysis, advise, analyze
 from .bits import FirstDifference, first_difference
+from .energy import EnergyReport, audit_energy
 from .ensemble import Ensemble
 from .environments import Environments
 from .equations import EquationSystem
@@ -49,6 +50,7 @@ __all__ = [
     "Cascade",
     "CustomSystem",
     "Difference",
+    "EnergyReport",
     "Ensemble",
     "Environments",
     "EquationSystem",
@@ -85,6 +87,7 @@ __all__ = [
     "__version__",
     "advise",
     "analyze",
+    "audit_energy",
     "datasets",
     "first_difference",
     "gains",

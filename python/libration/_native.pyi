@@ -21,6 +21,7 @@ __all__ = [
     "_analyze",
     "_analyze_equations",
     "_analyze_linear",
+    "_audit_energy",
     "_dataset_settings",
     "_equation_plant",
     "_equation_summary",
@@ -86,6 +87,12 @@ def _analyze(
     step: Mapping[str, Any], looped: Mapping[str, Any], options: Mapping[str, Any]
 ) -> str: ...
 def _analyze_linear(config: str, dt: float | None, integrator: str | None) -> str: ...
+def _audit_energy(
+    traces: list[tuple[str, float | None, Any, Any]],
+    tolerance: float,
+    horizon: float | None,
+    invocation: str,
+) -> tuple[str, bool, str]: ...
 def _linear_plant(text: str) -> tuple[list[list[list[float]]], list[list[tuple[str, str]]]]: ...
 def _probe(
     description: str,

@@ -10,6 +10,7 @@ mod bench;
 mod catalogue;
 mod checked_mutex;
 mod datasets;
+mod energy;
 mod equations;
 mod error;
 mod identify;
@@ -42,6 +43,8 @@ mod _native {
     use crate::checked_mutex::_forked;
     #[pymodule_export]
     use crate::datasets::{_dataset_settings, _verify_dataset, _write_dataset};
+    #[pymodule_export]
+    use crate::energy::_audit_energy;
     #[pymodule_export]
     use crate::equations::{
         _analyze_equations, _equation_plant, _equation_summary, _simulate_equations,
