@@ -183,6 +183,7 @@ fn candidates(page: &mut Page, found: &Identification) {
             "response",
             "hold",
             "noise",
+            "arrivals",
             "dead time",
             "lag or time constant",
             "log likelihood",

@@ -65,6 +65,28 @@ pub enum RecordingError {
     /// The response never changes.
     #[error("the response is {0} throughout; expected a response that changes")]
     ConstantResponse(f64),
+    /// Values are too large or too small to be squared.
+    #[error(
+        "values of the {signal} differ by {spread:e} at most, from {offset:e} in size; expected differences from 1e-100 to 1e100 and at least 1e-12 of the size"
+    )]
+    Scale {
+        /// `command` or `response`.
+        signal: &'static str,
+        /// The largest difference of two values.
+        spread: f64,
+        /// The largest absolute value.
+        offset: f64,
+    },
+    /// Times are too close or too far apart.
+    #[error(
+        "the responses have a median interval of {interval:e} s and last {span:e} s; expected intervals from 1e-9 s to 1e7 s, and at most 1e9 of them"
+    )]
+    Interval {
+        /// The median interval in s.
+        interval: f64,
+        /// From the first to the last response in s.
+        span: f64,
+    },
     /// There are too few responses while commands are known.
     #[error(
         "{count} responses follow the first command; expected at least {FEWEST_RESPONSES}, spread over time"
@@ -104,14 +126,22 @@ impl Recording {
         if responses.iter().all(|&response| response == responses[0]) {
             return Err(RecordingError::ConstantResponse(responses[0]));
         }
+        check_scale("command", commands)?;
+        check_scale("response", &responses[skipped..])?;
         // Times from the first command on, so that a clock that counts from 1970 costs no digits of a latency.
         let from_first = |times: &[f64]| times.iter().map(|time| time - first).collect();
-        Ok(Recording {
+        let recording = Recording {
             command_times: from_first(command_times),
             commands: commands.to_vec(),
             response_times: from_first(&response_times[skipped..]),
             responses: responses[skipped..].to_vec(),
-        })
+        };
+        let (interval, span) = (recording.interval(), recording.span());
+        let last = recording.command_times[recording.command_times.len() - 1];
+        match (1e-9..1e7).contains(&interval) && span.max(last) <= 1e9 * interval {
+            true => Ok(recording),
+            false => Err(RecordingError::Interval { interval, span: span.max(last) }),
+        }
     }
 
     /// Median interval of the responses, in s; of those above zero.
@@ -135,6 +165,18 @@ impl Recording {
     #[must_use]
     pub fn with_responses(&self, responses: Vec<f64>) -> Self {
         Recording { responses, ..self.clone() }
+    }
+}
+
+/// Fails for values whose squares a float cannot hold, or whose differences are their rounding.
+fn check_scale(signal: &'static str, values: &[f64]) -> Result<(), RecordingError> {
+    let (low, high) = values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
+    let (spread, offset) = (high - low, high.abs().max(low.abs()));
+    match (1e-100..1e100).contains(&spread) && spread >= 1e-12 * offset {
+        true => Ok(()),
+        false => Err(RecordingError::Scale { signal, spread, offset }),
     }
 }
 

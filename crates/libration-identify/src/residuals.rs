@@ -91,8 +91,16 @@ fn changes(first: usize, recording: &Recording) -> Vec<f64> {
     let all: Vec<f64> = (first..times.len())
         .map(|i| if i == 0 { 0.0 } else { command(times[i]) - command(times[i - 1]) })
         .collect();
-    let mean = all.iter().sum::<f64>() / all.len() as f64;
-    all.iter().map(|change| change - mean).collect()
+    // Rare large steps, as of a reference, would hide what feedback does all the time.
+    let mut sizes: Vec<f64> = all.iter().map(|change| change.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let most = match sizes.get(sizes.len() / 2) {
+        Some(&median) if median > 0.0 => 3.0 * median,
+        _ => f64::INFINITY,
+    };
+    let clipped: Vec<f64> = all.iter().map(|change| change.clamp(-most, most)).collect();
+    let mean = clipped.iter().sum::<f64>() / clipped.len() as f64;
+    clipped.iter().map(|change| change - mean).collect()
 }
 
 /// The probability of correlations of white `residuals` with a signal at least as large, if both are independent: at `lags` from `first`

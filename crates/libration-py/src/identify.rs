@@ -97,7 +97,7 @@ fn choice<T: Clone>(
     }
     let found = all.iter().find(|kind| name(kind) == text);
     found.map(|kind| vec![kind.clone()]).ok_or_else(|| {
-        let names = ["auto"].into_iter().chain(all.iter().map(&name)).collect();
+        let names: Vec<&str> = ["auto"].into_iter().chain(all.iter().map(&name)).collect();
         unknown(key, text, names)
     })
 }

@@ -192,7 +192,7 @@ fn a_log_from_inside_a_closed_loop_gives_the_same_numbers_and_says_so() {
     for (i, reference) in references.iter().enumerate() {
         // From the last sample to this one: two commands act, the later from 3.4 ms after the last sample on.
         let at = |back: usize| if i >= back { commands[i - back] } else { 0.0 };
-        for (command, h) in [(at(4), 0.0034), (at(3), 0.0066)] {
+        for (command, h) in [(at(4), 0.0034_f64), (at(3), 0.0066)] {
             if i > 0 {
                 state = gain * command + (state - gain * command) * (-h / lag).exp();
             }

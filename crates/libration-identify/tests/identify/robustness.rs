@@ -10,12 +10,14 @@ use crate::loops::Draws;
 #[test]
 fn no_numbers_lead_to_a_panic_and_results_are_finite_or_refused() {
     let mut draws = Draws(99);
-    let sizes = [1e-300, 1e-12, 1.0, 1e9, 1e150, 1e300];
+    let time_sizes = [1e-300, 1e-8, 0.01, 1.0, 1e6];
+    let sizes = [1e-90, 1e-8, 1.0, 1e90, 1e300];
     let stop = AtomicBool::new(false);
     let mut identified = 0;
-    for round in 0..24 {
+    for round in 0..36 {
         let count = 40 + (round * 7) % 60;
-        let [time, command, response] = [0, 1, 2].map(|i| sizes[(round + i * (round + 1)) % 6]);
+        let mut one_of = |sizes: &[f64; 5]| sizes[((draws.uniform() + 1.0) * 2.5) as usize % 5];
+        let (time, command, response) = (one_of(&time_sizes), one_of(&sizes), one_of(&sizes));
         let mut now = 0.0;
         let mut times = Vec::new();
         for _ in 0..count {
