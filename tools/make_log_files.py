@@ -159,6 +159,10 @@ def tables():
     x = np.sin(np.arange(50) * 0.1)
     np.savez(FOLDER / "table.npz", stamp=stamps, x=x, pair=np.stack([x, 2 * x], 1))
     np.save(FOLDER / "matrix.npy", np.stack([np.arange(50) * 0.01, x], 1))
+    records = np.zeros(20, dtype=[("step", "<u8"), ("t", "<f8"), ("x", "<f4", (2,)), ("s", "<U3")])
+    records["t"] = np.arange(20) * 0.25
+    records["x"][:, 1] = np.arange(20)
+    np.save(FOLDER / "records.npy", records)
     holes = [None if k % 7 == 0 else float(v) for k, v in enumerate(x)]
     table = {
         "x": pa.array(holes),

@@ -23,7 +23,7 @@ mod table;
 mod thread_work;
 mod verification;
 
-pub use array_file::{ArrayValues, NamedArray, parse_npy, read_mat, read_npz};
+pub use array_file::{ArrayValues, NamedArray, parse_npy, parse_npy_records, read_mat, read_npz};
 pub use bounded_read::{read_bounded, read_text_bounded};
 pub use checksum::checksum;
 pub use durable_file::{write_direct, write_file};

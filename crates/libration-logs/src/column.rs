@@ -40,8 +40,8 @@ pub(crate) struct Column {
 pub(crate) enum Times {
     /// In ns.
     Exact(Vec<(usize, i64)>),
-    /// In s.
-    Floats(Vec<(usize, f64)>),
+    /// In units of which there are so many per second: a difference before the division has one rounding less.
+    Floats(Vec<(usize, f64)>, f64),
 }
 
 impl Column {
@@ -95,9 +95,8 @@ impl Column {
                     there().map(|(row, x)| Some((row, x.checked_mul(nanoseconds)?))).collect();
                 exact.map_or_else(
                     || {
-                        Times::Floats(
-                            there().map(|(row, x)| (row, x as f64 / per_second as f64)).collect(),
-                        )
+                        let floats = there().map(|(row, x)| (row, x as f64)).collect();
+                        Times::Floats(floats, per_second as f64)
                     },
                     Times::Exact,
                 )
@@ -109,7 +108,7 @@ impl Column {
                 let per_second =
                     self.per_second.or_else(|| unit_in_name(&self.name)).unwrap_or(1) as f64;
                 let there = x.iter().copied().enumerate().filter(|&(_, x)| !is_missing(x));
-                Times::Floats(there.map(|(row, x)| (row, x / per_second)).collect())
+                Times::Floats(there.collect(), per_second)
             }
         }
     }
@@ -122,6 +121,12 @@ impl Times {
             (Times::Exact(own), Times::Exact(origin)) => {
                 let zero = i128::from(origin.first().map_or(0, |first| first.1));
                 own.iter().map(|&(row, x)| (row, (i128::from(x) - zero) as f64 / 1e9)).collect()
+            }
+            (Times::Floats(own, per_second), Times::Floats(origin, other))
+                if per_second == other =>
+            {
+                let zero = origin.first().map_or(0.0, |first| first.1);
+                own.iter().map(|&(row, x)| (row, (x - zero) / per_second)).collect()
             }
             (own, origin) => {
                 let zero = origin.seconds().next().map_or(0.0, |first| first.1);
@@ -136,10 +141,10 @@ impl Times {
         match self {
             Times::Exact(own) => own.iter().for_each(|&(row, x)| all[row] = Some(x)),
             // A conversion to an integer saturates.
-            Times::Floats(own) => own
+            Times::Floats(own, per_second) => own
                 .iter()
                 .filter(|(_, x)| x.is_finite())
-                .for_each(|&(row, x)| all[row] = Some((1e9 * x).round() as i64)),
+                .for_each(|&(row, x)| all[row] = Some((x / per_second * 1e9).round() as i64)),
         }
         all
     }
@@ -147,7 +152,9 @@ impl Times {
     fn seconds(&self) -> Box<dyn Iterator<Item = (usize, f64)> + '_> {
         match self {
             Times::Exact(x) => Box::new(x.iter().map(|&(row, x)| (row, x as f64 / 1e9))),
-            Times::Floats(x) => Box::new(x.iter().copied()),
+            Times::Floats(x, per_second) => {
+                Box::new(x.iter().map(move |&(row, x)| (row, x / per_second)))
+            }
         }
     }
 }

@@ -25,15 +25,15 @@ pub(crate) fn is_text(prefix: &[u8]) -> bool {
 
 /// Reads a table in text.
 pub(crate) fn open(input: &Input, time: Option<&str>) -> Result<Table, LogError> {
-    let (columns, notes) = read(input.reader()?)?;
-    Table::new("text", columns, time, notes)
+    let (columns, notes, is_behind) = read(input.reader()?)?;
+    Ok(Table::new("text", columns, time, notes)?.behind_others(is_behind))
 }
 
-/// The columns of numbers of a text, and remarks.
+/// The columns of numbers of a text, remarks, and whether the first column has no numbers.
 ///
 /// Empty lines and those that begin with `#` are ignored. The first other line may have names; else the last line with `#` in front of
 /// the numbers has them, if it has as many.
-fn read(mut input: impl BufRead) -> Result<(Vec<Column>, Vec<String>), LogError> {
+fn read(mut input: impl BufRead) -> Result<(Vec<Column>, Vec<String>, bool), LogError> {
     let mut line = String::new();
     let mut comment = String::new();
     let mut table: Option<Rows> = None;
@@ -109,17 +109,18 @@ impl Rows {
         Ok(())
     }
 
-    fn into_columns(self) -> (Vec<Column>, Vec<String>) {
+    fn into_columns(self) -> (Vec<Column>, Vec<String>, bool) {
         let mut notes = Vec::new();
         if self.ragged > 0 {
             let (ragged, cells) = (self.ragged, self.values.len());
             notes.push(format!("{ragged} of {} rows do not have {cells} cells", self.rows));
         }
+        let is_behind = self.values.first().is_some_and(|values| values.count() == 0);
         let columns = self.names.into_iter().zip(self.values);
         let columns = columns.filter(|(_, values)| values.count() > 0);
         let columns =
             columns.map(|(name, values)| Column::new(name, values.into_values())).collect();
-        (columns, notes)
+        (columns, notes, is_behind)
     }
 }
 
@@ -150,7 +151,7 @@ mod tests {
     use crate::source::Source;
 
     fn table(text: &str) -> Table {
-        let (columns, notes) = read(text.as_bytes()).unwrap();
+        let (columns, notes, _) = read(text.as_bytes()).unwrap();
         Table::new("text", columns, None, notes).unwrap()
     }
 

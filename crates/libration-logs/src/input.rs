@@ -1,8 +1,8 @@
 //! Where the bytes of a log are.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Cursor, Read};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use bytes::Bytes;
 use libration_data::read_bounded;
@@ -14,7 +14,18 @@ pub(crate) enum Input {
     Memory(Bytes),
 }
 
+/// Most bytes of a pipe or a device, which are kept in memory.
+const LONGEST_PIPE: u64 = 1 << 28;
+
 impl Input {
+    /// The file at a path. A pipe or a device can be read only once, so its bytes are kept in memory.
+    pub(crate) fn of(path: &Path) -> io::Result<Self> {
+        Ok(match fs::metadata(path)?.is_file() {
+            true => Input::File(path.to_owned()),
+            false => Input::Memory(read_bounded(path, LONGEST_PIPE)?.into()),
+        })
+    }
+
     /// Reads from the beginning.
     pub(crate) fn reader(&self) -> io::Result<Box<dyn BufRead>> {
         Ok(match self {

@@ -41,7 +41,7 @@ impl Log {
         if path.is_dir() {
             return Err(LogError::Damaged("it is a directory; expected a file".to_owned()));
         }
-        Self::read(Input::File(path.to_owned()), options)
+        Self::read(Input::of(path)?, options)
     }
 
     /// Opens a file that is in memory.
@@ -52,7 +52,8 @@ impl Log {
         Self::read(Input::Memory(bytes.into()), options)
     }
 
-    fn read(input: Input, options: &ReadOptions) -> Result<Log, LogError> {
+    /// Opens an input.
+    pub(crate) fn read(input: Input, options: &ReadOptions) -> Result<Log, LogError> {
         let prefix = input.prefix(PREFIX)?;
         let time = options.time.as_deref();
         let source: Box<dyn Source> = match prefix.as_slice() {
@@ -136,9 +137,9 @@ impl Log {
         self.source.has_stamps_first()
     }
 
-    /// Whether a file seems to be a text.
-    pub(crate) fn is_text(path: &Path) -> bool {
-        let prefix = Input::File(path.to_owned()).prefix(PREFIX);
+    /// Whether an input seems to be a text.
+    pub(crate) fn is_text(input: &Input) -> bool {
+        let prefix = input.prefix(PREFIX);
         prefix.map_or(true, |prefix| prefix.is_empty() || delimited_text::is_text(&prefix))
     }
 

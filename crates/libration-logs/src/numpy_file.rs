@@ -1,6 +1,6 @@
 //! Files of NumPy: arrays in `.npz`, or one in `.npy`.
 
-use libration_data::{ArrayValues, NamedArray, parse_npy, read_npz};
+use libration_data::{ArrayValues, NamedArray, parse_npy, parse_npy_records, read_npz};
 
 use crate::column::{Column, Values};
 use crate::error::LogError;
@@ -21,8 +21,12 @@ fn table(bytes: &[u8], time: Option<&str>) -> Result<Table, LogError> {
     let (format, arrays) = match bytes.starts_with(b"PK") {
         true => ("NumPy archive", read_npz(bytes, LIMIT).map_err(LogError::Damaged)?),
         false => {
-            let values = parse_npy(bytes).map_err(LogError::Damaged)?;
-            ("NumPy array", vec![NamedArray { name: "column".to_owned(), values }])
+            let records = parse_npy_records(bytes).map_err(LogError::Damaged)?;
+            let alone = || {
+                let values = parse_npy(bytes).map_err(LogError::Damaged)?;
+                Ok(vec![NamedArray { name: "column".to_owned(), values }])
+            };
+            ("NumPy array", records.map_or_else(alone, Ok::<_, LogError>)?)
         }
     };
     let columns: Vec<Column> = arrays.into_iter().flat_map(columns).collect();

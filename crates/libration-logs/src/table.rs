@@ -49,6 +49,11 @@ impl Table {
         Ok(Table { format, columns, time, notes, time_is_first, has_stamps: true })
     }
 
+    /// The same table, in front of whose columns there are others without numbers.
+    pub(crate) fn behind_others(self, is_behind: bool) -> Self {
+        Table { time_is_first: self.time_is_first && !is_behind, ..self }
+    }
+
     /// The same table, whose rows have no order in time.
     pub(crate) fn without_stamps(self) -> Self {
         Table { has_stamps: false, ..self }

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use libration::control::clock::{Recorded, RecordedError};
-use libration_data::read_text_bounded;
 
+use crate::input::Input;
 use crate::{ClockChoice, Log, ReadOptions};
 
 /// Largest size of a text of time stamps in bytes: ten million stamps of about 20 bytes.
@@ -28,19 +28,14 @@ pub struct StampOptions {
 /// In words, if the file cannot be read or its time stamps are invalid.
 pub fn read_time_stamps(path: &Path, options: &StampOptions) -> Result<Vec<f64>, String> {
     let words = |error: &dyn std::fmt::Display| error.to_string();
-    let mut opened = None;
-    if options.topic.is_none() {
-        opened = open_if_not_lines(path, options)?;
-        if opened.is_none() {
-            let text = read_text_bounded(path, LIMIT).map_err(|error| words(&error))?;
-            let stamps = Recorded::stamps_in(&text).and_then(checked);
-            return stamps.map_err(|error| words(&error));
-        }
-    }
+    let input = Input::of(path).map_err(|error| words(&error))?;
     let read = ReadOptions { time: None, clock: options.clock };
-    let log = match opened {
-        Some(log) => log,
-        None => Log::open(path, &read).map_err(|error| words(&error))?,
+    let log = match (Log::read(input.clone(), &read), &options.topic) {
+        (Ok(log), None) if log.has_stamps_first() => return of_lines(&input),
+        (Ok(log), _) => log,
+        // The reader of lines has the position of an error in a text.
+        (Err(_), None) if Log::is_text(&input) => return of_lines(&input),
+        (Err(error), _) => return Err(words(&error)),
     };
     let topic = match &options.topic {
         Some(topic) => topic.clone(),
@@ -53,15 +48,11 @@ pub fn read_time_stamps(path: &Path, options: &StampOptions) -> Result<Vec<f64>,
     checked(stamps).map_err(|error| words(&error))
 }
 
-/// The log, unless it is a text with a stamp at the beginning of each line.
-fn open_if_not_lines(path: &Path, options: &StampOptions) -> Result<Option<Log>, String> {
-    match Log::open(path, &ReadOptions { time: None, clock: options.clock }) {
-        Ok(log) if log.has_stamps_first() => Ok(None),
-        Ok(log) => Ok(Some(log)),
-        // The reader of lines has the position of an error in a text.
-        Err(_) if Log::is_text(path) => Ok(None),
-        Err(error) => Err(error.to_string()),
-    }
+/// The stamps at the beginnings of the lines of a text.
+fn of_lines(input: &Input) -> Result<Vec<f64>, String> {
+    let bytes = input.bytes(LIMIT).map_err(|error| error.to_string())?;
+    let text = std::str::from_utf8(&bytes).map_err(|error| error.to_string())?;
+    Recorded::stamps_in(text).and_then(checked).map_err(|error| error.to_string())
 }
 
 fn checked(stamps: Vec<f64>) -> Result<Vec<f64>, RecordedError> {

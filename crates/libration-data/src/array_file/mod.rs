@@ -3,11 +3,13 @@
 mod byte_reader;
 mod mat;
 mod npy;
+mod npy_records;
 mod npz;
 mod number_format;
 
 pub use mat::read_mat;
 pub use npy::parse_npy;
+pub use npy_records::parse_npy_records;
 pub use npz::read_npz;
 
 /// An array with its name.

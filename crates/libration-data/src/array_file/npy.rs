@@ -10,16 +10,7 @@ use super::{ArrayValues, by_rows};
 /// The error in words: a damaged file, or an array that has neither real numbers nor strings.
 pub fn parse_npy(bytes: &[u8]) -> Result<ArrayValues, String> {
     let mut reader = ByteReader::little_endian(bytes);
-    if reader.take(6).ok() != Some(b"\x93NUMPY") {
-        return Err("it does not begin as a NumPy array".to_owned());
-    }
-    let version = reader.take(2)?[0];
-    let length = match version {
-        1 => reader.u16()?,
-        2 | 3 => reader.u32()?,
-        _ => return Err(format!("it has version {version} of .npy; expected 1, 2 or 3")),
-    };
-    let header = std::str::from_utf8(reader.take(length)?).map_err(|_| "its header is no text")?;
+    let header = header(&mut reader)?;
     let dtype = value(header, "descr")?;
     let dtype = dtype.strip_prefix('\'').and_then(|rest| rest.split_once('\''));
     let (dtype, _) = dtype.ok_or("it is a structured array; expected numbers")?;
@@ -33,21 +24,11 @@ pub fn parse_npy(bytes: &[u8]) -> Result<ArrayValues, String> {
         false => entries,
     };
     let unknown = || format!("it has the dtype `{dtype}`; expected a real number, as `float64`");
-    let (order, kind, size) = match dtype.split_at_checked(2) {
-        Some((code, size)) => {
-            (&code[..1], &code[1..], size.parse::<usize>().map_err(|_| unknown())?)
-        }
-        None => return Err(unknown()),
-    };
-    let big_endian = order == ">";
-    let kind = match kind {
-        "f" => NumberKind::Float,
-        "i" => NumberKind::Signed,
-        "u" => NumberKind::Unsigned,
-        "U" => return text(reader.rest(), &shape, size, big_endian),
-        _ => return Err(unknown()),
-    };
-    let format = NumberFormat::new(kind, size, big_endian).ok_or_else(unknown)?;
+    if let Some((order, size)) = dtype.split_once('U') {
+        let size = size.parse::<usize>().map_err(|_| unknown())?;
+        return text(reader.rest(), &shape, size, order == ">");
+    }
+    let format = number_format(dtype).ok_or_else(unknown)?;
     let entries = match (format.decode(reader.rest(), &shape), is_by_columns) {
         (Ok(entries), _) => entries,
         (Err(why), false) => {
@@ -59,15 +40,41 @@ pub fn parse_npy(bytes: &[u8]) -> Result<ArrayValues, String> {
     Ok(ArrayValues::Numbers { entries: ordered(entries), shape })
 }
 
+/// The header, which is a Python dictionary.
+pub(super) fn header<'a>(reader: &mut ByteReader<'a>) -> Result<&'a str, String> {
+    if reader.take(6).ok() != Some(b"\x93NUMPY") {
+        return Err("it does not begin as a NumPy array".to_owned());
+    }
+    let version = reader.take(2)?[0];
+    let length = match version {
+        1 => reader.u16()?,
+        2 | 3 => reader.u32()?,
+        _ => return Err(format!("it has version {version} of .npy; expected 1, 2 or 3")),
+    };
+    Ok(std::str::from_utf8(reader.take(length)?).map_err(|_| "its header is no text")?)
+}
+
+/// The format of numbers of a dtype such as `<f8`; none of others.
+pub(super) fn number_format(dtype: &str) -> Option<NumberFormat> {
+    let (code, size) = dtype.split_at_checked(2)?;
+    let kind = match code.get(1..2)? {
+        "f" => NumberKind::Float,
+        "i" => NumberKind::Signed,
+        "u" | "b" => NumberKind::Unsigned,
+        _ => return None,
+    };
+    NumberFormat::new(kind, size.parse().ok()?, code.starts_with('>'))
+}
+
 /// What follows a key in the header, which is a Python dictionary.
-fn value<'a>(header: &'a str, key: &str) -> Result<&'a str, String> {
+pub(super) fn value<'a>(header: &'a str, key: &str) -> Result<&'a str, String> {
     let rest = header.split_once(&format!("'{key}'")).map(|(_, rest)| rest.trim_start());
     let value = rest.and_then(|rest| rest.strip_prefix(':'));
     value.map(str::trim_start).ok_or_else(|| format!("its header has no key `{key}`"))
 }
 
 /// A Python tuple of integers.
-fn shape(text: &str) -> Result<Vec<usize>, String> {
+pub(super) fn shape(text: &str) -> Result<Vec<usize>, String> {
     let inner = text.strip_prefix('(').and_then(|rest| rest.split_once(')'));
     let (inner, _) = inner.ok_or("its header has no shape")?;
     let numbers = inner.split(',').map(str::trim).filter(|number| !number.is_empty());

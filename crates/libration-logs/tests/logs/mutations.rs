@@ -6,7 +6,7 @@ use libration_logs::{ClockChoice, Log, ReadOptions};
 
 use crate::path;
 
-const SAMPLES: [&str; 10] = [
+const SAMPLES: [&str; 11] = [
     "zstd.mcap",
     "lz4.mcap",
     "none.mcap",
@@ -16,6 +16,7 @@ const SAMPLES: [&str; 10] = [
     "px4.ulg",
     "table.npz",
     "matrix.npy",
+    "records.npy",
     "table.parquet",
 ];
 

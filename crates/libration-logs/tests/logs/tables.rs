@@ -1,6 +1,6 @@
 //! Tables that NumPy and pyarrow wrote.
 
-use libration_logs::{ClockChoice, Log, ReadOptions};
+use libration_logs::{ClockChoice, Log, ReadOptions, StampOptions, read_time_stamps};
 
 use crate::{open, path};
 
@@ -24,6 +24,13 @@ fn an_array_of_numpy_has_the_time_in_its_first_column() {
 }
 
 #[test]
+fn records_of_numpy_have_a_column_for_each_field() {
+    let log = open("records.npy", ClockChoice::Log);
+    let series = log.series("x[1]").unwrap();
+    assert_eq!((series.time[3], series.values[3]), (0.75, 3.0));
+}
+
+#[test]
 fn parquet_has_units_of_time_and_holes() {
     let log = open("table.parquet", ClockChoice::Log);
     assert_eq!(log.stamps("stamp").unwrap()[2], 2.0 * 1_000_003.0 / 1e9);
@@ -42,4 +49,20 @@ fn a_column_of_time_can_be_chosen() {
     assert_eq!(log.series("column_1").unwrap().time[3], (0.1_f64 * 3.0).sin());
     let error = Log::open(&path("table.npz"), &options("stmp")).err().unwrap().to_string();
     assert!(error.contains("no column `stmp`") && error.contains("`stamp`"), "{error}");
+}
+
+#[test]
+fn time_stamps_are_those_of_the_column_of_time_wherever_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("log.csv");
+    let read = |text: &str| {
+        std::fs::write(&file, text).unwrap();
+        read_time_stamps(&file, &StampOptions::default())
+    };
+    assert_eq!(read("x,time_ms\n1,10\n2,12.5\n").unwrap(), [0.0, 0.0025]);
+    assert_eq!(read("name,time\na,1\nb,1.5\n").unwrap(), [0.0, 0.5]);
+    assert_eq!(read("5,1\n7,1.5\n").unwrap(), [0.0, 2.0]);
+    // Errors of lines have their numbers.
+    assert!(read("time\n0\nfoo\n").unwrap_err().starts_with("line 3 is `foo`"));
+    assert!(read("x,time\n0,5\n1,4\n").unwrap_err().contains("time stamp 2"));
 }
