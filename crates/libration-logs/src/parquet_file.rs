@@ -91,6 +91,12 @@ fn values(
     let (mut whole, mut floats) = (Vec::new(), Vec::new());
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group)?;
+        // The library asserts these of any file.
+        let chunk = group.metadata().column(index);
+        let start = chunk.dictionary_page_offset().unwrap_or_else(|| chunk.data_page_offset());
+        if start < 0 || chunk.compressed_size() < 0 || chunk.num_values() < 0 {
+            return Err(LogError::Damaged("the place of a column is below zero".to_owned()));
+        }
         let column = group.get_column_reader(index)?;
         match column {
             ColumnReader::BoolColumnReader(column) => {

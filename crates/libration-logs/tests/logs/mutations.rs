@@ -6,20 +6,6 @@ use libration_logs::{ClockChoice, Log, ReadOptions};
 
 use crate::path;
 
-const SAMPLES: [&str; 11] = [
-    "zstd.mcap",
-    "lz4.mcap",
-    "none.mcap",
-    "json.mcap",
-    "ros1.bag",
-    "ros1_lz4.bag",
-    "px4.ulg",
-    "table.npz",
-    "matrix.npy",
-    "records.npy",
-    "table.parquet",
-];
-
 /// Mutations of a sample, five times as many of a small one; `cargo xtask torture` sets more.
 fn count(sample: &[u8]) -> u64 {
     let count = std::env::var("LIBRATION_MUTATIONS").ok().and_then(|count| count.parse().ok());
@@ -90,24 +76,53 @@ fn read_all(bytes: Vec<u8>) -> bool {
     true
 }
 
+/// Reads damaged samples.
+fn damage(name: &str, sample: &[u8]) {
+    let mut random = Random(0x9e37_79b9_7f4a_7c15);
+    let start = std::time::Instant::now();
+    let mut opened = 0_u64;
+    for _ in 0..count(sample) {
+        let mut bytes = sample.to_vec();
+        mutate(&mut bytes, &mut random);
+        opened += u64::from(read_all(bytes));
+    }
+    eprintln!("{name}: {opened} of {} open, {:?}", count(sample), start.elapsed());
+}
+
+/// A test for each sample, so that they run at the same time.
+macro_rules! no_mutation_leads_to_a_panic {
+    ($($test:ident: $name:literal;)*) => {
+        $(
+            #[test]
+            fn $test() {
+                damage($name, &fs::read(path($name)).unwrap());
+            }
+        )*
+    };
+}
+
+no_mutation_leads_to_a_panic! {
+    of_mcap_by_zstd: "zstd.mcap";
+    of_mcap_by_lz4: "lz4.mcap";
+    of_mcap_in_plain_chunks: "none.mcap";
+    of_mcap_without_chunks: "json.mcap";
+    of_ros_1: "ros1.bag";
+    of_ros_1_by_lz4: "ros1_lz4.bag";
+    of_ulog: "px4.ulg";
+    of_archives: "table.npz";
+    of_arrays: "matrix.npy";
+    of_records: "records.npy";
+    of_parquet: "table.parquet";
+}
+
 #[test]
-fn no_mutation_of_a_file_leads_to_a_panic() {
+fn of_texts() {
     let texts: [(&str, &[u8]); 3] = [
         ("CSV", b"time_ns,x [m],y\n1700000000000000000,1,nan\n1700000000010000000,,2e5\n1700000000020000000,-3,\n"),
         ("cyclictest -v", b"T: 0 ( 12) I:500 C: 3\n 0: 0: 5\n 1: 0: 9\n 0: 1: 7\n 0: 2: 6\n"),
         ("cyclictest -h", b"# Histogram\n000003 000010\t000000\n000004 000089\t000001\n# Total: 99 1\n"),
     ];
-    let files = SAMPLES.map(|name| (name, fs::read(path(name)).unwrap()));
-    let files = files.iter().map(|(name, bytes)| (*name, bytes.as_slice()));
-    for (name, sample) in files.chain(texts) {
-        let mut random = Random(0x9e37_79b9_7f4a_7c15);
-        let start = std::time::Instant::now();
-        let mut opened = 0_u64;
-        for _ in 0..count(sample) {
-            let mut bytes = sample.to_vec();
-            mutate(&mut bytes, &mut random);
-            opened += u64::from(read_all(bytes));
-        }
-        eprintln!("{name}: {opened} of {} open, {:?}", count(sample), start.elapsed());
+    for (name, text) in texts {
+        damage(name, text);
     }
 }
