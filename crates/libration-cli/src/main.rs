@@ -14,6 +14,7 @@ use std::process::{self, ExitCode};
 use std::thread::Builder;
 
 use error::Failure;
+use libration_logs::PARQUET_THREAD;
 
 /// Bytes of the stack. A thread reserves it as a whole; the stack of the main thread grows, and crashes at a limit (`ulimit -v`).
 const STACK: usize = 8 << 20;
@@ -39,6 +40,10 @@ fn run() -> ExitCode {
 /// Reports a panic as a bug. A panic for lack of memory (of the standard library, or of a compressor) ends the run instead, with a
 /// message that needs no memory.
 fn report_panic(panic: &PanicHookInfo<'_>) {
+    if std::thread::current().name() == Some(PARQUET_THREAD) {
+        // The reader of the file returns an error.
+        return;
+    }
     if !panic.payload_as_str().is_some_and(is_out_of_memory) {
         return terminal::error(&format!("this is a bug: {panic}"));
     }

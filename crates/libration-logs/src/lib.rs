@@ -30,5 +30,6 @@ mod ulog;
 pub use clock::{Band, Lateness, Quantile, Spectrum, Statistics};
 pub use error::LogError;
 pub use log::{Log, ReadOptions};
+pub use parquet_file::PARQUET_THREAD;
 pub use signal::{ClockChoice, Series, SignalInfo, TopicInfo};
 pub use time_stamps::{StampOptions, read_time_stamps};

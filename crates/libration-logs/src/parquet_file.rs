@@ -1,6 +1,7 @@
 //! Apache Parquet.
 
 use std::fs::File;
+use std::thread::Builder;
 
 use parquet::basic::{LogicalType, TimeUnit};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
@@ -25,12 +26,21 @@ impl From<ParquetError> for LogError {
     }
 }
 
+/// The name of the thread that reads a Parquet file: the library panics on some damaged files, and a panic on this thread is an error
+/// of the file. A hook that reports panics ignores those of this thread.
+pub const PARQUET_THREAD: &str = "parquet";
+
 /// Reads the columns of numbers. Lists and text are left out.
 pub(crate) fn open(input: &Input, time: Option<&str>) -> Result<Table, LogError> {
-    match input {
-        Input::File(path) => read(&SerializedFileReader::new(File::open(path)?)?, time),
-        Input::Memory(bytes) => read(&SerializedFileReader::new(bytes.clone())?, time),
-    }
+    let (input, time) = (input.clone(), time.map(str::to_owned));
+    let reading = move || match input {
+        Input::File(path) => read(&SerializedFileReader::new(File::open(path)?)?, time.as_deref()),
+        Input::Memory(bytes) => read(&SerializedFileReader::new(bytes)?, time.as_deref()),
+    };
+    let thread = Builder::new().name(PARQUET_THREAD.to_owned()).spawn(reading)?;
+    thread.join().unwrap_or_else(|_| {
+        Err(LogError::Damaged("it is damaged: the Parquet library cannot read it".to_owned()))
+    })
 }
 
 fn read(reader: &dyn FileReader, time: Option<&str>) -> Result<Table, LogError> {

@@ -1,8 +1,9 @@
 //! Damaged files: no bytes lead to a panic, or to more memory than the file deserves.
 
 use std::fs;
+use std::sync::Once;
 
-use libration_logs::{ClockChoice, Log, ReadOptions};
+use libration_logs::{ClockChoice, Log, PARQUET_THREAD, ReadOptions};
 
 use crate::path;
 
@@ -76,8 +77,20 @@ fn read_all(bytes: Vec<u8>) -> bool {
     true
 }
 
+/// Ignores panics of the thread that reads Parquet files, as the program does.
+fn ignore_panics_of_parquet() {
+    let report = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if std::thread::current().name() != Some(PARQUET_THREAD) {
+            report(panic);
+        }
+    }));
+}
+
 /// Reads damaged samples.
 fn damage(name: &str, sample: &[u8]) {
+    static HOOK: Once = Once::new();
+    HOOK.call_once(ignore_panics_of_parquet);
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     let start = std::time::Instant::now();
     let mut opened = 0_u64;
