@@ -2,8 +2,9 @@
 
 use libration::linear::{Matrix, solve_matrix};
 
-use crate::arrival_filter::{ArrivalModel, MOST_STATES, Start, log_likelihood};
+use crate::arrival_filter::{Start, log_likelihood};
 use crate::estimate::Estimate;
+use crate::hypothesis::{ArrivalModel, MOST_STATES};
 use crate::minimum::{restarted, simplex};
 use crate::model::Model;
 use crate::noise::NoiseKind;

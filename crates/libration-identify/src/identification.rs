@@ -1,24 +1,15 @@
 //! The result of an identification.
 
-use libration_work::Work;
 use serde::Serialize;
 
-use crate::arrival_parameters::arrival_parameters;
-use crate::arrivals::{ArrivalSearch, median_period};
-use crate::bootstrap::{self, BootstrapRow};
+use crate::bootstrap::BootstrapRow;
 use crate::candidate::CandidateRow;
-use crate::estimate::Estimate;
-use crate::excitation::{ExcitationRow, excitations};
+use crate::excitation::ExcitationRow;
 use crate::hold::Hold;
-use crate::information::{Information, information};
-use crate::likelihood_map::{LikelihoodMap, likelihood_map};
+use crate::likelihood_map::LikelihoodMap;
 use crate::noise::NoiseKind;
-use crate::parameters::{Estimated, certain_parameters};
-use crate::recording::Recording;
-use crate::request::{IdentifyError, Request};
+use crate::parameters::Estimated;
 use crate::residuals::ResidualTests;
-use crate::selection::{Selection, select};
-use crate::{summary, warnings};
 
 /// How the response follows the command over time.
 #[derive(Clone, Debug, Serialize)]
@@ -86,139 +77,5 @@ impl Identification {
     /// The parameter of this key.
     pub fn parameter(&self, key: &str) -> Option<&Estimated> {
         self.parameters.iter().find(|parameter| parameter.key == key)
-    }
-}
-
-/// Most responses of a fit over time.
-const MOST_SHOWN: usize = 4000;
-
-/// Identifies a loop from a recording.
-///
-/// # Errors
-/// [`IdentifyError`].
-pub fn identify(
-    recording: &Recording,
-    request: &Request,
-    work: &Work<'_>,
-) -> Result<Identification, IdentifyError> {
-    let largest = request.check(recording)?;
-    let Selection { estimate, arrivals, candidates } = select(recording, request, largest, work)?;
-    let window = estimate.model.window(recording);
-    let search = arrivals
-        .as_ref()
-        .and_then(|fit| Some((fit, ArrivalSearch::new(fit.law, &estimate, recording)?)));
-    let information = information(&estimate, recording);
-    let (parameters, residuals, correlation, bootstrap) = match &search {
-        Some((fit, search)) => {
-            let covariance = search.covariance(fit);
-            let changes = recording.commands.windows(2).filter(|pair| pair[0] != pair[1]).count();
-            let parameters = arrival_parameters(fit, &estimate.model, covariance.as_ref(), changes);
-            let tests = ResidualTests::new(&search.scores(fit), 0, window.first, recording);
-            (parameters, tests, None, Vec::new())
-        }
-        None => {
-            let parameters = certain_parameters(&estimate, recording, information.as_ref());
-            let tests = ResidualTests::of(&estimate, recording);
-            let count = request.bootstrap;
-            let repeats = bootstrap::bootstrap(&estimate, recording, count, request.seed, work)?;
-            let bootstrap = bootstrap_rows(&estimate, &repeats, &parameters);
-            (parameters, tests, correlation(&estimate, information.as_ref()), bootstrap)
-        }
-    };
-    let is_certain = search.is_none();
-    let mut found = Identification {
-        answer: String::new(),
-        warnings: Vec::new(),
-        response: estimate.model.response.name(),
-        hold: estimate.model.hold,
-        noise: estimate.model.noise,
-        arrivals: candidates.first().map_or("certain", |row| row.arrivals),
-        correlation,
-        is_contradicted: residuals.contradict(),
-        residuals,
-        candidates,
-        bootstrap,
-        excitations: if is_certain { excitations(&estimate, recording) } else { Vec::new() },
-        likelihood: is_certain.then(|| map(&estimate, recording, &parameters)).flatten(),
-        fit: match &search {
-            None => fit(&estimate, recording, None),
-            Some((fit, search)) => self::fit(&estimate, recording, Some(&search.scores(fit))),
-        },
-        parameters,
-        commands: recording.commands.len(),
-        responses: estimate.regression.residuals.len(),
-        period: median_period(recording),
-        interval: estimate.model.interval,
-        largest_dead_time: largest,
-        repeat_command: String::new(),
-        libration_version: env!("CARGO_PKG_VERSION"),
-    };
-    found.warnings = warnings::warnings(&found, &estimate, recording);
-    found.answer = summary::answer(&found);
-    Ok(found)
-}
-
-fn correlation(estimate: &Estimate, information: Option<&Information>) -> Option<f64> {
-    if estimate.model.free_shape() < 2 || estimate.model.known[0].is_some() {
-        return None;
-    }
-    let covariance = &information?.covariance;
-    Some(covariance[(0, 1)] / (covariance[(0, 0)] * covariance[(1, 1)]).sqrt())
-}
-
-fn bootstrap_rows(
-    estimate: &Estimate,
-    repeats: &[Vec<f64>],
-    parameters: &[Estimated],
-) -> Vec<BootstrapRow> {
-    let names = estimate.model.response.parameters().iter().map(|parameter| parameter.key);
-    let is_known = |i: usize| estimate.model.known.get(i).is_some_and(Option::is_some);
-    names
-        .chain(["gain"])
-        .enumerate()
-        .filter(|&(i, key)| !is_known(i) && !(key == "gain" && estimate.model.gain.is_some()))
-        .filter_map(|(i, key)| {
-            let values = repeats.iter().map(|values| values[i]).collect();
-            let found = parameters.iter().find(|parameter| parameter.key == key);
-            bootstrap::row(key, values, found.and_then(|parameter| parameter.standard_error))
-        })
-        .collect()
-}
-
-/// The likelihood around the intervals of the first two parameters, if both are free.
-fn map(
-    estimate: &Estimate,
-    recording: &Recording,
-    parameters: &[Estimated],
-) -> Option<LikelihoodMap> {
-    if estimate.model.free_shape() < 2 || estimate.model.known.iter().any(Option::is_some) {
-        return None;
-    }
-    let range = |parameter: &Estimated| {
-        let interval = parameter.interval?;
-        let high = interval.high.unwrap_or(2.0 * parameter.value + estimate.model.interval);
-        let width = (high - interval.low).max(1e-9 * estimate.model.interval);
-        Some(((interval.low - 0.6 * width).max(0.0), high + 0.6 * width))
-    };
-    Some(likelihood_map(estimate, recording, [range(&parameters[0])?, range(&parameters[1])?]))
-}
-
-fn fit(estimate: &Estimate, recording: &Recording, scores: Option<&[f64]>) -> FitSeries {
-    let window = estimate.model.window(recording);
-    let count = (recording.responses.len() - window.first).min(MOST_SHOWN);
-    let end = window.first + count;
-    let part = Recording {
-        response_times: recording.response_times[window.first..end].to_vec(),
-        responses: recording.responses[window.first..end].to_vec(),
-        ..recording.clone()
-    };
-    let quiet = bootstrap::simulated(estimate).without_noise();
-    let deviation = estimate.variance().sqrt();
-    let own: Vec<f64> = estimate.regression.residuals.iter().map(|x| x / deviation).collect();
-    FitSeries {
-        model: quiet.responses(&part, 0, 0),
-        time: part.response_times,
-        response: part.responses,
-        residual: scores.unwrap_or(&own)[..count].to_vec(),
     }
 }
