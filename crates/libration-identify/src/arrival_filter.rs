@@ -77,7 +77,7 @@ pub(crate) fn log_likelihood(
             total += h.weight;
         }
         // Each hypothesis is excluded by more than the range of floats.
-        if !(total > 0.0) {
+        if total <= 0.0 || total.is_nan() {
             return f64::NEG_INFINITY;
         }
         if let Some(scores) = &mut scores {

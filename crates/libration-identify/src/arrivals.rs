@@ -230,7 +230,7 @@ impl<'a> ArrivalSearch<'a> {
         for (i, step) in steps.iter_mut().enumerate() {
             for _ in 0..12 {
                 let rise = 0.5 * (at(&[(i, *step)]) + at(&[(i, -*step)])) - centre;
-                if !(rise < 2.0) {
+                if rise >= 2.0 || rise.is_nan() {
                     *step *= 0.5;
                 } else if rise < 0.1 {
                     *step *= 1.7;

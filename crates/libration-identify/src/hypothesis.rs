@@ -56,12 +56,10 @@ impl Hypothesis {
         let mut predicted = plant.d * (model.gain * values[self.acting] + model.load);
         let mut spread = model.deviation * model.deviation;
         let mut gains = [0.0; MOST_STATES];
-        for i in 0..n {
+        for (i, gain) in gains.iter_mut().enumerate().take(n) {
             predicted += plant.c[i] * self.mean[i];
-            for j in 0..n {
-                gains[i] += self.covariance[i][j] * plant.c[j];
-            }
-            spread += plant.c[i] * gains[i];
+            *gain = (0..n).map(|j| self.covariance[i][j] * plant.c[j]).sum();
+            spread += plant.c[i] * *gain;
         }
         let error = response - predicted;
         for i in 0..n {
@@ -78,20 +76,18 @@ impl Hypothesis {
         let n = step.gamma.len();
         let command = model.gain * values[self.acting] + model.load;
         let phi = |i: usize, j: usize| step.phi[i * n + j];
+        let sum = |term: &dyn Fn(usize) -> f64| (0..n).map(term).sum::<f64>();
         let mut mean = [0.0; MOST_STATES];
         let mut half = [[0.0; MOST_STATES]; MOST_STATES];
-        for i in 0..n {
-            mean[i] = step.gamma[i] * command;
-            for k in 0..n {
-                mean[i] += phi(i, k) * self.mean[k];
-                for j in 0..n {
-                    half[i][j] += phi(i, k) * self.covariance[k][j];
-                }
+        for (i, row) in half.iter_mut().enumerate().take(n) {
+            mean[i] = step.gamma[i] * command + sum(&|k| phi(i, k) * self.mean[k]);
+            for (j, entry) in row.iter_mut().enumerate().take(n) {
+                *entry = sum(&|k| phi(i, k) * self.covariance[k][j]);
             }
         }
-        for i in 0..n {
+        for (i, row) in half.iter().enumerate().take(n) {
             for j in 0..n {
-                self.covariance[i][j] = (0..n).map(|k| half[i][k] * phi(j, k)).sum();
+                self.covariance[i][j] = sum(&|k| row[k] * phi(j, k));
             }
         }
         self.mean = mean;
@@ -118,7 +114,7 @@ impl Hypothesis {
     /// This hypothesis and another as one, with their mean and covariance.
     pub(crate) fn merged(self, other: Hypothesis) -> Hypothesis {
         let weight = self.weight + other.weight;
-        if !(weight > 0.0) {
+        if weight <= 0.0 || weight.is_nan() {
             return self;
         }
         let (own, others) = (self.weight / weight, other.weight / weight);

@@ -104,7 +104,7 @@ fn bootstrap_rows(
     names
         .chain(["gain"])
         .enumerate()
-        .filter(|&(i, key)| !is_known(i) && !(key == "gain" && estimate.model.gain.is_some()))
+        .filter(|&(i, key)| !is_known(i) && (key != "gain" || estimate.model.gain.is_none()))
         .filter_map(|(i, key)| {
             let values = repeats.iter().map(|values| values[i]).collect();
             let found = parameters.iter().find(|parameter| parameter.key == key);

@@ -99,7 +99,7 @@ pub(crate) fn restarted(
         if gained > 0.0 {
             best = found;
         }
-        if !(gained > (10.0 * tolerance).max(0.1)) {
+        if gained.is_nan() || gained <= (10.0 * tolerance).max(0.1) {
             break;
         }
     }

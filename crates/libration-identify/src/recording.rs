@@ -117,7 +117,7 @@ impl Recording {
             [start, .., end] => end - start,
             _ => 0.0,
         };
-        if kept < FEWEST_RESPONSES || !(spread > 0.0) {
+        if kept < FEWEST_RESPONSES || spread <= 0.0 {
             return Err(RecordingError::TooFew { count: kept });
         }
         if commands.iter().all(|&command| command == commands[0]) {

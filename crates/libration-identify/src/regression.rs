@@ -33,10 +33,10 @@ impl Regression {
         let target =
             |i: usize| whitened.responses[i] - gain.map_or(0.0, |gain| gain * row(i)[COMMAND]);
         let mut normal = Matrix::zeros(columns, columns + 1);
-        for i in 0..count {
+        for (i, weight) in weights.iter().enumerate() {
             let (row, target) = (row(i), target(i));
             for a in 0..columns {
-                let weighted = weights[i] * row[a];
+                let weighted = weight * row[a];
                 for b in a..columns {
                     normal[(a, b)] += weighted * row[b];
                 }
@@ -89,7 +89,7 @@ fn solve_symmetric(normal: &Matrix, is_free: impl Fn(usize) -> bool) -> (Vec<f64
     let mut pivots: Vec<usize> = Vec::new();
     for column in 0..n {
         let left = work[(column, column)];
-        if !is_free(column) || !(left > DEPENDENT * normal[(column, column)]) {
+        if !is_free(column) || left.is_nan() || left <= DEPENDENT * normal[(column, column)] {
             continue;
         }
         for row in 0..n {

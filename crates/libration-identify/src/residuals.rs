@@ -114,7 +114,7 @@ fn cross(residuals: &[f64], signal: &[f64], lags: core::ops::Range<usize>, is_la
         |x: &[f64], y: &[f64], lag: usize| -> f64 { (lag..n).map(|i| x[i] * y[i - lag]).sum() };
     let count = lags.len();
     let own: Vec<f64> = (0..count).map(|lag| product(signal, signal, lag)).collect();
-    if !(own[0] > 0.0 && power > 0.0) {
+    if [own[0], power].iter().any(|x| x.is_nan() || *x <= 0.0) {
         return 1.0;
     }
     let found: Vec<f64> = lags

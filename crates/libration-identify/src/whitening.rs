@@ -139,7 +139,7 @@ impl<'a> Filter<'a> {
 
     /// Moves on by `h` seconds under a command and its slope.
     fn advance(&mut self, steps: &mut PlantSteps<'_>, h: f64, (command, slope): (f64, f64)) {
-        if !(h > 0.0) {
+        if h <= 0.0 || h.is_nan() {
             return;
         }
         let (n, width, states) = (self.plant.states(), self.width, self.states);
@@ -223,15 +223,14 @@ impl<'a> Filter<'a> {
                 .map(|i| (0..states).map(|j| self.covariance[i * states + j] * c(j)).sum())
                 .collect();
             scale += (0..states).map(|i| c(i) * gains[i]).sum::<f64>();
+            let (response, regressors) = innovations.split_last().unwrap_or((&0.0, &[]));
             for i in 0..states {
                 let gain = gains[i] / scale;
-                for column in 0..width - 1 {
-                    self.means[i * width + column] -= gain * innovations[column];
-                }
-                self.means[i * width + width - 1] += gain * innovations[width - 1];
-                for j in 0..states {
-                    self.covariance[i * states + j] -= gain * gains[j];
-                }
+                let means = &mut self.means[i * width..(i + 1) * width];
+                means.iter_mut().zip(regressors).for_each(|(mean, error)| *mean -= gain * error);
+                means[width - 1] += gain * response;
+                let row = &mut self.covariance[i * states..(i + 1) * states];
+                row.iter_mut().zip(&gains).for_each(|(entry, other)| *entry -= gain * other);
             }
         }
         whitened.regressors.extend_from_slice(&innovations[..width - 1]);

@@ -8,7 +8,8 @@ use libration_work::{Silent, Work};
 use crate::loops::{Draws, commands};
 
 fn recording_error(times: &[f64], commands: &[f64], responses: &[f64]) -> String {
-    Recording::new(times, commands, times, responses).unwrap_err().to_string()
+    let found = Recording::new(times, commands, times, responses);
+    found.expect_err("an invalid recording").to_string()
 }
 
 #[test]

@@ -23,7 +23,7 @@ fn recorded(seed: u64, arrival: impl Fn(&mut Draws) -> Option<f64>) -> Recording
     let samples: Vec<f64> = times.iter().map(|t| t + 0.0071).collect();
     let mut responses = lag_response(&arrivals, 0.04, 1.0, &samples);
     responses.iter_mut().for_each(|y| *y += 0.005 * draws.normal());
-    Recording::new(&times, &commands, &samples, &responses).unwrap()
+    Recording::new(&times, &commands, &samples, &responses).expect("a valid recording")
 }
 
 fn lag_only() -> Request {
