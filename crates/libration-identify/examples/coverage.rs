@@ -160,6 +160,7 @@ fn identified(case: &Case, trajectory: u64) -> Result<Identification, IdentifyEr
         holds: vec![Hold::Zero],
         largest_dead_time: Some(0.2),
         arrivals: false,
+        details: false,
         bootstrap: 0,
         ..Request::default()
     };

@@ -53,7 +53,7 @@ pub fn identify(
             (parameters, tests, correlation(&estimate, information.as_ref()), bootstrap)
         }
     };
-    let is_certain = search.is_none();
+    let is_detailed = request.details && search.is_none();
     let mut found = Identification {
         answer: String::new(),
         warnings: Vec::new(),
@@ -66,8 +66,8 @@ pub fn identify(
         residuals,
         candidates,
         bootstrap,
-        excitations: if is_certain { excitations(&estimate, recording) } else { Vec::new() },
-        likelihood: is_certain.then(|| map(&estimate, recording, &parameters)).flatten(),
+        excitations: if is_detailed { excitations(&estimate, recording) } else { Vec::new() },
+        likelihood: is_detailed.then(|| map(&estimate, recording, &parameters)).flatten(),
         fit: match &search {
             None => fit(&estimate, recording, None),
             Some((fit, search)) => self::fit(&estimate, recording, Some(&search.scores(fit))),

@@ -27,6 +27,8 @@ pub struct Request {
     pub largest_dead_time: Option<f64>,
     /// Whether losses, two delays and jitter of arrivals are looked for.
     pub arrivals: bool,
+    /// Whether the likelihood over dead time and lag, and other commands, are looked at.
+    pub details: bool,
     /// The number of simulated recordings that check the intervals; 0 for none.
     pub bootstrap: usize,
     /// Seed of the simulated recordings.
@@ -44,6 +46,7 @@ impl Default for Request {
             gain: None,
             largest_dead_time: None,
             arrivals: true,
+            details: true,
             bootstrap: 100,
             seed: 0,
         }

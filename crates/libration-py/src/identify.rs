@@ -60,6 +60,7 @@ fn request(options: &Value) -> PyResult<Request> {
         gain: number("gain"),
         largest_dead_time: number("largest_dead_time"),
         arrivals: options["random_arrivals"].as_bool().unwrap_or(true),
+        details: true,
         bootstrap: usize::try_from(whole("bootstrap")).unwrap_or(usize::MAX),
         seed: whole("seed"),
     })

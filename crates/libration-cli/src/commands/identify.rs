@@ -64,6 +64,7 @@ fn request(args: &IdentifyArgs) -> Result<Request, Failure> {
         gain: args.gain,
         largest_dead_time: args.largest_dead_time,
         arrivals: !args.certain_arrivals,
+        details: true,
         bootstrap: args.bootstrap,
         seed: args.seed,
     })

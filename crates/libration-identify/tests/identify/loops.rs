@@ -67,7 +67,7 @@ pub(crate) fn identified(recording: &Recording, request: &Request) -> Identifica
 }
 
 pub(crate) fn quick() -> Request {
-    Request { bootstrap: 0, largest_dead_time: Some(0.2), ..Request::default() }
+    Request { bootstrap: 0, details: false, largest_dead_time: Some(0.2), ..Request::default() }
 }
 
 pub(crate) fn value(found: &Identification, key: &str) -> f64 {
@@ -77,15 +77,15 @@ pub(crate) fn value(found: &Identification, key: &str) -> f64 {
 #[test]
 fn a_lag_behind_a_part_of_a_period_is_found_among_all_models() {
     let mut draws = Draws(5);
-    let (times, commands) = commands(900, 5, &mut draws);
+    let (times, commands) = commands(600, 5, &mut draws);
     let arrivals: Vec<(f64, f64)> =
         times.iter().zip(&commands).map(|(t, u)| (t + 0.0334, *u)).collect();
     // Samples between the commands, one in 9.1 ms.
-    let samples: Vec<f64> = (0..980).map(|i| 0.0041 + 0.0091 * f64::from(i)).collect();
+    let samples: Vec<f64> = (0..650).map(|i| 0.0041 + 0.0091 * f64::from(i)).collect();
     let mut responses = lag_response(&arrivals, 0.05, 0.9, &samples);
     responses.iter_mut().for_each(|y| *y += 0.2 + 0.01 * draws.normal());
     let recording = Recording::new(&times, &commands, &samples, &responses).unwrap();
-    let found = identified(&recording, &Request { bootstrap: 40, ..quick() });
+    let found = identified(&recording, &Request { bootstrap: 40, details: true, ..quick() });
     assert_eq!((found.response, found.hold, found.noise), ("lag", Hold::Zero, NoiseKind::White));
     for (key, truth) in [("dead_time", 0.0334), ("lag", 0.05), ("latency", 0.0834), ("gain", 0.9)] {
         let parameter = found.parameter(key).unwrap();
@@ -130,7 +130,7 @@ fn a_response_of_second_order_is_found_among_all_models() {
     let (omega, zeta, dead_time) = (25.0_f64, 0.4_f64, 0.021);
     let damped = omega * (1.0 - zeta * zeta).sqrt();
     let mut draws = Draws(11);
-    let (times, commands) = commands(900, 10, &mut draws);
+    let (times, commands) = commands(500, 10, &mut draws);
     let (mut state, mut now, mut command, mut next) = ([0.0, 0.0], 0.0, 0.0, 0);
     let moved = |state: [f64; 2], command: f64, h: f64| {
         let [x, v] = [state[0] - command, state[1]];
@@ -187,7 +187,7 @@ fn a_dead_time_alone_is_known_to_the_interval_of_samples() {
 fn a_log_from_inside_a_closed_loop_gives_the_same_numbers_and_says_so() {
     let (dead_time, lag, gain) = (0.0234, 0.06, 1.2);
     let mut draws = Draws(17);
-    let (times, references) = commands(1500, 12, &mut draws);
+    let (times, references) = commands(900, 12, &mut draws);
     let (mut state, mut commands, mut responses) = (0.0_f64, Vec::<f64>::new(), Vec::new());
     for (i, reference) in references.iter().enumerate() {
         // From the last sample to this one: two commands act, the later from 3.4 ms after the last sample on.
