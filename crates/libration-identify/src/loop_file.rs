@@ -11,7 +11,6 @@ use crate::summary::{interval, seconds};
 /// The file `loop.toml`: the identified plant with its latency, and a controller to edit.
 pub fn loop_file(found: &Identification) -> String {
     let value = |key: &str| found.parameter(key).map(|parameter| parameter.value);
-    let text = |x: f64| format!("{x:e}");
     let gain = value("gain").unwrap_or(1.0);
     let lag = value("lag").unwrap_or(0.0);
     let mut file = format!(
@@ -56,6 +55,12 @@ pub fn loop_file(found: &Identification) -> String {
     file + &timing(found)
 }
 
+/// A number of a file, with nine digits.
+fn text(x: f64) -> String {
+    let rounded: f64 = format!("{x:.8e}").parse().unwrap_or(x);
+    format!("{rounded:?}")
+}
+
 /// The number of states of a denominator.
 fn states(denominator: &str) -> usize {
     denominator.matches(',').count()
@@ -67,7 +72,8 @@ fn part(found: &Identification, head: &str, lag: f64) -> String {
     if lag > 0.0 {
         let _ = write!(
             file,
-            "\n[[part]]\nname = \"identified lag\"\ninput = \"u1\"  # the name of the input\nlag = {lag:e}  # s\n"
+            "\n[[part]]\nname = \"identified lag\"\ninput = \"u1\"  # the name of the input\nlag = {}  # s\n",
+            text(lag)
         );
     }
     file + &timing(found)
@@ -80,12 +86,12 @@ fn timing(found: &Identification) -> String {
         None => "  # s".to_owned(),
     };
     let mut table =
-        format!("\n[loop]\nperiod = {:e}  # s, the median of the commands\n", found.period);
+        format!("\n[loop]\nperiod = {}  # s, the median of the commands\n", text(found.period));
     if let Some(dead_time) = found.parameter("dead_time") {
-        let _ = writeln!(table, "latency = {:e}{}", dead_time.value, commented(dead_time));
+        let _ = writeln!(table, "latency = {}{}", text(dead_time.value), commented(dead_time));
     }
     if let Some(loss) = found.parameter("loss") {
-        let _ = writeln!(table, "loss = {:e}", loss.value);
+        let _ = writeln!(table, "loss = {}", text(loss.value));
     }
     if let Some(second) = found.parameter("second_dead_time") {
         let share = found.parameter("second_share").map_or(0.0, |share| share.value);

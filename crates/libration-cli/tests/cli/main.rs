@@ -12,6 +12,7 @@ mod deadline_misses;
 mod equations;
 mod exit_codes;
 mod forces;
+mod identify;
 mod implicit;
 #[cfg(unix)]
 mod interrupt;

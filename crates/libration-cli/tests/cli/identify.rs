@@ -1,0 +1,97 @@
+//! `identify`.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::PathBuf;
+
+use predicates::prelude::*;
+use serde_json::Value;
+
+use super::advise::libration;
+
+/// Writes a log of a lag of 60 ms behind a dead time of 25 ms, in steps of 10 ms, with a small error that repeats after 97 samples.
+fn log(folder: &std::path::Path) -> PathBuf {
+    let (mut word, mut command, mut state) = (7_u32, 0.0, 0.0_f64);
+    let mut commands: Vec<f64> = Vec::new();
+    let mut text = "t,cmd,q,still\n".to_owned();
+    for i in 0..400 {
+        if i % 5 == 0 {
+            word = word.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            command = f64::from(word >> 8) / f64::from(1_u32 << 24) - 0.5;
+        }
+        let at = |back: usize| if i >= back { commands[i - back] } else { 0.0 };
+        // The command of three periods ago acts up to the middle of the interval, that of two and a half after it.
+        for late in [at(4), at(3)] {
+            state = late + (state - late) * (-0.005_f64 / 0.06).exp();
+        }
+        commands.push(command);
+        let error = 0.004 * (f64::from((i as u32 * 7919) % 97) / 48.0 - 1.0);
+        let _ = writeln!(text, "{},{command},{},1", f64::from(i as u32) * 0.01, state + error);
+    }
+    let path = folder.join("log.csv");
+    fs::write(&path, text).unwrap();
+    path
+}
+
+fn identify(more: &[&str]) -> assert_cmd::assert::Assert {
+    let folder = tempfile::tempdir().unwrap();
+    let path = log(folder.path());
+    libration(&[&["identify", path.to_str().unwrap(), "-q"], more].concat())
+}
+
+const SIGNALS: [&str; 4] = ["--command", "cmd", "--response", "q"];
+
+#[test]
+fn a_log_is_identified_and_its_loop_is_advised() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = log(folder.path());
+    let [page, saved] = ["loop.html", "loop.toml"].map(|name| folder.path().join(name));
+    let words = [
+        "identify",
+        log.to_str().unwrap(),
+        "-q",
+        "--bootstrap",
+        "0",
+        "--model",
+        "lag",
+        "--page",
+        page.to_str().unwrap(),
+        "--save-loop",
+        saved.to_str().unwrap(),
+        "--json",
+    ];
+    let done = libration(&[&words[..], &SIGNALS].concat()).success();
+    let found: Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
+    let parameter = |key: &str| {
+        let rows = found["parameters"].as_array().unwrap();
+        rows.iter().find(|row| row["key"] == key).unwrap()["value"].as_f64().unwrap()
+    };
+    // The errors have a standard deviation of 2.3 mV/V, and steps of a quarter in the mean: 0.2 ms would be four standard errors.
+    assert!((parameter("dead_time") - 0.025).abs() < 3e-4, "{}", parameter("dead_time"));
+    assert!((parameter("lag") - 0.06).abs() < 2e-3, "{}", parameter("lag"));
+    assert!(fs::read_to_string(&page).unwrap().contains("Which numbers has the loop?"));
+    libration(&["advise", "--config", saved.to_str().unwrap(), "-q"])
+        .success()
+        .stdout(predicate::str::contains("The loop is stable"));
+}
+
+#[test]
+fn wrong_signals_and_numbers_are_errors_of_usage() {
+    for (more, message) in [
+        (["--command", "cnd", "--response", "q"], "cnd"),
+        (["--command", "cmd", "--response", "still"], "the response is 1 throughout"),
+    ] {
+        identify(&more).code(2).stderr(predicate::str::contains(message));
+    }
+    for (more, message) in [
+        (["--model", "lagg"], "expected auto, delay, lag"),
+        (["--dead-time", "-1"], "--dead-time is -1; expected a number of at least 0 s"),
+        (["--gain", "0"], "--gain is 0; expected a number other than 0"),
+        (["--largest-dead-time", "9"], "lower the largest dead time"),
+        (["--bootstrap", "1000000"], "--bootstrap is 1000000; expected at most 10000"),
+        (["--page", "/nowhere/loop.html"], "--page"),
+        (["--plant", "/nowhere/plant.toml"], "--plant"),
+    ] {
+        identify(&[&SIGNALS[..], &more].concat()).code(2).stderr(predicate::str::contains(message));
+    }
+}

@@ -1,0 +1,110 @@
+"""Identification of loops: logs of MuJoCo, which nobody here wrote, and errors."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from libration import identify
+
+mujoco = pytest.importorskip("mujoco")
+
+DT, PERIOD, NOISE = 0.001, 0.01, 0.01
+
+
+def mujoco_model(delay: float, dynamics: str) -> "mujoco.MjModel":
+    samples = math.ceil(delay / DT) + 2
+    return mujoco.MjModel.from_xml_string(
+        f"""<mujoco><option timestep="{DT}"/>
+        <worldbody><body><joint name="slider" type="slide"/><geom size="0.1"/></body></worldbody>
+        <actuator><general joint="slider" {dynamics} gainprm="0" delay="{delay}" nsample="{samples}" interp="zoh"/></actuator></mujoco>"""
+    )
+
+
+def mujoco_log(delay: float, lag: float, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Commands, and noisy measurements of the activation that follows them, once per period."""
+    model = mujoco_model(delay, f'dyntype="filterexact" dynprm="{lag}"')
+    data = mujoco.MjData(model)
+    draws = np.random.default_rng(4)
+    commands = np.repeat(draws.uniform(-1, 1, periods // 5), 5)
+    times, responses = [], []
+    for command in commands:
+        data.ctrl[0] = command
+        times.append(data.time)
+        responses.append(data.act[0] + NOISE * draws.standard_normal())
+        for _ in range(round(PERIOD / DT)):
+            mujoco.mj_step(model, data)
+    return np.array(times), commands, np.array(responses)
+
+
+def late_steps(delay: float) -> float:
+    """The mean number of steps after which MuJoCo uses a command, counted one by one."""
+    model = mujoco_model(delay, 'dyntype="integrator"')
+    data = mujoco.MjData(model)
+    counts = []
+    for k in range(200):
+        command = (-1.0) ** k
+        data.ctrl[0] = command
+        for step in range(50):
+            before = data.act[0]
+            mujoco.mj_step(model, data)
+            if np.sign(data.act[0] - before) == command:
+                counts.append(step)
+                break
+        # To the next period.
+        for _ in range(50 - step - 1):
+            mujoco.mj_step(model, data)
+    return float(np.mean(counts))
+
+
+def test_delay_and_lag_of_a_mujoco_actuator_are_identified_within_their_intervals():
+    delay, lag = 0.023, 0.05
+    found = identify(*mujoco_log(delay, lag, 600), noise="white", hold="zero", bootstrap=0)
+    assert found.results["response"] == "lag"
+    assert not found.is_contradicted
+    low, high = found.intervals["lag"]
+    assert low < lag < high and high - low < 0.02 * lag
+    # MuJoCo compares sums of steps: rounding makes a delay of 23 steps one of 23 or of 24.
+    counted = DT * late_steps(delay)
+    assert delay <= counted <= delay + DT
+    low, high = found.intervals["dead_time"]
+    assert delay - 0.0002 < low < high < delay + DT + 0.0002 and high - low < 0.0005
+    # Both are means of 23 and 24, each over a hundred commands or more: half a step over the root of 100, four times.
+    assert abs(found.dead_time - counted) < 4 * 0.05 * DT + (high - low)
+
+
+def test_an_identified_loop_is_a_range_of_delays_of_environments_and_a_file_of_advise(tmp_path):
+    gymnasium = pytest.importorskip("gymnasium")
+    found = identify(*mujoco_log(0.023, 0.05, 400), model="lag", noise="white", hold="zero", bootstrap=0)
+    low, high = found.intervals["dead_time"]
+    assert found.delay_range == (low, high)
+    assert found.action_delay(0.01) == pytest.approx((0.0225, 0.025))
+    assert found.action_delay(0.01, substeps=1) == pytest.approx((0.02, 0.03))
+    envs = gymnasium.make_vec("libration/Oscillator-v0", num_envs=3, dt=0.01, action_delay=found)
+    envs.reset(seed=0)
+    envs.step(envs.action_space.sample())
+    envs.close()
+    found.save_loop(tmp_path / "loop.toml")
+    assert "[loop]" in (tmp_path / "loop.toml").read_text()
+    found.save(tmp_path / "loop.html")
+    found.save(tmp_path / "loop.json")
+    assert json.loads((tmp_path / "loop.json").read_text())["response"] == "lag"
+    assert "<html" in (tmp_path / "loop.html").read_text()
+
+
+def test_invalid_values_are_refused_by_name():
+    t = np.arange(100) * 0.01
+    u = np.sign(np.sin(t * 7.0))
+    with pytest.raises(ValueError, match="u has 99 values; expected 100"):
+        identify(t, u[:-1], u)
+    with pytest.raises(ValueError, match=r"y\[3\] is nan"):
+        identify(t, u, np.where(np.arange(100) == 3, np.nan, u))
+    with pytest.raises(ValueError, match="the command is 1 throughout"):
+        identify(t, np.ones(100), u)
+    with pytest.raises(ValueError, match="unknown model `lagg`"):
+        identify(t, u, u, model="lagg")
+    with pytest.raises(ValueError, match="dead time is -1"):
+        identify(t, u, u, dead_time=-1.0)
+    with pytest.raises(TypeError, match="bootstraps"):
+        identify(t, u, u, bootstraps=3)
