@@ -86,13 +86,11 @@ class Identification:
     def delay_range(self) -> tuple[float, float]:
         """The dead times that commands may have, in s: the interval of the dead time, with two standard deviations of jitter and the longer
         of two dead times."""
-        parameters = self.parameters
-        low, high = self.intervals.get("dead_time", (self.dead_time, self.dead_time))
-        jitter = 2.0 * parameters.get("jitter", 0.0)
-        longer = parameters.get("second_dead_time", 0.0)
-        if not math.isfinite(high):
+        found = self.results["delay_range"]
+        if found is None:
             raise ValueError("the recording excludes no long dead time; help: give the range of action_delay in s")
-        return max(low - jitter, 0.0), max(high + jitter, longer)
+        low, high = found
+        return float(low), float(high)
 
     def action_delay(self, dt: float, substeps: int | None = None) -> tuple[float, float]:
         """Return :attr:`delay_range` rounded outwards to steps of an environment, in s.

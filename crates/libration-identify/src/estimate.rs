@@ -1,6 +1,5 @@
 //! The point of greatest likelihood.
 
-use crate::hold::Hold;
 use crate::minimum::simplex;
 use crate::model::{Model, Point};
 use crate::recording::Recording;
@@ -24,9 +23,6 @@ const DEAD_TIMES: usize = 96;
 const SEARCHED: usize = 1500;
 /// Starts of the second search.
 const STARTS: usize = 3;
-/// A difference of Bayes' criterion that is strong evidence (R. E. Kass and A. E. Raftery, Journal of the American Statistical Association
-/// 90, 1995).
-pub(crate) const STRONG: f64 = 6.0;
 /// The log likelihood is known to this.
 pub(crate) const TOLERANCE: f64 = 1e-7;
 
@@ -34,13 +30,14 @@ impl Estimate {
     /// The fit with white noise, from a search over the whole range of the parameters.
     pub(crate) fn search(model: &Model, recording: &Recording) -> Option<Estimate> {
         let window = model.window(recording);
-        let end = recording.responses.len().min(window.first + SEARCHED);
+        let first = busiest(recording, window.first, SEARCHED);
+        let end = recording.responses.len().min(first + SEARCHED);
         let short = Recording {
             response_times: recording.response_times[..end].to_vec(),
             responses: recording.responses[..end].to_vec(),
             ..recording.clone()
         };
-        let searched = Window { recording: &short, ..window };
+        let searched = Window { recording: &short, first, ..window };
         // Of three parameters each has fewer values.
         let dead_times = if model.known.len() > 2 { DEAD_TIMES / 3 } else { DEAD_TIMES };
         let grid = (0.5 * model.interval).max(model.longest / dead_times as f64);
@@ -140,12 +137,9 @@ impl Estimate {
     }
 
     /// Bayes' information criterion, lower for the better model (G. Schwarz, Annals of Statistics 6, 1978).
-    ///
-    /// Receivers hold commands: that they draw lines takes strong evidence.
     pub(crate) fn criterion(&self) -> f64 {
         let count = self.regression.residuals.len() as f64;
-        let doubt = if self.model.hold == Hold::Linear { STRONG } else { 0.0 };
-        self.parameters() as f64 * count.ln() - 2.0 * self.log_likelihood + doubt
+        self.parameters() as f64 * count.ln() - 2.0 * self.log_likelihood
     }
 
     /// The variance of the noise, corrected for the estimated coefficients.
@@ -159,6 +153,32 @@ impl Estimate {
     pub(crate) fn white_deviation(&self) -> f64 {
         (self.variance() * self.point.noise.white).sqrt()
     }
+}
+
+/// The first of `count` responses, from `first` on, during which the command changes most.
+pub(crate) fn busiest(recording: &Recording, first: usize, count: usize) -> usize {
+    let times = &recording.response_times;
+    if times.len() <= first + count {
+        return first;
+    }
+    // The sum of all changes up to each response.
+    let mut next = 1;
+    let mut sum = 0.0;
+    let sums: Vec<f64> = times
+        .iter()
+        .map(|&time| {
+            while next < recording.commands.len() && recording.command_times[next] <= time {
+                sum += (recording.commands[next] - recording.commands[next - 1]).abs();
+                next += 1;
+            }
+            sum
+        })
+        .collect();
+    let change = |i: &usize| sums[i + count - 1] - sums[*i];
+    (first..=times.len() - count)
+        .rev()
+        .max_by(|i, j| change(i).total_cmp(&change(j)))
+        .unwrap_or(first)
 }
 
 /// Parameters behind the dead time with which a search begins.

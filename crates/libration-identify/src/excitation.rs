@@ -57,8 +57,10 @@ fn row(
 ) -> ExcitationRow {
     let found = information(estimate, recording);
     let free = estimate.model.free_shape();
-    let error =
-        |i: usize| found.as_ref().filter(|_| i < free).map(|found| found.covariance[(i, i)].sqrt());
+    let error = |i: usize| {
+        let found = found.as_ref().filter(|_| i < free);
+        found.map(|found| found.covariance[(i, i)].sqrt()).filter(|error| error.is_finite())
+    };
     let [dead_time_error, lag_error] = [error(0), error(1)];
     let correlation = match (&found, dead_time_error, lag_error) {
         (Some(found), Some(first), Some(second)) => {

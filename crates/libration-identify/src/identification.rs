@@ -57,6 +57,13 @@ pub struct Identification {
     pub likelihood: Option<LikelihoodMap>,
     /// The fit over time; at most 4000 responses.
     pub fit: FitSeries,
+    /// Whether the response depends on the command.
+    pub depends_on_command: bool,
+    /// The dead times that commands may have, in s: the interval of the dead time, with two standard deviations of jitter and the longer of
+    /// two dead times; `null` if the recording excludes no long dead time.
+    pub delay_range: Option<[f64; 2]>,
+    /// The plant behind the dead time, with its gain.
+    pub state_space: StateSpace,
     /// The number of commands.
     pub commands: usize,
     /// The number of responses that were used.
@@ -73,7 +80,32 @@ pub struct Identification {
     pub libration_version: &'static str,
 }
 
+/// `ẋ = a x + b u`, `y = c x + d u`.
+#[derive(Clone, Debug, Serialize)]
+pub struct StateSpace {
+    /// States × states.
+    pub a: Vec<Vec<f64>>,
+    /// One number for each state.
+    pub b: Vec<f64>,
+    /// One number for each state.
+    pub c: Vec<f64>,
+    /// The direct path.
+    pub d: f64,
+}
+
 impl Identification {
+    /// The range of dead times.
+    pub(crate) fn dead_times(&self) -> Option<[f64; 2]> {
+        let value = |key: &str| self.parameter(key).map_or(0.0, |parameter| parameter.value);
+        let dead_time = self.parameter("dead_time")?;
+        let [low, high] = match dead_time.interval {
+            Some(interval) => [interval.low, interval.high?],
+            None => [dead_time.value; 2],
+        };
+        let jitter = 2.0 * value("jitter");
+        Some([(low - jitter).max(0.0), (high + jitter).max(value("second_dead_time"))])
+    }
+
     /// The parameter of this key.
     pub fn parameter(&self, key: &str) -> Option<&Estimated> {
         self.parameters.iter().find(|parameter| parameter.key == key)

@@ -3,12 +3,13 @@
 use libration_work::Work;
 
 use crate::arrival_parameters::arrival_parameters;
-use crate::arrivals::{ArrivalSearch, median_period};
+use crate::arrivals::{ArrivalFit, ArrivalLaw, ArrivalSearch, median_period};
 use crate::bootstrap::{self, BootstrapRow};
-use crate::estimate::Estimate;
+use crate::estimate::{Estimate, busiest};
 use crate::excitation::excitations;
-use crate::identification::{FitSeries, Identification};
+use crate::identification::{FitSeries, Identification, StateSpace};
 use crate::information::{Information, information};
+use crate::interval::{Functional, profile_interval};
 use crate::likelihood_map::{LikelihoodMap, likelihood_map};
 use crate::parameters::{Estimated, certain_parameters};
 use crate::recording::Recording;
@@ -17,6 +18,8 @@ use crate::residuals::ResidualTests;
 use crate::selection::{Selection, select};
 use crate::{summary, warnings};
 
+/// Most responses of a fit: of a longer recording, those during which the command changes most.
+const MOST_USED: usize = 10_000;
 /// Most responses of a fit over time.
 const MOST_SHOWN: usize = 4000;
 
@@ -30,7 +33,14 @@ pub fn identify(
     work: &Work<'_>,
 ) -> Result<Identification, IdentifyError> {
     let largest = request.check(recording)?;
-    let Selection { estimate, arrivals, candidates } = select(recording, request, largest, work)?;
+    let excerpt = (recording.responses.len() > MOST_USED).then(|| {
+        let first = busiest(recording, 0, MOST_USED);
+        recording.excerpt(first, MOST_USED)
+    });
+    let all = recording.responses.len();
+    let recording = excerpt.as_ref().unwrap_or(recording);
+    let Selection { estimate, arrivals, candidates, lag, depends } =
+        select(recording, request, largest, work)?;
     let window = estimate.model.window(recording);
     let search = arrivals
         .as_ref()
@@ -60,7 +70,7 @@ pub fn identify(
         response: estimate.model.response.name(),
         hold: estimate.model.hold,
         noise: estimate.model.noise,
-        arrivals: candidates.first().map_or("certain", |row| row.arrivals),
+        arrivals: arrivals.as_ref().map_or(ArrivalLaw::Certain, |fit| fit.law).name(),
         correlation,
         is_contradicted: residuals.contradict(),
         residuals,
@@ -75,15 +85,45 @@ pub fn identify(
         parameters,
         commands: recording.commands.len(),
         responses: estimate.regression.residuals.len(),
+        depends_on_command: depends,
+        delay_range: None,
+        state_space: state_space(&estimate, arrivals.as_ref()),
         period: median_period(recording),
         interval: estimate.model.interval,
         largest_dead_time: largest,
         repeat_command: String::new(),
         libration_version: env!("CARGO_PKG_VERSION"),
     };
-    found.warnings = warnings::warnings(&found, &estimate, recording);
+    let longest_lag = match estimate.model.response.name() {
+        "delay" => lag.and_then(|lag| longest_lag(&lag, recording)),
+        _ => None,
+    };
+    let context = warnings::Context { estimate: &estimate, recording, all, longest_lag };
+    found.warnings = warnings::warnings(&found, &context);
+    found.delay_range = found.dead_times();
     found.answer = summary::answer(&found);
     Ok(found)
+}
+
+/// The longest lag that a recording of a dead time alone does not exclude.
+fn longest_lag(fit: &Estimate, recording: &Recording) -> Option<f64> {
+    let place = fit.coordinates.len().checked_sub(1).filter(|_| fit.model.known[1].is_none())?;
+    profile_interval(fit, recording, Functional::Coordinate(place), None).high
+}
+
+/// The matrices of the plant behind the dead time, with its gain.
+fn state_space(estimate: &Estimate, arrivals: Option<&ArrivalFit>) -> StateSpace {
+    let (shape, gain) = match arrivals {
+        Some(fit) => (&fit.model.shape, fit.model.gain),
+        None => (&estimate.point.shape, estimate.regression.coefficients[0]),
+    };
+    let plant = estimate.model.response.dynamics(&shape[1..]);
+    StateSpace {
+        a: (0..plant.states()).map(|i| plant.a.row(i).to_vec()).collect(),
+        b: plant.b.iter().map(|b| gain * b).collect(),
+        c: plant.c.clone(),
+        d: gain * plant.d,
+    }
 }
 
 fn correlation(estimate: &Estimate, information: Option<&Information>) -> Option<f64> {
@@ -91,7 +131,8 @@ fn correlation(estimate: &Estimate, information: Option<&Information>) -> Option
         return None;
     }
     let covariance = &information?.covariance;
-    Some(covariance[(0, 1)] / (covariance[(0, 0)] * covariance[(1, 1)]).sqrt())
+    let correlation = covariance[(0, 1)] / (covariance[(0, 0)] * covariance[(1, 1)]).sqrt();
+    Some(correlation).filter(|correlation| correlation.is_finite())
 }
 
 fn bootstrap_rows(

@@ -9,7 +9,7 @@ use crate::whitening::Whitened;
 /// The covariance of the estimates, by Fisher's information.
 #[derive(Clone, Debug)]
 pub(crate) struct Information {
-    /// Coordinates, then coefficients that were solved for.
+    /// Coordinates, then coefficients that were solved for; NaN for those on which the likelihood does not depend.
     pub(crate) covariance: Matrix,
     /// The coefficients that were solved for.
     pub(crate) coefficients: Vec<usize>,
@@ -49,8 +49,9 @@ pub(crate) fn information(estimate: &Estimate, recording: &Recording) -> Option<
             moved[i] += sign * step;
             model.point(&moved).map(|point| model.whitened(window, &point))
         };
-        // At a bound of the model there is one side.
-        let (below, above) = (at(-1.0), at(1.0));
+        // At a bound of the model there is one side; below zero is its mirror image.
+        let is_at_zero = is_time && estimate.coordinates[i].abs() < step;
+        let (below, above) = (if is_at_zero { None } else { at(-1.0) }, at(1.0));
         let width =
             step * (f64::from(u8::from(below.is_some())) + f64::from(u8::from(above.is_some())));
         let [below, above] = [below, above].map(|side| side.unwrap_or_else(|| whitened.clone()));
@@ -59,7 +60,9 @@ pub(crate) fn information(estimate: &Estimate, recording: &Recording) -> Option<
             whitened.responses[k] - row.iter().zip(coefficients).map(|(x, c)| x * c).sum::<f64>()
         };
         if below.columns != columns || above.columns != columns {
-            return None;
+            // A lag that vanishes takes its state with it.
+            rows.push((vec![0.0; count], vec![0.0; count]));
+            continue;
         }
         rows.push(
             (0..count)
@@ -89,8 +92,19 @@ pub(crate) fn information(estimate: &Estimate, recording: &Recording) -> Option<
     let full = Matrix::from_fn(n, n, |i, j| {
         inner(&rows[i].0, &rows[j].0) / variance + 0.5 * inner(&rows[i].1, &rows[j].1)
     });
-    let inverse = inverse(&full)?;
-    Some(Information { covariance: inverse.block((0, 0), (n - 1, n - 1)), coefficients: solved })
+    // Of what the likelihood does not depend on, as of a dead time between two samples, there is no error; the others have theirs.
+    let kept: Vec<usize> = (0..n).filter(|&i| full[(i, i)] > 0.0).collect();
+    let part = Matrix::from_fn(kept.len(), kept.len(), |i, j| full[(kept[i], kept[j])]);
+    let inverse = inverse(&part)?;
+    let mut covariance = Matrix::from_fn(n - 1, n - 1, |_, _| f64::NAN);
+    for (i, &row) in kept.iter().enumerate() {
+        for (j, &column) in kept.iter().enumerate() {
+            if row < n - 1 && column < n - 1 {
+                covariance[(row, column)] = inverse[(i, j)];
+            }
+        }
+    }
+    Some(Information { covariance, coefficients: solved })
 }
 
 /// The inverse of a symmetric matrix, scaled to a unit diagonal; `None` if rounding leaves nothing of it.

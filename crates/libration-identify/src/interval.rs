@@ -87,6 +87,10 @@ fn end(
         let is_last = if step < 0.0 { at <= limit } else { at >= limit };
         let at = if is_last { limit } else { at };
         let found = excess(at);
+        // Outside of the model there is no end.
+        if found == f64::INFINITY && step > 0.0 {
+            return None;
+        }
         if found >= 0.0 {
             break (at, found);
         }

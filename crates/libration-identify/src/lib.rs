@@ -40,7 +40,7 @@ pub use bootstrap::BootstrapRow;
 pub use candidate::CandidateRow;
 pub use excitation::ExcitationRow;
 pub use hold::Hold;
-pub use identification::{FitSeries, Identification};
+pub use identification::{FitSeries, Identification, StateSpace};
 pub use identify::identify;
 pub use interval::Interval;
 pub use likelihood_map::LikelihoodMap;

@@ -4,15 +4,12 @@ use core::fmt::Write as _;
 
 use libration_report::notation::number;
 
-use crate::identification::Identification;
+use crate::identification::{Identification, StateSpace};
 use crate::parameters::Estimated;
 use crate::summary::{interval, seconds};
 
 /// The file `loop.toml`: the identified plant with its latency, and a controller to edit.
 pub fn loop_file(found: &Identification) -> String {
-    let value = |key: &str| found.parameter(key).map(|parameter| parameter.value);
-    let gain = value("gain").unwrap_or(1.0);
-    let lag = value("lag").unwrap_or(0.0);
     let mut file = format!(
         "# Identified by `libration identify` from {} responses. Edit the controller.\n",
         found.responses
@@ -20,37 +17,42 @@ pub fn loop_file(found: &Identification) -> String {
     for warning in &found.warnings {
         let _ = writeln!(file, "# Warning: {warning}.");
     }
-    let denominator = match (found.response, lag > 0.0) {
-        ("second-order", _) => {
-            let (time, zeta) =
-                (value("time_constant").unwrap_or(1.0), value("damping_ratio").unwrap_or(1.0));
-            format!("[{}, {}, 1]", text(time * time), text(2.0 * zeta * time))
-        }
-        ("integrated-lag", true) => format!("[{}, 1, 0]", text(lag)),
-        ("integrated-lag", false) => "[1, 0]".to_owned(),
-        ("lag", true) => format!("[{}, 1]", text(lag)),
-        ("plant", true) => return part(found, &file, lag),
-        ("plant", false) => return part(found, &file, 0.0),
+    let row = |values: &[f64]| {
+        format!("[{}]", values.iter().map(|x| text(*x)).collect::<Vec<_>>().join(", "))
+    };
+    let plant = match found.state_space.a.is_empty() {
+        false => found.state_space.clone(),
         // `advise` needs a state: a lag that is short for the recording.
-        _ => {
+        true => {
             let time = 0.1 * found.interval;
             let _ = writeln!(
                 file,
-                "# The response is a dead time alone. Its plant here is a lag of {}, which the recording does not tell from none.",
+                "# The response is a dead time alone. Its plant here is a lag of {}, which this recording cannot show.",
                 seconds(time)
             );
-            format!("[{}, 1]", text(time))
+            let rate = 1.0 / time;
+            StateSpace {
+                a: vec![vec![-rate]],
+                b: vec![rate * found.state_space.d],
+                c: vec![1.0],
+                d: 0.0,
+            }
         }
     };
+    let rows: Vec<String> = plant.a.iter().map(|values| row(values)).collect();
+    let inputs: Vec<String> = plant.b.iter().map(|b| row(&[*b])).collect();
     let _ = write!(
         file,
-        "\n[system.linear]\nnumerator = [{}]\ndenominator = {denominator}\ninputs = [\"command\"]\noutputs = [\"response\"]\n",
-        text(gain)
+        "\n# The identified plant with its gain.\n[system.linear]\na = [{}]\nb = [{}]\nc = [{}]\nd = [[{}]]\ninputs = [\"command\"]\noutputs = [\"response\"]\n",
+        rows.join(", "),
+        inputs.join(", "),
+        row(&plant.c),
+        text(plant.d)
     );
     let _ = write!(
         file,
         "\n# Weights of the states and of the command, for the controller of least cost.\n[controller.lqr]\nstates = [{}]\ninputs = [1]\n",
-        vec!["1"; states(&denominator)].join(", ")
+        vec!["1"; plant.b.len()].join(", ")
     );
     file + &timing(found)
 }
@@ -59,24 +61,6 @@ pub fn loop_file(found: &Identification) -> String {
 fn text(x: f64) -> String {
     let rounded: f64 = format!("{x:.8e}").parse().unwrap_or(x);
     format!("{rounded:?}")
-}
-
-/// The number of states of a denominator.
-fn states(denominator: &str) -> usize {
-    denominator.matches(',').count()
-}
-
-/// The lines for a loop whose plant is in a file already.
-fn part(found: &Identification, head: &str, lag: f64) -> String {
-    let mut file = format!("{head}# Add these tables to the file of the plant.\n");
-    if lag > 0.0 {
-        let _ = write!(
-            file,
-            "\n[[part]]\nname = \"identified lag\"\ninput = \"u1\"  # the name of the input\nlag = {}  # s\n",
-            text(lag)
-        );
-    }
-    file + &timing(found)
 }
 
 /// The table `[loop]`.
@@ -100,6 +84,14 @@ fn timing(found: &Identification) -> String {
             "# A share of {} of the commands arrives after {}.",
             number(share, 3),
             seconds(second.value)
+        );
+    }
+    if let Some([low, high]) = found.delay_range {
+        let _ = writeln!(
+            table,
+            "# Range for the randomisation of environments: action_delay = ({}, {})",
+            text(low),
+            text(high)
         );
     }
     if let Some(jitter) = found.parameter("jitter") {

@@ -108,7 +108,8 @@ impl Model {
             NoiseKind::White => {}
             NoiseKind::Coloured => {
                 let (share, time) = (free.next()?, free.next()?);
-                if !(share.abs() < 30.0 && (-4.0..16.0).contains(&time)) {
+                // Where neither error is alone, the covariance has an inverse.
+                if !(share.abs() < 9.0 && (-1.2..16.0).contains(&time)) {
                     return None;
                 }
                 noise.coloured = 1.0 / (1.0 + (-share).exp());

@@ -1,6 +1,6 @@
 //! An identification as an HTML page.
 
-use libration_report::figure::{Axis, Colors, Figure, Grid, Mark, Panel};
+use libration_report::figure::{Axis, Colors, Figure, Grid, Mark, Panel, Role};
 use libration_report::notation::plural;
 use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
@@ -43,7 +43,7 @@ pub fn page(found: &Identification) -> String {
 }
 
 fn parameters(page: &mut Page, found: &Identification) {
-    page.heading("Which numbers has the loop?");
+    page.heading("What are the parameters?");
     let mut table =
         Table::new("parameters", &["number", "estimate", "95 % interval", "standard error", "key"]);
     for parameter in &found.parameters {
@@ -68,8 +68,8 @@ fn fit(page: &mut Page, found: &Identification) {
     page.heading("How well does the model follow the response?");
     let fit = &found.fit;
     let response = Panel::new(Axis::linear("time").unit("s"), Axis::linear("response"))
-        .mark(Mark::line(fit.time.clone(), fit.response.clone()).label("response"))
-        .mark(Mark::prediction(fit.time.clone(), fit.model.clone()).radius(1.2).label("model"));
+        .mark(Mark::points(fit.time.clone(), fit.response.clone()).radius(1.4).label("response"))
+        .mark(Mark::line(fit.time.clone(), fit.model.clone()).role(Role::Theory).label("model"));
     let residual = Panel::new(
         Axis::linear("time").unit("s"),
         Axis::linear("residual over its standard deviation"),
@@ -91,7 +91,7 @@ fn fit(page: &mut Page, found: &Identification) {
 fn told_apart(page: &mut Page, found: &Identification) {
     let Some(map) = &found.likelihood else { return };
     let second = &found.parameters[1];
-    page.heading(format!("Can dead time and {} be told apart?", second.name));
+    page.heading(format!("How well are dead time and {} known apart?", second.name));
     let milliseconds = |values: &[f64]| values.iter().map(|x| x * 1e3).collect::<Vec<f64>>();
     let is_time = second.unit == "s";
     let rows = if is_time { milliseconds(&map.seconds) } else { map.seconds.clone() };
@@ -129,7 +129,7 @@ fn told_apart(page: &mut Page, found: &Identification) {
         ],
     );
     let time = |x: Option<f64>, unit: &str| {
-        x.map_or_else(|| Cell::absent("cannot be told"), |x| with_unit(x, unit).into())
+        x.map_or_else(|| Cell::absent("unknown"), |x| with_unit(x, unit).into())
     };
     for row in &found.excitations {
         table.push([
@@ -140,7 +140,7 @@ fn told_apart(page: &mut Page, found: &Identification) {
         ]);
     }
     page.paragraph(
-        "What other commands of the same size would tell in a recording of the same length, predicted by Fisher's information:",
+        "Standard errors with other commands of the same size, in a recording of the same length, predicted by Fisher's information:",
     );
     page.table(&table, 3);
 }
@@ -176,7 +176,7 @@ fn residuals(page: &mut Page, found: &Identification) {
 }
 
 fn candidates(page: &mut Page, found: &Identification) {
-    page.heading("Which models were tried?");
+    page.heading("Which models are candidates?");
     let mut table = Table::new(
         "candidates",
         &[

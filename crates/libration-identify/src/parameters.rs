@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::estimate::Estimate;
+use crate::hold::Hold;
 use crate::information::Information;
 use crate::interval::{Functional, Interval, profile_interval};
 use crate::recording::Recording;
@@ -57,7 +58,9 @@ fn shape_parameters(
     information: Option<&Information>,
 ) -> Vec<Estimated> {
     let model = &estimate.model;
-    let deviation = |i: usize| information.map(|found| found.covariance[(i, i)].sqrt());
+    let deviation = |i: usize| {
+        information.map(|found| found.covariance[(i, i)].sqrt()).filter(|x| x.is_finite())
+    };
     let mut free = 0;
     let mut parameters = Vec::new();
     for (i, parameter) in model.response.parameters().iter().enumerate() {
@@ -71,13 +74,20 @@ fn shape_parameters(
             key: parameter.key.to_owned(),
             name: parameter.name.to_owned(),
             unit: parameter.unit.to_owned(),
-            value: estimate.point.shape[i],
+            value: middle(estimate, interval).unwrap_or(estimate.point.shape[i]),
             interval,
             standard_error,
         });
     }
     parameters.extend(latency(estimate, recording, information));
     parameters
+}
+
+/// The middle of the interval of a dead time alone, over which the likelihood is the same.
+fn middle(estimate: &Estimate, interval: Option<Interval>) -> Option<f64> {
+    let is_flat =
+        estimate.model.response.parameters().len() == 1 && estimate.model.hold == Hold::Zero;
+    interval.filter(|_| is_flat).and_then(|interval| Some(0.5 * (interval.low + interval.high?)))
 }
 
 /// The delay of slow commands: of a lag its time constant, of a response of second order `2ζ/ω`.
@@ -102,6 +112,7 @@ fn latency(
             .sum::<f64>()
             .sqrt()
     });
+    let standard_error = standard_error.filter(|error| error.is_finite());
     let interval = match shape.len() {
         2 => Some(profile_interval(estimate, recording, Functional::Sum, standard_error)),
         _ => standard_error.map(|error| normal_interval(value, error, estimate)),
@@ -129,7 +140,7 @@ fn linear_parameters(estimate: &Estimate, information: Option<&Information>) -> 
         let found = information?;
         let place = found.coefficients.iter().position(|&other| other == column)?;
         let place = coordinates + place;
-        Some(found.covariance[(place, place)].sqrt())
+        Some(found.covariance[(place, place)].sqrt()).filter(|error| error.is_finite())
     };
     [("gain", "gain", 0), ("load", "constant load at the input", 1)]
         .into_iter()

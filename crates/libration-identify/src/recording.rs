@@ -129,12 +129,18 @@ impl Recording {
         check_scale("command", commands)?;
         check_scale("response", &responses[skipped..])?;
         // Times from the first command on, so that a clock that counts from 1970 costs no digits of a latency.
-        let from_first = |times: &[f64]| times.iter().map(|time| time - first).collect();
+        let from_first =
+            |times: &[f64]| -> Vec<f64> { times.iter().map(|time| time - first).collect() };
+        let (response_times, responses) =
+            merged(&from_first(&response_times[skipped..]), &responses[skipped..]);
+        if response_times.len() < FEWEST_RESPONSES {
+            return Err(RecordingError::TooFew { count: response_times.len() });
+        }
         let recording = Recording {
             command_times: from_first(command_times),
             commands: commands.to_vec(),
-            response_times: from_first(&response_times[skipped..]),
-            responses: responses[skipped..].to_vec(),
+            response_times,
+            responses,
         };
         let (interval, span) = (recording.interval(), recording.span());
         let last = recording.command_times[recording.command_times.len() - 1];
@@ -161,11 +167,61 @@ impl Recording {
         self.response_times[self.response_times.len() - 1] - self.response_times[0]
     }
 
+    /// How many commands seem to be missing: intervals of several periods where nearly all intervals are one.
+    pub fn missing_commands(&self) -> usize {
+        let intervals: Vec<f64> =
+            self.command_times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let mut sorted = intervals.clone();
+        sorted.sort_by(f64::total_cmp);
+        let Some(&median) = sorted.get(sorted.len() / 2).filter(|median| **median > 0.0) else {
+            return 0;
+        };
+        let is_regular = |interval: &&f64| (**interval / median - 1.0).abs() < 0.2;
+        let is_gap = |interval: &&f64| **interval > 1.5 * median;
+        let gaps = intervals.iter().filter(is_gap).count();
+        match intervals.iter().filter(is_regular).count() + gaps > intervals.len() * 9 / 10 {
+            true => gaps,
+            false => 0,
+        }
+    }
+
+    /// The part of at most `count` responses during which the command changes most, with all commands.
+    #[must_use]
+    pub(crate) fn excerpt(&self, first: usize, count: usize) -> Self {
+        let end = self.responses.len().min(first + count);
+        let start = self.response_times[first];
+        // The last command before the part acts at its start.
+        let known = self.command_times.partition_point(|&time| time <= start).saturating_sub(1);
+        let zero = self.command_times[known];
+        let shifted = |times: &[f64]| times.iter().map(|time| time - zero).collect();
+        Recording {
+            command_times: shifted(&self.command_times[known..]),
+            commands: self.commands[known..].to_vec(),
+            response_times: shifted(&self.response_times[first..end]),
+            responses: self.responses[first..end].to_vec(),
+        }
+    }
+
     /// The same commands at the same times with other responses.
     #[must_use]
     pub fn with_responses(&self, responses: Vec<f64>) -> Self {
         Recording { responses, ..self.clone() }
     }
+}
+
+/// Responses of one time as their mean: two errors at the same time are no two errors of a process in time.
+fn merged(times: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let mut rows: Vec<(f64, f64, f64)> = Vec::with_capacity(times.len());
+    for (&time, &value) in times.iter().zip(values) {
+        match rows.last_mut().filter(|row| row.0 == time) {
+            Some((_, mean, count)) => {
+                *count += 1.0;
+                *mean += (value - *mean) / *count;
+            }
+            None => rows.push((time, value, 1.0)),
+        }
+    }
+    rows.into_iter().map(|(time, mean, _)| (time, mean)).unzip()
 }
 
 /// Fails for values whose squares a float cannot hold, or whose differences are their rounding.

@@ -15,7 +15,7 @@ pub struct Request {
     pub responses: Vec<ResponseKind>,
     /// The kinds of noise to choose from.
     pub noises: Vec<NoiseKind>,
-    /// What a receiver makes of commands between their times; to choose from.
+    /// What a receiver makes of commands between their times. With both, a receiver that moves on lines is reported but not chosen.
     pub holds: Vec<Hold>,
     /// The dead time in s, if it is known.
     pub dead_time: Option<f64>,

@@ -62,6 +62,9 @@ pub(crate) fn answer(found: &Identification) -> String {
         false => "The residuals do not contradict the model.",
         true => "The residuals contradict the model: its intervals cannot be trusted.",
     };
+    if !found.depends_on_command {
+        return "The response does not depend on this command: no model with it is better than one without.".to_owned();
+    }
     let mut text = format!(
         "The response is {form}: {}. The noise is {}. {verdict}",
         numbers.join(", "),
@@ -69,7 +72,7 @@ pub(crate) fn answer(found: &Identification) -> String {
     );
     if let Some(correlation) = found.correlation.filter(|correlation| *correlation < -0.9) {
         text += &format!(
-            " This command hardly tells dead time and lag apart (correlation {correlation:.2}); their sum is known better."
+            " With this command the errors of dead time and lag have the correlation {correlation:.2}: their sum is known better than each of them."
         );
     }
     text

@@ -1,31 +1,72 @@
 //! What restricts an identification.
 
+use libration::linear::{Matrix, solve_matrix};
 use libration_report::notation::number;
 
+use crate::arrivals::spread;
+use crate::candidate::CandidateRow;
 use crate::estimate::Estimate;
 use crate::identification::Identification;
 use crate::recording::Recording;
 use crate::residuals::CONTRADICTION;
 use crate::summary::seconds;
 
+/// What warnings depend on, besides the result.
+pub(crate) struct Context<'a> {
+    pub(crate) estimate: &'a Estimate,
+    pub(crate) recording: &'a Recording,
+    /// The number of responses of the whole recording.
+    pub(crate) all: usize,
+    /// The longest lag that a dead time alone does not exclude, in s.
+    pub(crate) longest_lag: Option<f64>,
+}
+
+/// Models whose Bayesian criterion is larger by less than this may be the right ones.
+const NEARLY_AS_GOOD: f64 = 20.0;
+
 /// Sentences, the gravest first.
-pub(crate) fn warnings(
-    found: &Identification,
-    estimate: &Estimate,
-    recording: &Recording,
-) -> Vec<String> {
+pub(crate) fn warnings(found: &Identification, context: &Context<'_>) -> Vec<String> {
+    let &Context { estimate, recording, all, longest_lag } = context;
     let mut warnings = Vec::new();
+    if !found.depends_on_command {
+        warnings.push("the response does not depend on this command".to_owned());
+    }
+    if is_controller(recording) {
+        warnings.push(
+            "the command is a function of the response: these are the numbers of the controller, not those of the plant; help: excite the reference".to_owned(),
+        );
+    }
+    warnings.extend(periodic(recording, found.largest_dead_time));
+    let missing = recording.missing_commands();
+    if missing > 0 {
+        warnings.push(format!(
+            "{missing} commands seem to be missing from the log: the responses behind them follow commands that are unknown"
+        ));
+    }
+    warnings.extend(other_models(found));
+    if let Some(lag) = longest_lag.filter(|lag| found.depends_on_command && *lag > found.interval) {
+        warnings.push(format!(
+            "the command does not tell this dead time from a shorter one with a lag: lags up to {} are not excluded; help: random steps",
+            seconds(lag)
+        ));
+    }
+    if all > recording.responses.len() {
+        warnings.push(format!(
+            "{} of {all} responses are used, during which the command changes most",
+            recording.responses.len()
+        ));
+    }
     let tests = &found.residuals;
     if tests.whiteness < CONTRADICTION {
         warnings.push(format!(
-            "the residuals are correlated (p = {}, neighbours {:+.2}): the noise has a colour that no tried model has, and the intervals are too narrow",
+            "the residuals are correlated (p = {}, neighbours {:+.2}): no candidate explains the correlation, and the intervals are too narrow",
             number(tests.whiteness, 2),
             tests.correlation
         ));
     }
     if tests.command < CONTRADICTION {
         warnings.push(format!(
-            "the residuals depend on earlier commands (p = {}): the response has dynamics that no tried model has",
+            "the residuals depend on earlier commands (p = {}): the response has other dynamics than each candidate",
             number(tests.command, 2)
         ));
     }
@@ -45,7 +86,7 @@ pub(crate) fn warnings(
     let reached = found.likelihood.is_none()
         && found.parameters.iter().any(|p| p.interval.is_some_and(|i| i.high.is_none()));
     if reached {
-        warnings.push("the recording excludes no large value of a parameter".to_owned());
+        warnings.push("the upper end of a parameter is unknown".to_owned());
     }
     if let Some(warning) = quantisation(estimate, recording) {
         warnings.push(warning);
@@ -66,6 +107,87 @@ pub(crate) fn warnings(
         ));
     }
     warnings
+}
+
+/// Models that fit nearly as well, with a dead time outside of the interval.
+fn other_models(found: &Identification) -> Option<String> {
+    let interval = found.parameter("dead_time")?.interval?;
+    // Lines between commands always fit nearly as well: they count only if they fit far better.
+    let is_near = |row: &&CandidateRow| match row.hold == found.hold {
+        true => row.excess < NEARLY_AS_GOOD,
+        false => row.excess < -NEARLY_AS_GOOD,
+    };
+    let rivals = found.candidates.iter().filter(is_near);
+    let rival = rivals
+        .filter(|row| !interval.contains(row.dead_time))
+        .min_by(|a, b| a.excess.total_cmp(&b.excess))?;
+    Some(format!(
+        "another model fits as well and has a dead time of {}: {} response, {} hold, {} noise, {} arrivals; intervals are those of the chosen model",
+        seconds(rival.dead_time),
+        rival.response,
+        rival.hold.name(),
+        rival.noise.name(),
+        rival.arrivals
+    ))
+}
+
+/// Whether the command is a linear function of the last three responses, as in a loop whose reference rests.
+fn is_controller(recording: &Recording) -> bool {
+    let mut rows = Vec::new();
+    let mut commands = Vec::new();
+    for (time, command) in recording.command_times.iter().zip(&recording.commands) {
+        let known = recording.response_times.partition_point(|other| other <= time);
+        if known >= 3 {
+            rows.push([0, 1, 2].map(|back| recording.responses[known - 1 - back]));
+            commands.push(*command);
+        }
+    }
+    let count = rows.len() as f64;
+    if rows.len() < 30 {
+        return false;
+    }
+    let mean = |of: &dyn Fn(&[f64; 3]) -> f64| rows.iter().map(of).sum::<f64>() / count;
+    let means = [0, 1, 2].map(|i| mean(&|row| row[i]));
+    let middle = commands.iter().sum::<f64>() / count;
+    let product = |i: usize, j: usize| mean(&|row| (row[i] - means[i]) * (row[j] - means[j]));
+    let mut normal = Matrix::from_fn(3, 3, product);
+    let ridge = 1e-12 * normal.trace();
+    (0..3).for_each(|i| normal[(i, i)] += ridge);
+    let pairs = || rows.iter().zip(&commands);
+    let right = Matrix::from_fn(3, 1, |i, _| {
+        pairs().map(|(row, u)| (row[i] - means[i]) * (u - middle)).sum::<f64>() / count
+    });
+    let Some(gains) = solve_matrix(&normal, &right) else { return false };
+    let left = pairs()
+        .map(|(row, u)| {
+            let fit: f64 = (0..3).map(|i| gains[(i, 0)] * (row[i] - means[i])).sum();
+            (u - middle - fit).powi(2)
+        })
+        .sum::<f64>()
+        / count;
+    left < 1e-4 * spread(&commands).powi(2)
+}
+
+/// A warning if the command repeats itself within the largest dead time.
+fn periodic(recording: &Recording, largest: f64) -> Option<String> {
+    let count = recording.commands.len();
+    let period = recording.command_times[count - 1] / (count - 1).max(1) as f64;
+    let mean = recording.commands.iter().sum::<f64>() / count as f64;
+    let centred: Vec<f64> = recording.commands.iter().map(|u| u - mean).collect();
+    let longest = ((largest / period) as usize).min(count / 2).min(4000);
+    let correlation = |lag: usize| {
+        let square = |part: &[f64]| part.iter().map(|x| x * x).sum::<f64>();
+        let (early, late) = (&centred[..count - lag], &centred[lag..]);
+        let inner: f64 = early.iter().zip(late).map(|(x, y)| x * y).sum();
+        inner / (square(early) * square(late)).sqrt()
+    };
+    // Behind the first fall: a slow command resembles itself at first.
+    let fall = (1..=longest).find(|&lag| correlation(lag) < 0.5)?;
+    let lag = (fall..=longest).find(|&lag| correlation(lag) > 0.99)?;
+    Some(format!(
+        "the command repeats itself every {}: the dead time is known except for multiples of it; help: lower the largest dead time, or random steps",
+        seconds(lag as f64 * period)
+    ))
 }
 
 /// A warning if steps of an encoder are wider than the noise.

@@ -29,10 +29,10 @@ pub(crate) struct IdentifyArgs {
     /// Law of the noise
     #[arg(long, value_name = "LAW", default_value = "auto", value_parser = noises)]
     pub(crate) noise: Choice<NoiseKind>,
-    /// Command between its time stamps
+    /// Command between its time stamps (auto: zero; a line is reported, not chosen)
     #[arg(long, value_name = "HOLD", default_value = "auto", value_parser = holds)]
     pub(crate) hold: Choice<Hold>,
-    /// File of a linear plant that the command drives through a lag, as [system.linear] of `advise` has it
+    /// File of a linear plant that the command drives through a lag, as --plant of `advise`
     #[arg(long, value_name = "FILE", conflicts_with = "model")]
     pub(crate) plant: Option<PathBuf>,
     /// Input of the plant [default: its only input]
@@ -54,7 +54,7 @@ pub(crate) struct IdentifyArgs {
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = finite)]
     pub(crate) largest_dead_time: Option<f64>,
     /// Number of simulated logs that check the intervals (0: none)
-    #[arg(long, value_name = "N", default_value_t = 100)]
+    #[arg(long, value_name = "N", default_value_t = 100, allow_hyphen_values = true)]
     pub(crate) bootstrap: usize,
     /// Seed of the simulated logs
     #[arg(long, value_name = "N", default_value_t = 0)]

@@ -21,6 +21,7 @@ use crate::{interrupt, terminal};
 /// Identifies a loop from a log and prints its numbers.
 pub(crate) fn run(args: &IdentifyArgs, quiet: bool) -> Result<(), Failure> {
     let stop = interrupt::listen();
+    check(args)?;
     let request = request(args)?;
     let recording = recording(args)?;
     let page_file = ResultFile::create("--page", args.page.as_deref())?;
@@ -37,6 +38,44 @@ pub(crate) fn run(args: &IdentifyArgs, quiet: bool) -> Result<(), Failure> {
     terminal::print(&text)?;
     saved.write(|| loop_file(&found))?;
     page_file.write(|| page(&found))
+}
+
+/// Fails for options that contradict each other.
+fn check(args: &IdentifyArgs) -> Result<(), Failure> {
+    if args.command == args.response {
+        return Err(Failure::usage(format!(
+            "--command and --response are both {}; expected two signals",
+            args.command
+        )));
+    }
+    let is_delay = args.model.0.iter().all(|model| model.name() == "delay") && args.plant.is_none();
+    if is_delay && args.lag.is_some() {
+        return Err(Failure::usage(
+            "--lag is given, but --model delay has no lag; expected --model lag",
+        ));
+    }
+    if is_delay && args.noise.0.iter().all(|noise| noise.name() == "disturbance") {
+        return Err(Failure::usage(
+            "--noise is disturbance, but --model delay has no plant that it could disturb; expected white or coloured",
+        ));
+    }
+    let log = args.log.canonicalize().ok();
+    let outputs = [("--page", &args.page), ("--save-loop", &args.save_loop)];
+    for (option, path) in outputs {
+        let path = path.as_ref().and_then(|path| path.canonicalize().ok());
+        if path.is_some() && path == log {
+            return Err(Failure::usage(format!(
+                "{option} is the log itself, `{}`; expected another file",
+                args.log.display()
+            )));
+        }
+    }
+    match args.page.is_some() && args.page == args.save_loop {
+        true => {
+            Err(Failure::usage("--page and --save-loop name the same file; expected two files"))
+        }
+        false => Ok(()),
+    }
 }
 
 fn failure(error: IdentifyError) -> Failure {
@@ -144,6 +183,14 @@ fn describe(found: &Identification) -> String {
         );
         excitations(found, &mut text);
     }
+    if let Some([low, high]) = found.delay_range {
+        let _ = writeln!(
+            text,
+            "\nrange of action_delay for randomisation: {} to {}",
+            with_unit(low, "s"),
+            with_unit(high, "s")
+        );
+    }
     let tests = &found.residuals;
     let _ = writeln!(
         text,
@@ -203,7 +250,7 @@ fn excitations(found: &Identification, text: &mut String) {
     if let Some(error) = best.dead_time_error.filter(|&error| error < 0.8 * own) {
         let _ = writeln!(
             text,
-            "{} of the same size would tell the dead time to {} in place of {} (standard errors)",
+            "with {} of the same size the standard error of the dead time would be {}, in place of {}",
             best.command,
             with_unit(error, "s"),
             with_unit(own, "s")
