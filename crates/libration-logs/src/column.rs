@@ -1,5 +1,6 @@
 //! Columns of tables, whose whole numbers keep all digits.
 
+use crate::error::LogError;
 use crate::time_unit::{unit_by_magnitude, unit_in_name};
 
 /// The values of a column.
@@ -78,18 +79,12 @@ impl Column {
         }
     }
 
-    /// The column as times.
+    /// The column as times. Values that are not finite are none.
     pub(crate) fn times(&self) -> Times {
         match &self.values {
             Values::Whole(x) => {
                 let there = || x.iter().copied().enumerate().filter(|&(_, x)| x != MISSING);
-                let count = there().count();
-                let (first, last) =
-                    (there().next().map_or(0, |f| f.1), there().next_back().map_or(0, |l| l.1));
-                let per_second = self
-                    .per_second
-                    .or_else(|| unit_in_name(&self.name))
-                    .unwrap_or_else(|| unit_by_magnitude(first, last, count));
+                let per_second = self.per_second_of(there().map(|(_, x)| x as f64));
                 let nanoseconds = 1_000_000_000 / per_second.max(1);
                 let exact: Option<Vec<_>> =
                     there().map(|(row, x)| Some((row, x.checked_mul(nanoseconds)?))).collect();
@@ -105,12 +100,21 @@ impl Column {
                 Times::Exact(x.iter().copied().enumerate().filter(|&(_, x)| x != MISSING).collect())
             }
             Values::Floats(x) => {
-                let per_second =
-                    self.per_second.or_else(|| unit_in_name(&self.name)).unwrap_or(1) as f64;
-                let there = x.iter().copied().enumerate().filter(|&(_, x)| !is_missing(x));
-                Times::Floats(there.collect(), per_second)
+                let there = || x.iter().copied().enumerate().filter(|&(_, x)| x.is_finite());
+                let per_second = self.per_second_of(there().map(|(_, x)| x));
+                Times::Floats(there().collect(), per_second as f64)
             }
         }
+    }
+
+    /// The number of units of time per second: of the file, of the name, else by the size of these values.
+    fn per_second_of(&self, mut values: impl DoubleEndedIterator<Item = f64>) -> i64 {
+        let known = self.per_second.or_else(|| unit_in_name(&self.name));
+        known.unwrap_or_else(|| {
+            let first = values.next().unwrap_or(0.0);
+            let last = values.next_back().unwrap_or(first);
+            unit_by_magnitude(first, last, self.count())
+        })
     }
 }
 
@@ -136,17 +140,28 @@ impl Times {
     }
 
     /// The times of so many rows in ns, rounded if the file has decimals.
-    pub(crate) fn nanoseconds(&self, rows: usize) -> Vec<Option<i64>> {
+    ///
+    /// # Errors
+    /// If a time is too large for nanoseconds in 64 bits.
+    pub(crate) fn nanoseconds(&self, rows: usize) -> Result<Vec<Option<i64>>, LogError> {
         let mut all = vec![None; rows];
         match self {
             Times::Exact(own) => own.iter().for_each(|&(row, x)| all[row] = Some(x)),
-            // A conversion to an integer saturates.
-            Times::Floats(own, per_second) => own
-                .iter()
-                .filter(|(_, x)| x.is_finite())
-                .for_each(|&(row, x)| all[row] = Some((x / per_second * 1e9).round() as i64)),
+            Times::Floats(own, per_second) => {
+                for &(row, x) in own {
+                    let nanoseconds = (x * (1e9 / per_second)).round();
+                    // A conversion to an integer would saturate.
+                    if nanoseconds.abs() >= i64::MAX as f64 {
+                        return Err(LogError::Damaged(format!(
+                            "the time stamp {x:e} is {:e} s; expected less than 292 years; help: the column has another unit, or is no time",
+                            x / per_second
+                        )));
+                    }
+                    all[row] = Some(nanoseconds as i64);
+                }
+            }
         }
-        all
+        Ok(all)
     }
 
     fn seconds(&self) -> Box<dyn Iterator<Item = (usize, f64)> + '_> {

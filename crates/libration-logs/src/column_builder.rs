@@ -43,13 +43,13 @@ impl ColumnBuilder {
         };
         self.numbers += 1;
         if let Values::Whole(all) = &mut self.values {
-            if let Ok(whole) = bare.parse::<i64>() {
+            if let Some(whole) = scaled(bare, 0) {
                 return all.push(whole);
             }
             self.leave_whole(value);
         }
         if let Values::Nanoseconds(all) = &mut self.values {
-            if let Some(nanoseconds) = nanoseconds(bare) {
+            if let Some(nanoseconds) = scaled(bare, 9) {
                 return all.push(nanoseconds);
             }
             let seconds = |&x: &i64| if x == MISSING { missing() } else { x as f64 / 1e9 };
@@ -79,12 +79,59 @@ impl ColumnBuilder {
     }
 }
 
-/// Decimal seconds with at most nine digits behind the point, in ns.
-fn nanoseconds(text: &str) -> Option<i64> {
-    let (whole, fraction) = text.split_once('.').unwrap_or((text, ""));
-    let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
-    if whole.is_empty() || fraction.len() > 9 || !digits(whole) || !digits(fraction) {
+/// A decimal number times a power of ten, if that is whole: `1.76e+18`, `5.0`.
+fn scaled(text: &str, power: i32) -> Option<i64> {
+    let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
+    let (sign, digits) = match mantissa.strip_prefix('-') {
+        Some(rest) => ("-", rest),
+        None => ("", mantissa.strip_prefix('+').unwrap_or(mantissa)),
+    };
+    let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
+    let fraction = fraction.trim_end_matches('0');
+    let all = format!("{whole}{fraction}");
+    if all.is_empty() || !all.bytes().all(|byte| byte.is_ascii_digit()) {
         return None;
     }
-    format!("{whole}{fraction:0<9}").parse().ok()
+    let zeros = exponent.parse::<i32>().ok()?.checked_add(power)?;
+    let zeros = zeros.checked_sub(i32::try_from(fraction.len()).ok()?)?;
+    let kept = match zeros {
+        0..=19 => all + &"0".repeat(zeros.unsigned_abs() as usize),
+        _ if all.bytes().all(|digit| digit == b'0') => "0".to_owned(),
+        // Zeros at the end are no fraction.
+        _ if zeros < 0 => {
+            let cut = all.len().checked_sub(zeros.unsigned_abs() as usize)?;
+            let (kept, rest) = (all.get(..cut)?, all.get(cut..)?);
+            rest.bytes().all(|digit| digit == b'0').then(|| kept.to_owned())?
+        }
+        _ => return None,
+    };
+    // The sign of −0.0 needs a decimal.
+    let value = format!("{sign}{kept}").parse().ok()?;
+    (value != 0 || sign.is_empty()).then_some(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::scaled;
+
+    #[test]
+    fn decimals_that_are_whole_keep_all_digits() {
+        for (text, power, wanted) in [
+            ("1.7000000000004175e+18", 0, Some(1_700_000_000_000_417_500)),
+            ("1.760000000123466240e+18", 0, Some(1_760_000_000_123_466_240)),
+            ("1.760000000123466015e+09", 9, Some(1_760_000_000_123_466_015)),
+            ("-1760000000005.000", 0, Some(-1_760_000_000_005)),
+            ("1700000000.001000017", 9, Some(1_700_000_000_001_000_017)),
+            ("0.000e+00", 0, Some(0)),
+            ("500e-2", 0, Some(5)),
+            ("0.5", 0, None),
+            ("-0.0", 0, None),
+            ("1e300", 0, None),
+            ("1e-300", 0, None),
+            ("e5", 0, None),
+            ("1..5", 0, None),
+        ] {
+            assert_eq!(scaled(text, power), wanted, "{text}");
+        }
+    }
 }

@@ -202,6 +202,16 @@ mod tests {
     }
 
     #[test]
+    fn epochs_in_decimals_have_the_unit_of_their_size() {
+        let text = "start,end\n1700000000000000000,1.7000000000004175e+18\n1700000000010000000,\n";
+        assert_eq!(table(text).stamps("end", ClockChoice::Log).unwrap(), [0.000_417_5]);
+        let text = "time,x\n1760000000000.000,0\n1760000000005.250,1\n";
+        assert_eq!(series(text, "x").0, [0.0, 0.005_25]);
+        let error = table("t,x\n0,1\n1e300,2\n").exact_stamps("t", ClockChoice::Log).unwrap_err();
+        assert!(error.to_string().contains("expected less than 292 years"), "{error}");
+    }
+
+    #[test]
     fn an_unknown_signal_is_reported_with_the_nearest() {
         let error =
             table("t,position,velocity\n0,1,2\n").series("positon", ClockChoice::Log).unwrap_err();

@@ -68,7 +68,12 @@ impl Table {
                 there.peek().is_some() && there.all(|&x| x >= EPOCH)
             }
             Values::Nanoseconds(_) => true,
-            Values::Floats(_) => false,
+            // Nanoseconds with a missing value, as pandas has them.
+            Values::Floats(x) => {
+                let mut there = x.iter().filter(|x| x.is_finite()).peekable();
+                let is_stamp = |&x: &f64| x >= EPOCH as f64 && x.fract() == 0.0 && x < 1e19;
+                there.peek().is_some() && there.all(is_stamp)
+            }
         };
         let is_named = is_time_name(&column.name) && unit_in_name(&column.name).is_some();
         index == self.time || is_epoch || is_named || column.per_second.is_some()
@@ -138,7 +143,7 @@ impl Source for Table {
         let index =
             position(&self.columns, topic).ok_or_else(|| unknown("topic", topic, &self.columns))?;
         let column = &self.columns[index];
-        Ok(column.times().nanoseconds(column.rows()))
+        column.times().nanoseconds(column.rows())
     }
 
     fn has_stamps_first(&self) -> bool {

@@ -69,23 +69,18 @@ pub(crate) fn is_time_name(name: &str) -> bool {
     names.contains(&bare)
 }
 
-/// The number of units per second of whole numbers without a unit.
+/// The number of units per second of numbers without a unit.
 ///
-/// A clock that counts from 1970 shows its unit by its size. Other whole numbers that lie more than 1000 apart in the mean are
-/// nanoseconds, as ROS writes them; all others are seconds.
-pub(crate) fn unit_by_magnitude(first: i64, last: i64, count: usize) -> i64 {
-    const SINCE_1970: [(u64, i64); 4] = [
-        (100_000_000_000_000_000, 1_000_000_000),
-        (100_000_000_000_000, 1_000_000),
-        (100_000_000_000, 1000),
-        (500_000_000, 1),
-    ];
-    let size = first.unsigned_abs();
-    let mean_step = last.abs_diff(first) / count.saturating_sub(1).max(1) as u64;
-    match SINCE_1970.into_iter().find(|(from, _)| size >= *from) {
+/// A clock that counts from 1970 shows its unit by its size. Other numbers that lie more than 1000 apart in the mean are nanoseconds, as
+/// ROS writes them; all others are seconds.
+pub(crate) fn unit_by_magnitude(first: f64, last: f64, count: usize) -> i64 {
+    const SINCE_1970: [(f64, i64); 4] =
+        [(1e17, 1_000_000_000), (1e14, 1_000_000), (1e11, 1000), (5e8, 1)];
+    let mean_step = (last - first).abs() / count.saturating_sub(1).max(1) as f64;
+    match SINCE_1970.into_iter().find(|(from, _)| first.abs() >= *from) {
         // A monotonic clock in nanoseconds has any size: a step of hours in another unit shows it.
-        Some((_, per_second)) if mean_step / per_second.unsigned_abs() <= 1000 => per_second,
-        _ if mean_step > 1000 => 1_000_000_000,
+        Some((_, per_second)) if mean_step / per_second as f64 <= 1000.0 => per_second,
+        _ if mean_step > 1000.0 => 1_000_000_000,
         _ => 1,
     }
 }
@@ -132,14 +127,15 @@ mod tests {
 
     #[test]
     fn epochs_show_their_unit_and_whole_numbers_far_apart_are_nanoseconds() {
-        assert_eq!(
-            unit_by_magnitude(1_700_000_000_000_000_000, 1_700_000_000_001_000_000, 2),
-            1_000_000_000
-        );
-        assert_eq!(unit_by_magnitude(1_700_000_000_000_000, 1_700_000_000_001_000, 2), 1_000_000);
-        assert_eq!(unit_by_magnitude(1_700_000_000_000, 1_700_000_000_010, 2), 1000);
-        assert_eq!(unit_by_magnitude(1_700_000_000, 1_700_000_001, 2), 1);
-        assert_eq!(unit_by_magnitude(0, 2, 3), 1);
-        assert_eq!(unit_by_magnitude(0, 2_000_000, 3), 1_000_000_000);
+        for (first, last, count, unit) in [
+            (1.7e18, 1.700_000_000_001e18, 2, 1_000_000_000),
+            (1.7e15, 1.700_000_000_001e15, 2, 1_000_000),
+            (1.7e12, 1.700_000_000_01e12, 2, 1000),
+            (1.7e9, 1.7e9 + 0.5, 2, 1),
+            (0.0, 2.0, 3, 1),
+            (0.0, 2e6, 3, 1_000_000_000),
+        ] {
+            assert_eq!(unit_by_magnitude(first, last, count), unit, "{first}");
+        }
     }
 }
