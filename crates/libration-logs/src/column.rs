@@ -32,7 +32,9 @@ pub(crate) struct Column {
     pub(crate) name: String,
     pub(crate) unit: Option<String>,
     /// The number of units of time per second, if the file has it.
-    pub(crate) per_second: Option<i64>,
+    pub(crate) per_second: Option<f64>,
+    /// The number of units of time per second, if neither the file nor the name has it.
+    pub(crate) default_per_second: Option<f64>,
     pub(crate) values: Values,
 }
 
@@ -47,7 +49,13 @@ pub(crate) enum Times {
 
 impl Column {
     pub(crate) fn new(name: String, values: Values) -> Self {
-        Column { unit: unit_in_brackets(&name), per_second: None, name, values }
+        Column {
+            unit: unit_in_brackets(&name),
+            per_second: None,
+            default_per_second: None,
+            name,
+            values,
+        }
     }
 
     /// The number of rows.
@@ -84,37 +92,55 @@ impl Column {
         match &self.values {
             Values::Whole(x) => {
                 let there = || x.iter().copied().enumerate().filter(|&(_, x)| x != MISSING);
-                let per_second = self.per_second_of(there().map(|(_, x)| x as f64));
-                let nanoseconds = 1_000_000_000 / per_second.max(1);
-                let exact: Option<Vec<_>> =
-                    there().map(|(row, x)| Some((row, x.checked_mul(nanoseconds)?))).collect();
-                exact.map_or_else(
+                let per_second = self.unit_of_time().0;
+                let scale = 1e9 / per_second;
+                let nanoseconds = scale.round() as i64;
+                // A minute is a whole number of nanoseconds but for a rounding; a femtosecond is none.
+                let is_whole = (scale - scale.round()).abs() < 1e-9 * scale;
+                let product = |(row, x): (usize, i64)| Some((row, x.checked_mul(nanoseconds)?));
+                let exact = is_whole.then(|| there().map(product).collect::<Option<Vec<_>>>());
+                exact.flatten().map_or_else(
                     || {
                         let floats = there().map(|(row, x)| (row, x as f64)).collect();
-                        Times::Floats(floats, per_second as f64)
+                        Times::Floats(floats, per_second)
                     },
                     Times::Exact,
                 )
             }
             Values::Nanoseconds(x) => {
-                Times::Exact(x.iter().copied().enumerate().filter(|&(_, x)| x != MISSING).collect())
+                // The decimals of another unit than seconds have been scaled as if they were seconds.
+                let per_second = self.unit_of_time().0;
+                let scaled = |x: i64| {
+                    if per_second == 1.0 { x } else { (x as f64 / per_second).round() as i64 }
+                };
+                let there = x.iter().copied().enumerate().filter(|&(_, x)| x != MISSING);
+                Times::Exact(there.map(|(row, x)| (row, scaled(x))).collect())
             }
             Values::Floats(x) => {
-                let there = || x.iter().copied().enumerate().filter(|&(_, x)| x.is_finite());
-                let per_second = self.per_second_of(there().map(|(_, x)| x));
-                Times::Floats(there().collect(), per_second as f64)
+                let there = x.iter().copied().enumerate().filter(|&(_, x)| x.is_finite());
+                Times::Floats(there.collect(), self.unit_of_time().0)
             }
         }
     }
 
-    /// The number of units of time per second: of the file, of the name, else by the size of these values.
-    fn per_second_of(&self, mut values: impl DoubleEndedIterator<Item = f64>) -> i64 {
-        let known = self.per_second.or_else(|| unit_in_name(&self.name));
-        known.unwrap_or_else(|| {
+    /// The number of units of time per second, of the file, of the name, else by the size of the values; and whether it is a guess.
+    pub(crate) fn unit_of_time(&self) -> (f64, bool) {
+        if let Some(known) =
+            self.per_second.or_else(|| unit_in_name(&self.name)).or(self.default_per_second)
+        {
+            return (known, false);
+        }
+        let ends = |values: &mut dyn DoubleEndedIterator<Item = f64>| {
             let first = values.next().unwrap_or(0.0);
-            let last = values.next_back().unwrap_or(first);
-            unit_by_magnitude(first, last, self.count())
-        })
+            (first, values.next_back().unwrap_or(first))
+        };
+        let (first, last) = match &self.values {
+            Values::Whole(x) => ends(&mut x.iter().filter(|&&x| x != MISSING).map(|&x| x as f64)),
+            // Only seconds since 1970 are kept so.
+            Values::Nanoseconds(_) => return (1.0, false),
+            Values::Floats(x) => ends(&mut x.iter().copied().filter(|x| x.is_finite())),
+        };
+        unit_by_magnitude(first, last, self.count())
     }
 }
 

@@ -9,6 +9,7 @@ use std::io::BufRead;
 use crate::column::{Column, Values};
 use crate::error::LogError;
 use crate::input::Input;
+use crate::log::ReadOptions;
 use crate::table::Table;
 use crate::text_line::read_line;
 
@@ -93,12 +94,12 @@ fn verbose(mut input: impl BufRead) -> Result<Table, LogError> {
         };
         let stamps = counts.iter().zip(&lates).map(stamp).collect();
         let mut stamps = Column::new(format!("thread{thread}"), Values::Whole(stamps));
-        stamps.per_second = Some(1_000_000_000);
+        stamps.per_second = Some(1e9);
         let mut late = Column::new(format!("thread{thread}.latency"), Values::Whole(lates));
         late.unit = Some("µs".to_owned());
         columns.extend([stamps, late]);
     }
-    Table::new("cyclictest", columns, Some("thread0"), vec![note])
+    Table::new("cyclictest", columns, &ReadOptions::of_time("thread0"), vec![note])
 }
 
 /// The counts of each thread over the lateness, and quantiles in words: a histogram has no order in time.
@@ -134,8 +135,13 @@ fn histogram(mut input: impl BufRead) -> Result<Table, LogError> {
     let name = |i: usize| if i == 0 { "latency_us".to_owned() } else { format!("thread{}", i - 1) };
     let columns =
         columns.into_iter().enumerate().map(|(i, x)| Column::new(name(i), Values::Whole(x)));
-    Ok(Table::new("cyclictest histogram", columns.collect(), Some("latency_us"), notes)?
-        .without_stamps())
+    Ok(Table::new(
+        "cyclictest histogram",
+        columns.collect(),
+        &ReadOptions::of_time("latency_us"),
+        notes,
+    )?
+    .without_stamps())
 }
 
 /// The quantiles of a thread in words.

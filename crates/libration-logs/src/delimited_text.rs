@@ -6,8 +6,10 @@ use crate::column::Column;
 use crate::column_builder::{ColumnBuilder, number};
 use crate::error::LogError;
 use crate::input::Input;
+use crate::log::ReadOptions;
 use crate::table::Table;
 use crate::text_line::read_line;
+use crate::time_unit::{is_time_name, is_unit};
 
 /// Largest number of cells in memory: 2 GiB of numbers.
 const MOST_CELLS: u64 = 1 << 28;
@@ -24,9 +26,9 @@ pub(crate) fn is_text(prefix: &[u8]) -> bool {
 }
 
 /// Reads a table in text.
-pub(crate) fn open(input: &Input, time: Option<&str>) -> Result<Table, LogError> {
+pub(crate) fn open(input: &Input, options: &ReadOptions) -> Result<Table, LogError> {
     let (columns, notes, is_behind) = read(input.reader()?)?;
-    Ok(Table::new("text", columns, time, notes)?.behind_others(is_behind))
+    Ok(Table::new("text", columns, options, notes)?.behind_others(is_behind))
 }
 
 /// The columns of numbers of a text, remarks, and whether the first column has no numbers.
@@ -71,6 +73,8 @@ struct Rows {
     rows: usize,
     /// Number of rows with another number of cells.
     ragged: usize,
+    /// Whether the next line may have units of the names.
+    is_below_names: bool,
 }
 
 impl Rows {
@@ -88,15 +92,24 @@ impl Rows {
             _ => (1..=cells.len()).map(|i| format!("column_{i}")).collect(),
         };
         let values = names.iter().map(|_| ColumnBuilder::default()).collect();
-        let mut rows = Rows { delimiter, names, values, rows: 0, ragged: 0 };
+        let mut rows = Rows { delimiter, names, values, rows: 0, ragged: 0, is_below_names: false };
         if !is_header {
             rows.push(text)?;
         }
+        rows.is_below_names = is_header;
         Ok(rows)
     }
 
     fn push(&mut self, text: &str) -> Result<(), LogError> {
         let cells = cells(text, self.delimiter);
+        if std::mem::take(&mut self.is_below_names) && is_units(&self.names, &cells) {
+            for (name, unit) in
+                self.names.iter_mut().zip(&cells).filter(|(_, unit)| !unit.is_empty())
+            {
+                *name = format!("{name} [{}]", unit.trim_matches(['[', ']', '(', ')']));
+            }
+            return Ok(());
+        }
         self.ragged += usize::from(cells.len() != self.values.len());
         for (i, column) in self.values.iter_mut().enumerate() {
             column.push(cells.get(i).map_or("", |cell| cell));
@@ -122,6 +135,15 @@ impl Rows {
             columns.map(|(name, values)| Column::new(name, values.into_values())).collect();
         (columns, notes, is_behind)
     }
+}
+
+/// Whether the cells of a line are the units of these names: all in brackets, or one of them a unit of time below a name of time.
+fn is_units(names: &[String], cells: &[&str]) -> bool {
+    let is_number = cells.iter().any(|cell| number(cell).is_some());
+    let mut some = cells.iter().filter(|cell| !cell.is_empty()).peekable();
+    let in_brackets = some.peek().is_some() && some.all(|cell| cell.starts_with(['[', '(']));
+    let below_time = |(name, cell): (&String, &&str)| is_time_name(name) && is_unit(cell);
+    !is_number && (in_brackets || names.iter().zip(cells).any(below_time))
 }
 
 /// The cells of a line.
@@ -152,7 +174,7 @@ mod tests {
 
     fn table(text: &str) -> Table {
         let (columns, notes, _) = read(text.as_bytes()).unwrap();
-        Table::new("text", columns, None, notes).unwrap()
+        Table::new("text", columns, &ReadOptions::default(), notes).unwrap()
     }
 
     fn series(text: &str, name: &str) -> (Vec<f64>, Vec<f64>) {
@@ -209,6 +231,30 @@ mod tests {
         assert_eq!(series(text, "x").0, [0.0, 0.005_25]);
         let error = table("t,x\n0,1\n1e300,2\n").exact_stamps("t", ClockChoice::Log).unwrap_err();
         assert!(error.to_string().contains("expected less than 292 years"), "{error}");
+    }
+
+    #[test]
+    fn a_line_of_units_belongs_to_the_names() {
+        for text in ["time,x\n[ms],[m]\n0,1\n5.5,2\n", "time;x\nms;-\n0;1\n5.5;2\n"] {
+            assert_eq!(series(text, "x"), (vec![0.0, 0.0055], vec![1.0, 2.0]), "{text}");
+        }
+        assert_eq!(series("timeMs,x\n0,1\n5.5,2\n", "x").0, [0.0, 0.0055]);
+    }
+
+    #[test]
+    fn a_guessed_unit_is_noted() {
+        let text = "timestamp,x\n12345687,0\n12350651,1\n12355656,2\n";
+        let notes = table(text).notes().join("\n");
+        assert!(notes.contains("the unit of `timestamp` is assumed to be ns"), "{notes}");
+        assert!(notes.contains("warning: the rate is 20"), "{notes}");
+        let notes = table("t,x\n0.005,0\n0.01,1\n0.015,2\n").notes();
+        assert_eq!(notes, ["the column of time is `t`"]);
+        let options =
+            ReadOptions { time_unit: Some(crate::TimeUnit::Us), ..ReadOptions::default() };
+        let (columns, notes, _) = read(text.as_bytes()).unwrap();
+        let table = Table::new("text", columns, &options, notes).unwrap();
+        assert_eq!(table.stamps("timestamp", ClockChoice::Log).unwrap()[1], 0.004_964);
+        assert_eq!(table.notes().len(), 1);
     }
 
     #[test]

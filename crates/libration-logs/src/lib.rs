@@ -33,3 +33,4 @@ pub use log::{Log, ReadOptions};
 pub use parquet_file::PARQUET_THREAD;
 pub use signal::{ClockChoice, Series, SignalInfo, TopicInfo};
 pub use time_stamps::{StampOptions, read_time_stamps};
+pub use time_unit::TimeUnit;

@@ -10,6 +10,7 @@ use crate::mcap::Mcap;
 use crate::rosbag::Rosbag;
 use crate::signal::{ClockChoice, Series, SignalInfo, TopicInfo};
 use crate::source::Source;
+use crate::time_unit::TimeUnit;
 use crate::ulog::Ulog;
 use crate::{delimited_text, numpy_file, parquet_file, rosbag, ulog};
 
@@ -25,8 +26,17 @@ pub struct ReadOptions {
     /// The column of time of a table. Default: a column with a name such as `t`, `time`, `timestamp`, `stamp` or `time_ns`; else the
     /// first column.
     pub time: Option<String>,
+    /// The unit of the column of time. Default: that of the file or of the name, else by the size of the numbers.
+    pub time_unit: Option<TimeUnit>,
     /// The clock of a bag.
     pub clock: ClockChoice,
+}
+
+impl ReadOptions {
+    /// With this column of time.
+    pub(crate) fn of_time(name: &str) -> Self {
+        ReadOptions { time: Some(name.to_owned()), ..ReadOptions::default() }
+    }
 }
 
 /// Bytes that determine the format.
@@ -55,11 +65,10 @@ impl Log {
     /// Opens an input.
     pub(crate) fn read(input: Input, options: &ReadOptions) -> Result<Log, LogError> {
         let prefix = input.prefix(PREFIX)?;
-        let time = options.time.as_deref();
         let source: Box<dyn Source> = match prefix.as_slice() {
-            [b'P', b'A', b'R', b'1', ..] => Box::new(parquet_file::open(&input, time)?),
+            [b'P', b'A', b'R', b'1', ..] => Box::new(parquet_file::open(&input, options)?),
             [0x93, b'N', b'U', b'M', b'P', b'Y', ..] | [b'P', b'K', 3 | 5, ..] => {
-                Box::new(numpy_file::open(&input, time)?)
+                Box::new(numpy_file::open(&input, options)?)
             }
             [0x89, b'M', b'C', b'A', b'P', b'0', b'\r', b'\n', ..] => {
                 Box::new(Bag::open(Mcap::new(input))?)
@@ -68,7 +77,7 @@ impl Log {
             bytes if bytes.starts_with(rosbag::MAGIC) => Box::new(Bag::open(Rosbag::new(input))?),
             bytes if delimited_text::is_text(bytes) => Box::new(match Output::recognise(bytes) {
                 Some(output) => cyclictest::open(&input, output)?,
-                None => delimited_text::open(&input, time)?,
+                None => delimited_text::open(&input, options)?,
             }),
             _ => return Err(LogError::UnknownFormat { expected: FORMATS }),
         };

@@ -5,6 +5,7 @@ use libration_data::{ArrayValues, NamedArray, parse_npy, parse_npy_records, read
 use crate::column::{Column, Values};
 use crate::error::LogError;
 use crate::input::Input;
+use crate::log::ReadOptions;
 use crate::table::Table;
 
 /// Largest file, and largest sum of the arrays in it.
@@ -13,11 +14,11 @@ const LIMIT: usize = 1 << 31;
 const MOST_COLUMNS: usize = 4096;
 
 /// Reads the arrays with as many rows as the column of time.
-pub(crate) fn open(input: &Input, time: Option<&str>) -> Result<Table, LogError> {
-    table(&input.bytes(LIMIT as u64)?, time)
+pub(crate) fn open(input: &Input, options: &ReadOptions) -> Result<Table, LogError> {
+    table(&input.bytes(LIMIT as u64)?, options)
 }
 
-fn table(bytes: &[u8], time: Option<&str>) -> Result<Table, LogError> {
+fn table(bytes: &[u8], options: &ReadOptions) -> Result<Table, LogError> {
     let (format, arrays) = match bytes.starts_with(b"PK") {
         true => ("NumPy archive", read_npz(bytes, LIMIT).map_err(LogError::Damaged)?),
         false => {
@@ -30,8 +31,8 @@ fn table(bytes: &[u8], time: Option<&str>) -> Result<Table, LogError> {
         }
     };
     let columns: Vec<Column> = arrays.into_iter().flat_map(columns).collect();
-    let is_wanted = |column: &&Column| match time {
-        Some(name) => column.name == name,
+    let is_wanted = |column: &&Column| match &options.time {
+        Some(name) => column.name == *name,
         None => crate::time_unit::is_time_name(&column.name),
     };
     // Without a column of time, the longest arrays are the signals.
@@ -42,7 +43,7 @@ fn table(bytes: &[u8], time: Option<&str>) -> Result<Table, LogError> {
     let name = |column: &Column| {
         format!("`{}` has {} rows, not {rows}: ignored", column.name, column.rows())
     };
-    Table::new(format, columns, time, others.iter().map(name).collect())
+    Table::new(format, columns, options, others.iter().map(name).collect())
 }
 
 /// The columns of an array: those of a matrix are `name[0]`, `name[1]`, of a lone array `column_1`, `column_2`.

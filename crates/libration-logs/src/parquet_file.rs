@@ -13,6 +13,7 @@ use parquet::schema::types::ColumnDescriptor;
 use crate::column::{Column, MISSING, Values, missing};
 use crate::error::LogError;
 use crate::input::Input;
+use crate::log::ReadOptions;
 use crate::table::Table;
 
 /// Records that are read at once.
@@ -31,11 +32,11 @@ impl From<ParquetError> for LogError {
 pub const PARQUET_THREAD: &str = "parquet";
 
 /// Reads the columns of numbers. Lists and text are left out.
-pub(crate) fn open(input: &Input, time: Option<&str>) -> Result<Table, LogError> {
-    let (input, time) = (input.clone(), time.map(str::to_owned));
+pub(crate) fn open(input: &Input, options: &ReadOptions) -> Result<Table, LogError> {
+    let (input, options) = (input.clone(), options.clone());
     let reading = move || match input {
-        Input::File(path) => read(&SerializedFileReader::new(File::open(path)?)?, time.as_deref()),
-        Input::Memory(bytes) => read(&SerializedFileReader::new(bytes)?, time.as_deref()),
+        Input::File(path) => read(&SerializedFileReader::new(File::open(path)?)?, &options),
+        Input::Memory(bytes) => read(&SerializedFileReader::new(bytes)?, &options),
     };
     let thread = Builder::new().name(PARQUET_THREAD.to_owned()).spawn(reading)?;
     thread.join().unwrap_or_else(|_| {
@@ -43,7 +44,7 @@ pub(crate) fn open(input: &Input, time: Option<&str>) -> Result<Table, LogError>
     })
 }
 
-fn read(reader: &dyn FileReader, time: Option<&str>) -> Result<Table, LogError> {
+fn read(reader: &dyn FileReader, options: &ReadOptions) -> Result<Table, LogError> {
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     let units = units(reader);
     let (mut columns, mut ignored, mut cells) = (Vec::new(), Vec::new(), 0);
@@ -63,7 +64,7 @@ fn read(reader: &dyn FileReader, time: Option<&str>) -> Result<Table, LogError> 
         column.per_second = per_second(descriptor);
         columns.push(column);
     }
-    Table::new("Parquet", columns, time, ignored)
+    Table::new("Parquet", columns, options, ignored)
 }
 
 /// The units that `libration` writes.
@@ -78,15 +79,17 @@ fn units(reader: &dyn FileReader) -> Vec<(String, String)> {
 }
 
 /// The number of units of time per second.
-fn per_second(descriptor: &ColumnDescriptor) -> Option<i64> {
-    match descriptor.logical_type_ref()? {
-        LogicalType::Timestamp(time) => Some(match time.unit {
-            TimeUnit::MILLIS => 1000,
-            TimeUnit::MICROS => 1_000_000,
-            TimeUnit::NANOS => 1_000_000_000,
-        }),
-        _ => None,
-    }
+fn per_second(descriptor: &ColumnDescriptor) -> Option<f64> {
+    let unit = match descriptor.logical_type_ref()? {
+        LogicalType::Timestamp(time) => time.unit,
+        LogicalType::Time(time) => time.unit,
+        _ => return None,
+    };
+    Some(match unit {
+        TimeUnit::MILLIS => 1e3,
+        TimeUnit::MICROS => 1e6,
+        TimeUnit::NANOS => 1e9,
+    })
 }
 
 /// The values of a column in all row groups; none if they are no numbers.

@@ -2,9 +2,10 @@
 
 use crate::column::{Column, Times, Values};
 use crate::error::LogError;
+use crate::log::ReadOptions;
 use crate::signal::{ClockChoice, Series, SignalInfo, TopicInfo};
 use crate::source::Source;
-use crate::time_unit::{is_time_name, unit_in_name};
+use crate::time_unit::{is_time_name, unit_in_name, unit_name};
 
 /// A table with a column of time.
 pub(crate) struct Table {
@@ -24,21 +25,28 @@ impl Table {
     /// A table of these columns, whose time is that of the option, else a column named as one, else the first.
     pub(crate) fn new(
         format: &'static str,
-        columns: Vec<Column>,
-        time: Option<&str>,
+        mut columns: Vec<Column>,
+        options: &ReadOptions,
         notes: Vec<String>,
     ) -> Result<Self, LogError> {
         if columns.is_empty() {
             return Err(LogError::Damaged("it has no column of numbers".to_owned()));
         }
         let named = columns.iter().position(|column| is_time_name(&column.name));
-        let time = match time {
+        let time = match &options.time {
             Some(name) => {
                 position(&columns, name).ok_or_else(|| unknown("column", name, &columns))?
             }
             None => named.unwrap_or(0),
         };
         let time_is_first = time == 0;
+        if let Some(unit) = options.time_unit {
+            columns[time].per_second = Some(unit.per_second());
+            // Other columns of stamps mostly have the same unit.
+            for column in columns.iter_mut().filter(|column| column.unit_of_time().1) {
+                column.default_per_second = Some(unit.per_second());
+            }
+        }
         let (rows, count) = (columns[time].rows(), columns[time].count());
         if count == 0 || count < rows / 2 {
             return Err(LogError::Damaged(format!(
@@ -84,6 +92,30 @@ impl Table {
         let times = self.columns[index].times();
         let times = times.since(&times);
         times.last().map_or(0.0, |last| last.1)
+    }
+
+    /// A note if the unit of time is a guess, and a warning if the guess leads to a rate that few loops have.
+    fn guessed_unit(&self) -> Vec<String> {
+        let time = &self.columns[self.time];
+        let (per_second, is_guess) = time.unit_of_time();
+        if !is_guess || !self.has_stamps {
+            return Vec::new();
+        }
+        let rate = time.count().saturating_sub(1) as f64 / self.span(self.time);
+        let is_rare = rate.is_finite() && !(0.1..=2e4).contains(&rate);
+        let is_float = matches!(time.values, Values::Floats(_));
+        let (name, unit) = (&time.name, unit_name(per_second));
+        let mut notes = Vec::new();
+        // Decimal seconds are the custom.
+        if !is_float || per_second != 1.0 || is_rare {
+            notes.push(format!("the unit of `{name}` is assumed to be {unit}; help: --time-unit, or rename the column to `{name}_us` for µs"));
+        }
+        if is_rare {
+            notes.push(format!(
+                "warning: the rate is {rate:.4} Hz with the assumed unit {unit} of `{name}`"
+            ));
+        }
+        notes
     }
 
     fn origin(&self) -> Times {
@@ -157,6 +189,7 @@ impl Source for Table {
     fn notes(&self) -> Vec<String> {
         let time = &self.columns[self.time];
         let mut notes = vec![format!("the column of time is `{}`", time.name)];
+        notes.extend(self.guessed_unit());
         notes.extend(self.notes.iter().cloned());
         notes
     }

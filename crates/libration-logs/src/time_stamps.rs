@@ -29,7 +29,7 @@ pub struct StampOptions {
 pub fn read_time_stamps(path: &Path, options: &StampOptions) -> Result<Vec<f64>, String> {
     let words = |error: &dyn std::fmt::Display| error.to_string();
     let input = Input::of(path).map_err(|error| words(&error))?;
-    let read = ReadOptions { time: None, clock: options.clock };
+    let read = ReadOptions { clock: options.clock, ..ReadOptions::default() };
     let log = match (Log::read(input.clone(), &read), &options.topic) {
         (Ok(log), None) if log.has_stamps_first() => return of_lines(&input),
         (Ok(log), _) => log,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::TopicArgs;
+use super::{TimeUnitName, TopicArgs};
 
 /// Arguments of `clock`.
 #[derive(Args, Debug)]
@@ -21,6 +21,9 @@ pub(crate) struct ClockArgs {
     /// Column of time of a table [default: a column named as one, else the first]
     #[arg(long, value_name = "COLUMN")]
     pub(crate) time: Option<String>,
+    /// Unit of the column of time [default: of the file or the name, else by the size of the numbers]
+    #[arg(long, value_name = "UNIT")]
+    pub(crate) time_unit: Option<TimeUnitName>,
     /// Loop, as for `advise`, to compute what the clock and the latency do to it
     #[arg(long, value_name = "FILE")]
     pub(crate) config: Option<PathBuf>,

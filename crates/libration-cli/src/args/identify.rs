@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use libration_identify::{Hold, NoiseKind, ResponseKind};
 
-use super::timing;
+use super::{TimeUnitName, timing};
 
 /// Arguments of `identify`.
 #[derive(Args, Debug)]
@@ -23,6 +23,9 @@ pub(crate) struct IdentifyArgs {
     /// Column of the time stamps [default: one with a name such as t, time, stamp; else the first]
     #[arg(long, value_name = "COLUMN")]
     pub(crate) time: Option<String>,
+    /// Unit of the column of time [default: of the file or the name, else by the size of the numbers]
+    #[arg(long, value_name = "UNIT")]
+    pub(crate) time_unit: Option<TimeUnitName>,
     /// Form of the response
     #[arg(long, value_name = "FORM", default_value = "auto", value_parser = forms)]
     pub(crate) model: Choice<ResponseKind>,

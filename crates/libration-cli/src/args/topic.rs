@@ -1,7 +1,7 @@
 //! Options of logs with several topics and clocks.
 
 use clap::{Args, ValueEnum};
-use libration_logs::{ClockChoice, StampOptions};
+use libration_logs::{ClockChoice, StampOptions, TimeUnit};
 
 /// The topic and the clock of the time stamps of a file.
 #[derive(Args, Clone, Debug)]
@@ -40,6 +40,31 @@ impl ClockName {
             ClockName::Log => ClockChoice::Log,
             ClockName::Publish => ClockChoice::Publish,
             ClockName::Header => ClockChoice::Header,
+        }
+    }
+}
+
+/// The value of `--time-unit`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TimeUnitName {
+    /// Seconds.
+    S,
+    /// Milliseconds.
+    Ms,
+    /// Microseconds.
+    Us,
+    /// Nanoseconds.
+    Ns,
+}
+
+impl TimeUnitName {
+    /// Returns the unit.
+    pub(crate) fn unit(self) -> TimeUnit {
+        match self {
+            TimeUnitName::S => TimeUnit::S,
+            TimeUnitName::Ms => TimeUnit::Ms,
+            TimeUnitName::Us => TimeUnit::Us,
+            TimeUnitName::Ns => TimeUnit::Ns,
         }
     }
 }

@@ -12,7 +12,10 @@ use super::measure_jitter::{self, listed, time};
 pub(super) fn describe(report: &ClockReport) -> String {
     let mut text = format!("{}: {}\n", report.file, report.format);
     for note in &report.notes {
-        let _ = writeln!(text, "note: {note}");
+        let _ = match note.starts_with("warning: ") {
+            true => writeln!(text, "{note}"),
+            false => writeln!(text, "note: {note}"),
+        };
     }
     let width = report
         .topics

@@ -13,7 +13,7 @@ use libration_work::Work;
 
 use super::advise::command_line;
 use super::result_file::ResultFile;
-use crate::args::IdentifyArgs;
+use crate::args::{IdentifyArgs, TimeUnitName};
 use crate::error::Failure;
 use crate::progress::Reporter;
 use crate::{interrupt, terminal};
@@ -112,7 +112,8 @@ fn request(args: &IdentifyArgs) -> Result<Request, Failure> {
 /// The signals of the options.
 fn recording(args: &IdentifyArgs) -> Result<Recording, Failure> {
     let path = args.log.display();
-    let options = ReadOptions { time: args.time.clone(), ..ReadOptions::default() };
+    let time_unit = args.time_unit.map(TimeUnitName::unit);
+    let options = ReadOptions { time: args.time.clone(), time_unit, ..ReadOptions::default() };
     let log = Log::open(&args.log, &options)
         .map_err(|error| Failure::usage(format!("cannot read `{path}`: {error}")))?;
     let series = |option: &str, name: &str| {
