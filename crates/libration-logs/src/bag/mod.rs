@@ -158,7 +158,10 @@ impl<S: MessageStream> Bag<S> {
         match clock {
             ClockChoice::Log => Some(message.log),
             ClockChoice::Publish => Some(message.publish),
-            ClockChoice::Header => self.topics[topic].decoder.header_time(message.data),
+            // A stamp of zero is one that the sender has not set.
+            ClockChoice::Header => {
+                self.topics[topic].decoder.header_time(message.data).filter(|&time| time != 0)
+            }
         }
     }
 

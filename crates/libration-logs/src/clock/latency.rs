@@ -1,6 +1,6 @@
 //! Latencies from one topic to another.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use serde::Serialize;
 
@@ -65,8 +65,8 @@ const BINS: usize = 20;
 impl Latency {
     /// The latency from a topic to another of a log, by the log clock or the publish clock.
     ///
-    /// Time stamps in a row of a table belong together. Messages with equal header stamps belong together, if at least half of the later topic's messages have such a match. Else each
-    /// belongs to the nearest preceding message.
+    /// Time stamps in a row of a table belong together. Messages with equal header stamps belong together, if stamps are mostly unique
+    /// and at least half of the later topic's messages have such a match. Else each belongs to the nearest preceding message.
     ///
     /// # Errors
     /// If there is no such topic or clock, or nothing matches.
@@ -131,30 +131,46 @@ struct Matched {
     unanswered: usize,
 }
 
-/// Latencies between equal header stamps; none if fewer than half of the later messages have one.
+/// Least share of different stamps among the header stamps of a topic for which equal stamps show a cause.
+const UNIQUE: f64 = 0.8;
+
+/// Latencies between equal header stamps, each from the latest earlier message with the stamp; none if fewer than half of the later
+/// messages have one, or if messages mostly repeat stamps.
 fn by_header(
     earlier: &[Option<i64>],
     earlier_headers: &[Option<i64>],
     later: &[Option<i64>],
     later_headers: &[Option<i64>],
 ) -> Option<Matched> {
-    let mut times: HashMap<i64, (i64, bool)> = HashMap::new();
+    if ![earlier_headers, later_headers].into_iter().all(is_mostly_unique) {
+        return None;
+    }
+    let mut times: HashMap<i64, Vec<(i64, bool)>> = HashMap::new();
     for (time, header) in earlier.iter().zip(earlier_headers) {
         if let (Some(time), Some(header)) = (time, header) {
-            times.entry(*header).or_insert((*time, false));
+            times.entry(*header).or_default().push((*time, false));
         }
     }
+    times.values_mut().for_each(|own| own.sort_unstable());
     let mut latencies = Vec::new();
     for (time, header) in later.iter().zip(later_headers) {
         let (Some(time), Some(header)) = (time, header) else { continue };
-        if let Some((from, answered)) = times.get_mut(header) {
+        let Some(own) = times.get_mut(header) else { continue };
+        let before = own.partition_point(|(from, _)| from <= time).saturating_sub(1);
+        if let Some((from, answered)) = own.get_mut(before) {
             *answered = true;
             latencies.push(seconds(*from, *time));
         }
     }
     let unmatched = later.len() - latencies.len();
-    let unanswered = times.values().filter(|(_, answered)| !answered).count();
+    let unanswered = times.values().flatten().filter(|(_, answered)| !answered).count();
     (latencies.len() >= unmatched).then_some(Matched { latencies, unmatched, unanswered })
+}
+
+/// Whether most header stamps occur once.
+fn is_mostly_unique(headers: &[Option<i64>]) -> bool {
+    let different: HashSet<i64> = headers.iter().flatten().copied().collect();
+    different.len() as f64 >= UNIQUE * headers.iter().flatten().count() as f64
 }
 
 /// Latencies within a row.
@@ -231,5 +247,12 @@ mod tests {
         assert_eq!(found.latencies, [25e-9, 6e-9]);
         assert_eq!((found.unmatched, found.unanswered), (1, 1));
         assert!(by_header(&earlier, &stamps(&[1, 2, 3]), &later, &stamps(&[7, 8, 9])).is_none());
+        // Stamps that are held show no cause.
+        assert!(by_header(&earlier, &stamps(&[1, 2, 3]), &later, &stamps(&[1, 1, 1])).is_none());
+        // The latest earlier message of two with a stamp.
+        let (earlier, headers) = (stamps(&[10, 20, 30, 40, 50, 60]), [1, 2, 3, 4, 5, 5]);
+        let later = stamps(&[55, 65]);
+        let found = by_header(&earlier, &stamps(&headers), &later, &stamps(&[5, 6])).unwrap();
+        assert_eq!(found.latencies, [5e-9]);
     }
 }
