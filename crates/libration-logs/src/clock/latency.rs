@@ -59,6 +59,8 @@ pub struct Latency {
 
 /// Shares of the quantiles.
 const PARTS: [f64; 6] = [0.0, 0.5, 0.9, 0.95, 0.99, 1.0];
+/// Largest share of latencies below zero: more come from topics in the wrong order.
+const REVERSED: f64 = 0.05;
 /// Bins of the histogram.
 const BINS: usize = 20;
 
@@ -69,8 +71,14 @@ impl Latency {
     /// and at least half of the later topic's messages have such a match. Else each belongs to the nearest preceding message.
     ///
     /// # Errors
-    /// If there is no such topic or clock, or nothing matches.
+    /// If there is no such topic or clock, if nothing matches, if both topics are the same, or if more than 5 % of the latencies are below
+    /// zero.
     pub fn between(log: &Log, from: &str, to: &str, clock: ClockChoice) -> Result<Self, LogError> {
+        if from.trim_start_matches('/') == to.trim_start_matches('/') {
+            return Err(LogError::Damaged(format!(
+                "both topics are `{from}`; expected a later topic than that of --topic"
+            )));
+        }
         let [earlier, later] = [log.exact_stamps(from, clock)?, log.exact_stamps(to, clock)?];
         let headers = if clock == ClockChoice::Header {
             // Equal header stamps would be latencies of zero.
@@ -94,6 +102,11 @@ impl Latency {
         let square = latencies.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count;
         let law = LawFit::of(&latencies);
         let negative = latencies.iter().filter(|&&x| x < 0.0).count();
+        if negative as f64 > REVERSED * count {
+            return Err(LogError::Damaged(format!(
+                "{negative} of {count} latencies from `{from}` to `{to}` are below zero; expected at most 5 %; help: swap --topic and --against"
+            )));
+        }
         let mut sorted = latencies;
         sorted.sort_unstable_by(f64::total_cmp);
         let quantiles = quantiles_at(&PARTS, &sorted);
@@ -237,6 +250,17 @@ mod tests {
         let found = Latency::between(&log, "start", "end", ClockChoice::Log).unwrap();
         assert_eq!((found.matching, found.count, found.mean), (Matching::Row, 1, 0.0004));
         assert_eq!((found.unmatched, found.unanswered), (1, 1));
+    }
+
+    #[test]
+    fn topics_in_the_wrong_order_are_an_error() {
+        let text = "start,end\n1700000000000000000,1700000000000400000\n1700000000010000000,1700000000010400000\n";
+        let log = Log::from_bytes(text.into(), &Default::default()).unwrap();
+        let error = |from: &str, to: &str| {
+            Latency::between(&log, from, to, ClockChoice::Log).unwrap_err().to_string()
+        };
+        assert!(error("end", "start").contains("swap --topic and --against"));
+        assert!(error("end", "end").contains("both topics are `end`"));
     }
 
     #[test]
