@@ -1,6 +1,7 @@
 //! Columns while a text is read.
 
 use crate::column::{MISSING, Values, missing};
+use crate::iso_8601::parse_iso_8601;
 
 /// The text of a number in a cell; `candump -L` writes parentheses.
 pub(crate) fn number(cell: &str) -> Option<f64> {
@@ -39,7 +40,10 @@ impl ColumnBuilder {
     pub(crate) fn push(&mut self, cell: &str) {
         let bare = cell.strip_prefix('(').and_then(|cell| cell.strip_suffix(')')).unwrap_or(cell);
         let Some(value) = number(bare) else {
-            return self.push_missing();
+            return match parse_iso_8601(bare) {
+                Some(time) => self.push_time(time),
+                None => self.push_missing(),
+            };
         };
         self.numbers += 1;
         if let Values::Whole(all) = &mut self.values {
@@ -69,6 +73,16 @@ impl ColumnBuilder {
         let float = |&x: &i64| if x == MISSING { missing() } else { x as f64 };
         self.values = exact
             .map_or_else(|| Values::Floats(all.iter().map(float).collect()), Values::Nanoseconds);
+    }
+
+    /// Appends a time since 1970 in ns; none among numbers of another kind.
+    fn push_time(&mut self, time: i64) {
+        if let (0, Values::Whole(all)) = (self.numbers, &mut self.values) {
+            self.values = Values::Nanoseconds(std::mem::take(all));
+        }
+        let Values::Nanoseconds(all) = &mut self.values else { return self.push_missing() };
+        all.push(time);
+        self.numbers += 1;
     }
 
     fn push_missing(&mut self) {

@@ -27,15 +27,36 @@ pub(crate) fn is_text(prefix: &[u8]) -> bool {
 
 /// Reads a table in text.
 pub(crate) fn open(input: &Input, options: &ReadOptions) -> Result<Table, LogError> {
-    let (columns, notes, is_behind) = read(input.reader()?)?;
+    let Text { columns, notes, is_behind, empty } = read(input.reader()?)?;
+    let has_time = columns.iter().any(|column| is_time_name(&column.name));
+    match empty.iter().find(|name| is_time_name(name)) {
+        Some(name) if options.time.is_none() && !has_time => {
+            return Err(LogError::Damaged(format!(
+                "the column `{name}` has no numbers; expected times as numbers or ISO 8601; help: choose another column with --time"
+            )));
+        }
+        _ => {}
+    }
     Ok(Table::new("text", columns, options, notes)?.behind_others(is_behind))
 }
 
-/// The columns of numbers of a text, remarks, and whether the first column has no numbers.
+/// A text.
+struct Text {
+    /// The columns of numbers.
+    columns: Vec<Column>,
+    /// Remarks.
+    notes: Vec<String>,
+    /// Whether the first column has no numbers.
+    is_behind: bool,
+    /// The names of the columns without numbers.
+    empty: Vec<String>,
+}
+
+/// The columns of a text.
 ///
 /// Empty lines and those that begin with `#` are ignored. The first other line may have names; else the last line with `#` in front of
 /// the numbers has them, if it has as many.
-fn read(mut input: impl BufRead) -> Result<(Vec<Column>, Vec<String>, bool), LogError> {
+fn read(mut input: impl BufRead) -> Result<Text, LogError> {
     let mut line = String::new();
     let mut comment = String::new();
     let mut table: Option<Rows> = None;
@@ -122,18 +143,19 @@ impl Rows {
         Ok(())
     }
 
-    fn into_columns(self) -> (Vec<Column>, Vec<String>, bool) {
+    fn into_columns(self) -> Text {
         let mut notes = Vec::new();
         if self.ragged > 0 {
             let (ragged, cells) = (self.ragged, self.values.len());
             notes.push(format!("{ragged} of {} rows do not have {cells} cells", self.rows));
         }
         let is_behind = self.values.first().is_some_and(|values| values.count() == 0);
-        let columns = self.names.into_iter().zip(self.values);
-        let columns = columns.filter(|(_, values)| values.count() > 0);
-        let columns =
-            columns.map(|(name, values)| Column::new(name, values.into_values())).collect();
-        (columns, notes, is_behind)
+        let all = self.names.into_iter().zip(self.values);
+        let (some, none): (Vec<_>, Vec<_>) = all.partition(|(_, values)| values.count() > 0);
+        let column =
+            |(name, values): (String, ColumnBuilder)| Column::new(name, values.into_values());
+        let empty = none.into_iter().map(|(name, _)| name).collect();
+        Text { columns: some.into_iter().map(column).collect(), notes, is_behind, empty }
     }
 }
 
@@ -173,7 +195,7 @@ mod tests {
     use crate::source::Source;
 
     fn table(text: &str) -> Table {
-        let (columns, notes, _) = read(text.as_bytes()).unwrap();
+        let Text { columns, notes, .. } = read(text.as_bytes()).unwrap();
         Table::new("text", columns, &ReadOptions::default(), notes).unwrap()
     }
 
@@ -234,6 +256,17 @@ mod tests {
     }
 
     #[test]
+    fn iso_8601_is_a_time_and_other_text_in_its_column_an_error() {
+        let text = "time,x\n2025-10-09T08:53:20.123466+02:00,0\n2025-10-09 06:53:20.128431Z,1\n";
+        assert_eq!(series(text, "x").0, [0.0, 0.004_965]);
+        let stamps = table(text).exact_stamps("time", ClockChoice::Log).unwrap();
+        assert_eq!(stamps[0], Some(1_759_992_800_123_466_000));
+        let input = Input::Memory("time,x\n00:00:00.005,0\n00:00:00.010,1\n".into());
+        let error = open(&input, &ReadOptions::default()).err().unwrap().to_string();
+        assert!(error.contains("the column `time` has no numbers"), "{error}");
+    }
+
+    #[test]
     fn a_line_of_units_belongs_to_the_names() {
         for text in ["time,x\n[ms],[m]\n0,1\n5.5,2\n", "time;x\nms;-\n0;1\n5.5;2\n"] {
             assert_eq!(series(text, "x"), (vec![0.0, 0.0055], vec![1.0, 2.0]), "{text}");
@@ -251,7 +284,7 @@ mod tests {
         assert_eq!(notes, ["the column of time is `t`"]);
         let options =
             ReadOptions { time_unit: Some(crate::TimeUnit::Us), ..ReadOptions::default() };
-        let (columns, notes, _) = read(text.as_bytes()).unwrap();
+        let Text { columns, notes, .. } = read(text.as_bytes()).unwrap();
         let table = Table::new("text", columns, &options, notes).unwrap();
         assert_eq!(table.stamps("timestamp", ClockChoice::Log).unwrap()[1], 0.004_964);
         assert_eq!(table.notes().len(), 1);

@@ -11,6 +11,7 @@ mod cyclictest;
 mod delimited_text;
 mod error;
 mod input;
+mod iso_8601;
 mod json_message;
 mod log;
 mod mcap;

@@ -38,13 +38,14 @@ impl TopicClock {
     /// The clock of a topic.
     ///
     /// # Errors
-    /// If there is no such topic or clock, or fewer than two stamps.
+    /// If there is no such topic or clock, or fewer than two stamps; or if the stamps of a table begin again or mostly have no order.
     pub fn of(log: &Log, topic: &str, clock: ClockChoice) -> Result<Self, LogError> {
         let exact = log.exact_stamps(topic, clock)?;
         let mut stamps: Vec<i64> = exact.iter().flatten().copied().collect();
         let back = |pair: &[i64]| (i128::from(pair[0]) - i128::from(pair[1])) as f64 / 1e9;
         let largest_step_back = stamps.windows(2).map(back).fold(0.0, f64::max);
         let backward = stamps.windows(2).filter(|pair| pair[1] < pair[0]).count();
+        check_order(&stamps, topic, !log.is_bag())?;
         stamps.sort_unstable();
         let (&[first, ..], true) = (stamps.as_slice(), stamps.len() >= 2) else {
             let count = stamps.len();
@@ -86,6 +87,36 @@ impl TopicClock {
             statistics,
             log_against_header,
         })
+    }
+}
+
+/// Largest share of stamps of a table that go back: in more, the column is no time.
+const UNORDERED: f64 = 0.05;
+/// Share of the range by which a stamp goes back if a record begins again.
+const RESTART: f64 = 0.1;
+
+/// Checks the order of stamps in a file. The messages of a bag may be in another order than their stamps.
+fn check_order(stamps: &[i64], topic: &str, is_table: bool) -> Result<(), LogError> {
+    let count = stamps.len();
+    if !is_table || count < 3 {
+        return Ok(());
+    }
+    let backward = stamps.windows(2).filter(|pair| pair[1] < pair[0]).count();
+    if backward as f64 > UNORDERED * (count - 1) as f64 {
+        return Err(LogError::Damaged(format!(
+            "{backward} of {count} stamps of `{topic}` go back; expected a column of time; help: choose it with --time"
+        )));
+    }
+    let range = stamps.iter().max().zip(stamps.iter().min());
+    let range = range.map_or(0.0, |(&last, &first)| last as f64 - first as f64);
+    let is_restart = |pair: &[i64]| pair[0] as f64 - pair[1] as f64 > RESTART * range;
+    match stamps.windows(2).position(is_restart) {
+        Some(at) if count >= 32 => Err(LogError::Damaged(format!(
+            "the log begins again: stamp {} of `{topic}` goes back by {:.6} s; expected one record; help: split the file there",
+            at + 2,
+            (stamps[at] as f64 - stamps[at + 1] as f64) / 1e9
+        ))),
+        _ => Ok(()),
     }
 }
 
@@ -136,6 +167,18 @@ mod tests {
     use super::*;
     use crate::ReadOptions;
     use crate::clock::Verdict;
+
+    #[test]
+    fn a_column_without_order_and_a_log_that_begins_again_are_errors() {
+        let error = |value: &dyn Fn(u64) -> u64| {
+            let lines: Vec<_> = (0..200).map(|n| value(n).to_string()).collect();
+            let text = format!("time_ms\n{}\n", lines.join("\n"));
+            let log = Log::from_bytes(text.into_bytes(), &ReadOptions::default()).unwrap();
+            TopicClock::of(&log, "time_ms", ClockChoice::Log).unwrap_err().to_string()
+        };
+        assert!(error(&|n| n * 7919 % 200).contains("help: choose it with --time"));
+        assert!(error(&|n| n % 150).contains("the log begins again: stamp 151"));
+    }
 
     #[test]
     fn late_wake_ups_on_a_grid_have_the_law_of_their_lateness() {
