@@ -4,6 +4,8 @@ use std::f64::consts::{PI, SQRT_2};
 
 use serde::Serialize;
 
+use super::two_values::{TwoValues, normal_density, two_values};
+
 /// A law with its parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "law", rename_all = "kebab-case")]
@@ -62,9 +64,6 @@ pub enum LawKind {
     TwoValued,
 }
 
-/// Steps of the expectation-maximisation of two values.
-const STEPS: usize = 60;
-
 impl LawKind {
     /// All kinds.
     pub const ALL: [LawKind; 5] = [
@@ -102,7 +101,10 @@ impl LawKind {
                 let scale = sorted.iter().map(|x| (x - median).abs()).sum::<f64>() / count;
                 Law::Laplace { median, scale }
             }
-            LawKind::TwoValued => return two_valued(sorted),
+            LawKind::TwoValued => {
+                let TwoValues { values, deviations, share } = two_values(sorted)?;
+                Law::TwoValued { values, deviations, share }
+            }
         })
     }
 
@@ -121,60 +123,6 @@ impl LawKind {
             LawKind::TwoValued => "two-valued",
         }
     }
-}
-
-/// Two Gaussian laws by expectation-maximisation (A. P. Dempster, N. M. Laird, D. B. Rubin, *Maximum likelihood from incomplete data
-/// via the EM algorithm*, Journal of the Royal Statistical Society B 39, 1977), from the two sides of the widest gap.
-fn two_valued(sorted: &[f64]) -> Option<Law> {
-    let count = sorted.len();
-    let range = sorted[count - 1] - sorted[0];
-    // A few values on one side are outliers.
-    let least = (count / 50).max(2);
-    let gap = |i: usize| sorted[i] - sorted[i - 1];
-    let split = (least..=count - least).max_by(|&a, &b| gap(a).total_cmp(&gap(b)))?;
-    let of = |part: &[f64]| {
-        let mean = part.iter().sum::<f64>() / part.len() as f64;
-        let square = part.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / part.len() as f64;
-        (mean, square.sqrt())
-    };
-    // A value without any spread has the likelihood infinity.
-    let floor = 1e-4 * range;
-    let (low, high) = (of(&sorted[..split]), of(&sorted[split..]));
-    let mut law =
-        ([low.0, high.0], [low.1.max(floor), high.1.max(floor)], 1.0 - split as f64 / count as f64);
-    for _ in 0..STEPS {
-        let (values, deviations, share) = law;
-        let mut sums = [[0.0; 3]; 2];
-        for &x in sorted {
-            let density =
-                |i: usize| normal_density((x - values[i]) / deviations[i]) / deviations[i];
-            let (a, b) = ((1.0 - share) * density(0), share * density(1));
-            let second = if a + b > 0.0 {
-                b / (a + b)
-            } else {
-                f64::from((x - values[1]).abs() < (x - values[0]).abs())
-            };
-            for (sum, weight) in sums.iter_mut().zip([1.0 - second, second]) {
-                let x = x - sorted[0];
-                sum[0] += weight;
-                sum[1] += weight * x;
-                sum[2] += weight * x * x;
-            }
-        }
-        if sums.iter().any(|sum| sum[0] < 1.0) {
-            break;
-        }
-        let mean = |sum: &[f64; 3]| sum[1] / sum[0];
-        let deviation =
-            |sum: &[f64; 3]| (sum[2] / sum[0] - mean(sum).powi(2)).max(0.0).sqrt().max(floor);
-        law = (
-            [sorted[0] + mean(&sums[0]), sorted[0] + mean(&sums[1])],
-            [deviation(&sums[0]), deviation(&sums[1])],
-            sums[1][0] / count as f64,
-        );
-    }
-    let (values, deviations, share) = law;
-    Some(Law::TwoValued { values, deviations, share })
 }
 
 impl Law {
@@ -211,10 +159,6 @@ impl Law {
             }
         }
     }
-}
-
-fn normal_density(z: f64) -> f64 {
-    (-0.5 * z * z).exp() / (2.0 * PI).sqrt()
 }
 
 /// The normal distribution. Source: W. J. Cody, *Rational Chebyshev approximation for the error function*, as the series and the

@@ -8,6 +8,7 @@ mod phase;
 mod spectrum;
 mod statistics;
 mod topic_clock;
+mod two_values;
 
 pub use drift::Drift;
 pub use latency::{Latency, Matching};
