@@ -196,6 +196,13 @@ fn latency(found: &Latency, text: &mut String) {
         );
         line(text, "warning", words);
     }
+    if let Some(interval) = found.visible_up_to {
+        line(text, "limit", format!("latencies above {} are not visible", time(interval)));
+    }
+    if found.is_cut {
+        let words = "latencies reach the limit or are uniform below it: true ones may be longer";
+        line(text, "warning", words);
+    }
     law(&found.law, "latencies", text);
     let most = found.histogram.iter().map(|bin| bin.1).max().unwrap_or(1).max(1);
     for &(from, count) in &found.histogram {

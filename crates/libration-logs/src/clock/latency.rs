@@ -1,9 +1,8 @@
 //! Latencies from one topic to another.
 
-use std::collections::{HashMap, HashSet};
-
 use serde::Serialize;
 
+use super::pairs::{Matched, by_header, by_order, by_row, seconds};
 use super::statistics::{Quantile, quantiles_at};
 use super::{LawFit, PhaseLag, phase_lags, rate_of_phase};
 use crate::{ClockChoice, Log, LogError};
@@ -39,6 +38,10 @@ pub struct Latency {
     pub unanswered: usize,
     /// Number of latencies below zero.
     pub negative: usize,
+    /// The median interval of the earlier topic in s, above which latencies are not visible; none if messages belong together.
+    pub visible_up_to: Option<f64>,
+    /// Whether the latencies reach this interval or are nearly uniform over it, so that the true ones may be longer.
+    pub is_cut: bool,
     /// The mean in s.
     pub mean: f64,
     /// The standard deviation in s.
@@ -109,6 +112,10 @@ impl Latency {
         }
         let mut sorted = latencies;
         sorted.sort_unstable_by(f64::total_cmp);
+        let visible_up_to = match matching {
+            Matching::NearestPreceding => median_interval(&earlier),
+            _ => None,
+        };
         let quantiles = quantiles_at(&PARTS, &sorted);
         let of = |part: f64| quantiles.iter().find(|q| q.part == part).map_or(0.0, |q| q.value);
         Ok(Latency {
@@ -120,6 +127,8 @@ impl Latency {
             unmatched,
             unanswered,
             negative,
+            visible_up_to,
+            is_cut: visible_up_to.is_some_and(|interval| is_cut(&sorted, interval)),
             mean,
             deviation: square.sqrt(),
             histogram: histogram(&sorted),
@@ -137,84 +146,21 @@ impl Latency {
     }
 }
 
-struct Matched {
-    /// In s, in file order of the later messages.
-    latencies: Vec<f64>,
-    unmatched: usize,
-    unanswered: usize,
+/// The median interval between sorted stamps, in s.
+fn median_interval(stamps: &[Option<i64>]) -> Option<f64> {
+    let mut stamps: Vec<i64> = stamps.iter().flatten().copied().collect();
+    stamps.sort_unstable();
+    let mut intervals: Vec<f64> = stamps.windows(2).map(|pair| seconds(pair[0], pair[1])).collect();
+    intervals.sort_unstable_by(f64::total_cmp);
+    intervals.get(intervals.len() / 2).copied()
 }
 
-/// Least share of different stamps among the header stamps of a topic for which equal stamps show a cause.
-const UNIQUE: f64 = 0.8;
-
-/// Latencies between equal header stamps, each from the latest earlier message with the stamp; none if fewer than half of the later
-/// messages have one, or if messages mostly repeat stamps.
-fn by_header(
-    earlier: &[Option<i64>],
-    earlier_headers: &[Option<i64>],
-    later: &[Option<i64>],
-    later_headers: &[Option<i64>],
-) -> Option<Matched> {
-    if ![earlier_headers, later_headers].into_iter().all(is_mostly_unique) {
-        return None;
-    }
-    let mut times: HashMap<i64, Vec<(i64, bool)>> = HashMap::new();
-    for (time, header) in earlier.iter().zip(earlier_headers) {
-        if let (Some(time), Some(header)) = (time, header) {
-            times.entry(*header).or_default().push((*time, false));
-        }
-    }
-    times.values_mut().for_each(|own| own.sort_unstable());
-    let mut latencies = Vec::new();
-    for (time, header) in later.iter().zip(later_headers) {
-        let (Some(time), Some(header)) = (time, header) else { continue };
-        let Some(own) = times.get_mut(header) else { continue };
-        let before = own.partition_point(|(from, _)| from <= time).saturating_sub(1);
-        if let Some((from, answered)) = own.get_mut(before) {
-            *answered = true;
-            latencies.push(seconds(*from, *time));
-        }
-    }
-    let unmatched = later.len() - latencies.len();
-    let unanswered = times.values().flatten().filter(|(_, answered)| !answered).count();
-    (latencies.len() >= unmatched).then_some(Matched { latencies, unmatched, unanswered })
-}
-
-/// Whether most header stamps occur once.
-fn is_mostly_unique(headers: &[Option<i64>]) -> bool {
-    let different: HashSet<i64> = headers.iter().flatten().copied().collect();
-    different.len() as f64 >= UNIQUE * headers.iter().flatten().count() as f64
-}
-
-/// Latencies within a row.
-fn by_row(earlier: &[Option<i64>], later: &[Option<i64>]) -> Matched {
-    let pairs = || earlier.iter().zip(later);
-    let latencies: Vec<f64> = pairs().filter_map(|(a, b)| Some(seconds((*a)?, (*b)?))).collect();
-    let unmatched = later.iter().flatten().count() - latencies.len();
-    let unanswered = earlier.iter().flatten().count() - latencies.len();
-    Matched { latencies, unmatched, unanswered }
-}
-
-/// Latencies from the nearest preceding message.
-fn by_order(earlier: &[Option<i64>], later: &[Option<i64>]) -> Matched {
-    let mut earlier: Vec<i64> = earlier.iter().flatten().copied().collect();
-    earlier.sort_unstable();
-    let mut answered = vec![false; earlier.len()];
-    let mut latencies = Vec::new();
-    for &time in later.iter().flatten() {
-        let before = earlier.partition_point(|&own| own <= time);
-        if let Some(i) = before.checked_sub(1) {
-            answered[i] = true;
-            latencies.push(seconds(earlier[i], time));
-        }
-    }
-    let unmatched = later.len() - latencies.len();
-    let unanswered = answered.iter().filter(|answered| !**answered).count();
-    Matched { latencies, unmatched, unanswered }
-}
-
-fn seconds(from: i64, to: i64) -> f64 {
-    (i128::from(to) - i128::from(from)) as f64 / 1e9
+/// Whether sorted latencies reach an interval, or differ from uniform ones over it by less than 10 % of probability.
+fn is_cut(sorted: &[f64], interval: f64) -> bool {
+    let count = sorted.len() as f64;
+    let reach = sorted[(sorted.len() - 1) * 99 / 100] >= 0.95 * interval;
+    let distance = |(i, x): (usize, &f64)| (x / interval - (i as f64 + 0.5) / count).abs();
+    reach || sorted.iter().enumerate().map(distance).fold(0.0, f64::max) < 0.1
 }
 
 /// Counts in bins up to the 99 % quantile.
@@ -236,11 +182,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn messages_are_matched_with_the_nearest_that_precedes() {
-        let stamps = |all: &[i64]| all.iter().map(|&x| Some(x)).collect::<Vec<_>>();
-        let found = by_order(&stamps(&[10, 30, 20]), &stamps(&[5, 12, 25, 26]));
-        assert_eq!(found.latencies, [2e-9, 5e-9, 6e-9]);
-        assert_eq!((found.unmatched, found.unanswered), (1, 1));
+    fn latencies_that_reach_the_interval_are_cut() {
+        let spread =
+            |width: f64| -> Vec<f64> { (0..100).map(|i| width * f64::from(i) / 100.0).collect() };
+        assert!(is_cut(&spread(0.01), 0.01));
+        assert!(!is_cut(&spread(0.004), 0.01));
+        assert_eq!(median_interval(&[Some(0), Some(5_000_000), Some(9_000_000)]), Some(0.005));
     }
 
     #[test]
@@ -261,22 +208,5 @@ mod tests {
         };
         assert!(error("end", "start").contains("swap --topic and --against"));
         assert!(error("end", "end").contains("both topics are `end`"));
-    }
-
-    #[test]
-    fn equal_header_stamps_belong_together() {
-        let stamps = |all: &[i64]| all.iter().map(|&x| Some(x)).collect::<Vec<_>>();
-        let (earlier, later) = (stamps(&[10, 20, 30]), stamps(&[35, 36, 37]));
-        let found = by_header(&earlier, &stamps(&[1, 2, 3]), &later, &stamps(&[1, 3, 9])).unwrap();
-        assert_eq!(found.latencies, [25e-9, 6e-9]);
-        assert_eq!((found.unmatched, found.unanswered), (1, 1));
-        assert!(by_header(&earlier, &stamps(&[1, 2, 3]), &later, &stamps(&[7, 8, 9])).is_none());
-        // Stamps that are held show no cause.
-        assert!(by_header(&earlier, &stamps(&[1, 2, 3]), &later, &stamps(&[1, 1, 1])).is_none());
-        // The latest earlier message of two with a stamp.
-        let (earlier, headers) = (stamps(&[10, 20, 30, 40, 50, 60]), [1, 2, 3, 4, 5, 5]);
-        let later = stamps(&[55, 65]);
-        let found = by_header(&earlier, &stamps(&headers), &later, &stamps(&[5, 6])).unwrap();
-        assert_eq!(found.latencies, [5e-9]);
     }
 }

@@ -4,6 +4,7 @@ mod drift;
 mod latency;
 mod law;
 mod law_fit;
+mod pairs;
 mod phase;
 mod spectrum;
 mod statistics;
