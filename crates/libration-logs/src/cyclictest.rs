@@ -9,7 +9,7 @@ use std::io::BufRead;
 use crate::column::{Column, Values};
 use crate::error::LogError;
 use crate::input::Input;
-use crate::log::ReadOptions;
+use crate::read_options::ReadOptions;
 use crate::table::Table;
 use crate::text_line::read_line;
 

@@ -6,7 +6,7 @@ use crate::column::Column;
 use crate::column_builder::{ColumnBuilder, number};
 use crate::error::LogError;
 use crate::input::Input;
-use crate::log::ReadOptions;
+use crate::read_options::ReadOptions;
 use crate::table::Table;
 use crate::text_line::read_line;
 use crate::time_unit::{is_time_name, is_unit};

@@ -18,6 +18,7 @@ mod mcap;
 mod nearest_name;
 mod numpy_file;
 mod parquet_file;
+mod read_options;
 mod ros;
 mod rosbag;
 mod signal;
@@ -30,8 +31,9 @@ mod ulog;
 
 pub use clock::{Band, Lateness, Quantile, Spectrum, Statistics};
 pub use error::LogError;
-pub use log::{Log, ReadOptions};
+pub use log::Log;
 pub use parquet_file::PARQUET_THREAD;
+pub use read_options::ReadOptions;
 pub use signal::{ClockChoice, Series, SignalInfo, TopicInfo};
 pub use time_stamps::{StampOptions, read_time_stamps};
 pub use time_unit::TimeUnit;

@@ -7,10 +7,10 @@ use crate::cyclictest::{self, Output};
 use crate::error::LogError;
 use crate::input::Input;
 use crate::mcap::Mcap;
+use crate::read_options::ReadOptions;
 use crate::rosbag::Rosbag;
 use crate::signal::{ClockChoice, Series, SignalInfo, TopicInfo};
 use crate::source::Source;
-use crate::time_unit::TimeUnit;
 use crate::ulog::Ulog;
 use crate::{delimited_text, numpy_file, parquet_file, rosbag, ulog};
 
@@ -18,25 +18,6 @@ use crate::{delimited_text, numpy_file, parquet_file, rosbag, ulog};
 pub struct Log {
     source: Box<dyn Source>,
     clock: ClockChoice,
-}
-
-/// How to read a log.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ReadOptions {
-    /// The column of time of a table. Default: a column with a name such as `t`, `time`, `timestamp`, `stamp` or `time_ns`; else the
-    /// first column.
-    pub time: Option<String>,
-    /// The unit of the column of time. Default: that of the file or of the name, else by the size of the numbers.
-    pub time_unit: Option<TimeUnit>,
-    /// The clock of a bag.
-    pub clock: ClockChoice,
-}
-
-impl ReadOptions {
-    /// With this column of time.
-    pub(crate) fn of_time(name: &str) -> Self {
-        ReadOptions { time: Some(name.to_owned()), ..ReadOptions::default() }
-    }
 }
 
 /// Bytes that determine the format.

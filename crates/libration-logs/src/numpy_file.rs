@@ -5,7 +5,7 @@ use libration_data::{ArrayValues, NamedArray, parse_npy, parse_npy_records, read
 use crate::column::{Column, Values};
 use crate::error::LogError;
 use crate::input::Input;
-use crate::log::ReadOptions;
+use crate::read_options::ReadOptions;
 use crate::table::Table;
 
 /// Largest file, and largest sum of the arrays in it.

@@ -13,7 +13,7 @@ use parquet::schema::types::ColumnDescriptor;
 use crate::column::{Column, MISSING, Values, missing};
 use crate::error::LogError;
 use crate::input::Input;
-use crate::log::ReadOptions;
+use crate::read_options::ReadOptions;
 use crate::table::Table;
 
 /// Records that are read at once.

@@ -1,11 +1,11 @@
 //! Tables: signals are columns, and one column is the time.
 
-use crate::column::{Column, Times, Values};
+use crate::column::{Column, MISSING, Times, Values};
 use crate::error::LogError;
-use crate::log::ReadOptions;
+use crate::read_options::ReadOptions;
 use crate::signal::{ClockChoice, Series, SignalInfo, TopicInfo};
 use crate::source::Source;
-use crate::time_unit::{is_time_name, unit_in_name, unit_name};
+use crate::time_unit::{is_time_name, split_nanoseconds, split_seconds, unit_in_name, unit_name};
 
 /// A table with a column of time.
 pub(crate) struct Table {
@@ -32,6 +32,7 @@ impl Table {
         if columns.is_empty() {
             return Err(LogError::Damaged("it has no column of numbers".to_owned()));
         }
+        let is_combined = options.time.is_none() && combine_seconds(&mut columns);
         let named = columns.iter().position(|column| is_time_name(&column.name));
         let time = match &options.time {
             Some(name) => {
@@ -39,7 +40,7 @@ impl Table {
             }
             None => named.unwrap_or(0),
         };
-        let time_is_first = time == 0;
+        let time_is_first = time == 0 && !is_combined;
         if let Some(unit) = options.time_unit {
             columns[time].per_second = Some(unit.per_second());
             // Other columns of stamps mostly have the same unit.
@@ -72,7 +73,7 @@ impl Table {
         let column = &self.columns[index];
         let is_epoch = match &column.values {
             Values::Whole(x) => {
-                let mut there = x.iter().filter(|&&x| x != crate::column::MISSING).peekable();
+                let mut there = x.iter().filter(|&&x| x != MISSING).peekable();
                 there.peek().is_some() && there.all(|&x| x >= EPOCH)
             }
             Values::Nanoseconds(_) => true,
@@ -193,6 +194,35 @@ impl Source for Table {
         notes.extend(self.notes.iter().cloned());
         notes
     }
+}
+
+/// Joins a column of seconds and one of nanoseconds behind them, such as `stamp.sec` and `stamp.nanosec`, to one of stamps;
+/// false if there are none.
+fn combine_seconds(columns: &mut Vec<Column>) -> bool {
+    let pair = columns.iter().enumerate().find_map(|(second, column)| {
+        let stem = split_seconds(&column.name)?;
+        let is_rest =
+            |other: &Column| split_nanoseconds(&other.name).is_some_and(|own| own == stem);
+        let rest = columns.iter().position(is_rest)?;
+        let (Values::Whole(seconds), Values::Whole(nanoseconds)) =
+            (&column.values, &columns[rest].values)
+        else {
+            return None;
+        };
+        let sum = |(&s, &n): (&i64, &i64)| match (0..1_000_000_000).contains(&n) {
+            true => s.checked_mul(1_000_000_000)?.checked_add(n),
+            false if n == MISSING => Some(MISSING),
+            false => None,
+        };
+        let sums: Option<Vec<i64>> = seconds.iter().zip(nanoseconds).map(sum).collect();
+        Some((second, rest, stem, sums?))
+    });
+    let Some((second, rest, stem, stamps)) = pair else { return false };
+    let name = if stem.is_empty() { "time".to_owned() } else { stem };
+    columns[second] = Column::new(name, Values::Nanoseconds(stamps));
+    columns[second].per_second = Some(1.0);
+    columns.remove(rest);
+    true
 }
 
 /// The index of a column with this name, or with this name before its unit in brackets.

@@ -79,6 +79,21 @@ pub(crate) fn unit_in_name(name: &str) -> Option<f64> {
     split_unit(name).map(|(_, per_second)| per_second)
 }
 
+/// The name of a stamp without `sec` or the like at its end.
+pub(crate) fn split_seconds(name: &str) -> Option<String> {
+    before_last_word(name, &["sec", "secs", "seconds"])
+}
+
+/// The name of a stamp without `nanosec` or the like at its end.
+pub(crate) fn split_nanoseconds(name: &str) -> Option<String> {
+    before_last_word(name, &["nanosec", "nanosecs", "nsec", "nsecs", "nanoseconds"])
+}
+
+fn before_last_word(name: &str, words: &[&str]) -> Option<String> {
+    let (before, word) = name.rsplit_once(SEPARATORS).unwrap_or(("", name));
+    words.contains(&word.to_ascii_lowercase().as_str()).then(|| before.to_owned())
+}
+
 /// Whether a text is a unit of time.
 pub(crate) fn is_unit(text: &str) -> bool {
     let text = text.trim_matches(['[', ']', '(', ')', ' ']).to_ascii_lowercase();

@@ -73,6 +73,18 @@ fn iso_8601_is_a_time_and_other_text_in_its_column_an_error() {
 }
 
 #[test]
+fn seconds_and_nanoseconds_are_one_stamp() {
+    for (text, name) in [
+        ("secs,nsecs,x\n1760000000,0,0\n1760000000,5000000,1\n", "time"),
+        ("h.stamp.sec,h.stamp.nanosec,x\n1760000000,1,0\n1760000000,5000001,1\n", "h.stamp"),
+        ("x,sec,nanosec\n0,0,999000000\n1,1,4000000\n", "time"),
+    ] {
+        assert_eq!(series(text, "x").0, [0.0, 0.005], "{text}");
+        assert_eq!(table(text).time_name().unwrap(), name);
+    }
+}
+
+#[test]
 fn a_line_of_units_belongs_to_the_names() {
     for text in ["time,x\n[ms],[m]\n0,1\n5.5,2\n", "time;x\nms;-\n0;1\n5.5;2\n"] {
         assert_eq!(series(text, "x"), (vec![0.0, 0.0055], vec![1.0, 2.0]), "{text}");
