@@ -14,6 +14,9 @@ use crate::time_unit::{is_time_name, is_unit};
 /// Largest number of cells in memory: 2 GiB of numbers.
 const MOST_CELLS: u64 = 1 << 28;
 
+/// Lines that determine the delimiter.
+const LINES: usize = 8;
+
 /// Whether the first bytes of a file are text.
 pub(crate) fn is_text(prefix: &[u8]) -> bool {
     let whole = match std::str::from_utf8(prefix) {
@@ -60,6 +63,7 @@ fn read(mut input: impl BufRead) -> Result<Text, LogError> {
     let mut line = String::new();
     let mut comment = String::new();
     let mut table: Option<Rows> = None;
+    let mut first_lines = Vec::new();
     let mut first = true;
     loop {
         if !read_line(&mut input, &mut line)? {
@@ -72,15 +76,22 @@ fn read(mut input: impl BufRead) -> Result<Text, LogError> {
             continue;
         }
         if let Some(rest) = text.trim_start().strip_prefix('#') {
-            if table.is_none() {
+            if table.is_none() && first_lines.is_empty() {
                 comment = rest.trim().to_owned();
             }
             continue;
         }
         match &mut table {
             Some(rows) => rows.push(text)?,
-            None => table = Some(Rows::begin(text, &comment)?),
+            None if first_lines.len() + 1 < LINES => first_lines.push(text.to_owned()),
+            None => {
+                first_lines.push(text.to_owned());
+                table = Rows::begin(&first_lines, &comment)?;
+            }
         }
+    }
+    if table.is_none() {
+        table = Rows::begin(&first_lines, &comment)?;
     }
     let rows = table.ok_or_else(|| LogError::Damaged("it has no line of numbers".to_owned()))?;
     Ok(rows.into_columns())
@@ -99,11 +110,14 @@ struct Rows {
 }
 
 impl Rows {
-    /// Begins with the first line that is no comment.
-    fn begin(text: &str, comment: &str) -> Result<Self, LogError> {
-        let delimiter = [',', ';', '\t'].into_iter().find(|&delimiter| text.contains(delimiter));
+    /// Begins with the first lines that are no comments; none without lines.
+    fn begin(lines: &[String], comment: &str) -> Result<Option<Self>, LogError> {
+        let Some((text, others)) = lines.split_first() else { return Ok(None) };
+        let delimiter = delimiter(lines);
         let cells = cells(text, delimiter);
-        let is_header = !cells.iter().any(|cell| number(cell).is_some());
+        let is_number =
+            |cell: &&str| number(cell).is_some() || with_decimal_point(cell, delimiter).is_some();
+        let is_header = !cells.iter().any(is_number);
         let comment = self::cells(comment, delimiter);
         let names: Vec<String> = match (is_header, comment.len() == cells.len()) {
             (true, _) => cells.iter().map(|cell| name(cell)).collect(),
@@ -118,7 +132,8 @@ impl Rows {
             rows.push(text)?;
         }
         rows.is_below_names = is_header;
-        Ok(rows)
+        others.iter().try_for_each(|text| rows.push(text))?;
+        Ok(Some(rows))
     }
 
     fn push(&mut self, text: &str) -> Result<(), LogError> {
@@ -133,7 +148,11 @@ impl Rows {
         }
         self.ragged += usize::from(cells.len() != self.values.len());
         for (i, column) in self.values.iter_mut().enumerate() {
-            column.push(cells.get(i).map_or("", |cell| cell));
+            let cell = cells.get(i).map_or("", |cell| cell);
+            match with_decimal_point(cell, self.delimiter) {
+                Some(cell) => column.push(&cell),
+                None => column.push(cell),
+            }
         }
         self.rows += 1;
         let value = self.rows as u64 * self.values.len() as u64;
@@ -157,6 +176,29 @@ impl Rows {
         let empty = none.into_iter().map(|(name, _)| name).collect();
         Text { columns: some.into_iter().map(column).collect(), notes, is_behind, empty }
     }
+}
+
+/// The delimiter: one with as many cells in each of the first lines, else the first in the first line.
+///
+/// A comma comes last, since it may be that of decimals.
+fn delimiter(lines: &[String]) -> Option<char> {
+    let is_constant = |delimiter: &char| {
+        let mut counts = lines.iter().map(|line| cells(line, Some(*delimiter)).len());
+        let first = counts.next().unwrap_or(0);
+        first > 1 && counts.all(|count| count == first)
+    };
+    let contains = |delimiter: &char| lines.first().is_some_and(|line| line.contains(*delimiter));
+    let constant = [';', '\t', ','].into_iter().find(is_constant);
+    constant.or_else(|| [',', ';', '\t'].into_iter().find(contains))
+}
+
+/// A number with a decimal comma, with a point. Between commas, `1,234` may be a thousand, and is none.
+fn with_decimal_point(cell: &str, delimiter: Option<char>) -> Option<String> {
+    let (whole, fraction) = cell.split_once(',')?;
+    let is_thousands = fraction.len() == 3 && whole.trim_start_matches('-') != "0";
+    let text = format!("{whole}.{fraction}");
+    let is_number = text.parse::<f64>().is_ok() && !whole.contains('.');
+    (is_number && !(delimiter == Some(',') && is_thousands)).then_some(text)
 }
 
 /// Whether the cells of a line are the units of these names: all in brackets, or one of them a unit of time below a name of time.

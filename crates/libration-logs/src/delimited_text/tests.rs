@@ -85,6 +85,21 @@ fn seconds_and_nanoseconds_are_one_stamp() {
 }
 
 #[test]
+fn decimal_commas_are_points_and_thousands_are_not() {
+    for text in [
+        "t;x\n0,25;1,5\n0,75;2,5\n",
+        "\"t\",\"x\"\n\"0,25\",\"1,5\"\n\"0,75\",\"2,5\"\n",
+        "t x\n0,25 1,5\n0,75 2,5\n",
+    ] {
+        assert_eq!(series(text, "x"), (vec![0.0, 0.5], vec![1.5, 2.5]), "{text}");
+    }
+    let (time, values) = series("0,25;1,5\n0,75;2,5\n", "column_2");
+    assert_eq!((time, values), (vec![0.0, 0.5], vec![1.5, 2.5]));
+    let text = "t,x\n0,\"1,234\"\n1,2\n";
+    assert_eq!(series(text, "x").1, [2.0]);
+}
+
+#[test]
 fn a_line_of_units_belongs_to_the_names() {
     for text in ["time,x\n[ms],[m]\n0,1\n5.5,2\n", "time;x\nms;-\n0;1\n5.5;2\n"] {
         assert_eq!(series(text, "x"), (vec![0.0, 0.0055], vec![1.0, 2.0]), "{text}");
