@@ -31,15 +31,7 @@ pub(crate) fn is_text(prefix: &[u8]) -> bool {
 /// Reads a table in text.
 pub(crate) fn open(input: &Input, options: &ReadOptions) -> Result<Table, LogError> {
     let Text { columns, notes, is_behind, empty } = read(input.reader()?)?;
-    let has_time = columns.iter().any(|column| is_time_name(&column.name));
-    match empty.iter().find(|name| is_time_name(name)) {
-        Some(name) if options.time.is_none() && !has_time => {
-            return Err(LogError::Damaged(format!(
-                "the column `{name}` has no numbers; expected times as numbers or ISO 8601; help: choose another column with --time"
-            )));
-        }
-        _ => {}
-    }
+    Table::check_time(&columns, &empty, options)?;
     Ok(Table::new("text", columns, options, notes)?.behind_others(is_behind))
 }
 

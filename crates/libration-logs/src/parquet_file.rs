@@ -48,6 +48,7 @@ fn read(reader: &dyn FileReader, options: &ReadOptions) -> Result<Table, LogErro
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     let units = units(reader);
     let (mut columns, mut ignored, mut cells) = (Vec::new(), Vec::new(), 0);
+    let mut empty = Vec::new();
     for (index, descriptor) in schema.columns().iter().enumerate() {
         let name = descriptor.path().string();
         if descriptor.max_rep_level() > 0 {
@@ -56,6 +57,7 @@ fn read(reader: &dyn FileReader, options: &ReadOptions) -> Result<Table, LogErro
         }
         let Some(values) = values(reader, index, descriptor, &mut cells)? else {
             ignored.push(format!("`{name}` has no numbers: ignored"));
+            empty.push(name);
             continue;
         };
         let unit = units.iter().find(|(column, _)| *column == name).map(|(_, unit)| unit.clone());
@@ -64,6 +66,7 @@ fn read(reader: &dyn FileReader, options: &ReadOptions) -> Result<Table, LogErro
         column.per_second = per_second(descriptor);
         columns.push(column);
     }
+    Table::check_time(&columns, &empty, options)?;
     Table::new("Parquet", columns, options, ignored)
 }
 

@@ -58,6 +58,21 @@ impl Table {
         Ok(Table { format, columns, time, notes, time_is_first, has_stamps: true })
     }
 
+    /// Checks that no other column is taken for the time if that with its name has no numbers.
+    pub(crate) fn check_time(
+        columns: &[Column],
+        empty: &[String],
+        options: &ReadOptions,
+    ) -> Result<(), LogError> {
+        let has_time = columns.iter().any(|column| is_time_name(&column.name));
+        match empty.iter().find(|name| is_time_name(name)) {
+            Some(name) if options.time.is_none() && !has_time => Err(LogError::Damaged(format!(
+                "the column `{name}` has no numbers; expected times as numbers or ISO 8601; help: choose another column with --time"
+            ))),
+            _ => Ok(()),
+        }
+    }
+
     /// The same table, in front of whose columns there are others without numbers.
     pub(crate) fn behind_others(self, is_behind: bool) -> Self {
         Table { time_is_first: self.time_is_first && !is_behind, ..self }
@@ -108,7 +123,7 @@ impl Table {
         let (name, unit) = (&time.name, unit_name(per_second));
         let mut notes = Vec::new();
         // Decimal seconds are the custom.
-        if !is_float || per_second != 1.0 || is_rare {
+        if !is_float || per_second != 1.0 || rate < 1.0 || is_rare {
             notes.push(format!("the unit of `{name}` is assumed to be {unit}; help: --time-unit, or rename the column to `{name}_us` for µs"));
         }
         if is_rare {

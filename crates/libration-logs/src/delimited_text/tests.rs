@@ -113,6 +113,8 @@ fn a_guessed_unit_is_noted() {
     let notes = table(text).notes().join("\n");
     assert!(notes.contains("the unit of `timestamp` is assumed to be ns"), "{notes}");
     assert!(notes.contains("warning: the rate is 20"), "{notes}");
+    let notes = table("time,x\n0.01,0\n5.02,1\n9.98,2\n").notes().join("\n");
+    assert!(notes.contains("assumed to be s"), "{notes}");
     let notes = table("t,x\n0.005,0\n0.01,1\n0.015,2\n").notes();
     assert_eq!(notes, ["the column of time is `t`"]);
     let options = ReadOptions { time_unit: Some(crate::TimeUnit::Us), ..ReadOptions::default() };
