@@ -73,7 +73,7 @@ fn a_program_that_fails_ends_the_run_with_its_name_and_what_it_did() {
 fn an_audit_ends_with_its_limit_of_time_and_shows_some_messages_of_the_program() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("slow.py");
-    let text = "import sys, time\nfor line in sys.stdin:\n    time.sleep(0.01)\n    print('x' * 9999, file=sys.stderr)\n    print(*line.split()[:2], flush=True)\n";
+    let text = "import sys, time\nfor _ in range(8): print('x' * 9999, file=sys.stderr)\nfor line in sys.stdin:\n    time.sleep(0.01)\n    print(*line.split()[:2], flush=True)\n";
     fs::write(&path, text).unwrap();
     let output = probe(&path, &["--time-limit", "1.5"]).code(1).get_output().stderr.clone();
     let errors = String::from_utf8(output).unwrap();
