@@ -1,7 +1,8 @@
 //! The audit of energy traces.
 
+use crate::answer::answer;
 use crate::cause::OscillationCause;
-use crate::findings::{answer, findings};
+use crate::findings::findings;
 use crate::power_law::PowerLaw;
 use crate::trace::checked;
 use crate::{
@@ -39,7 +40,7 @@ pub fn audit(traces: &[EnergyTrace], requirement: Requirement) -> Result<EnergyR
         &runs,
         requirement,
         (oscillation_cause, drift_cause, walk_cause),
-        drift_law.map(|law| law.exponent.value),
+        (drift_law.map(|law| law.exponent.value), walk_law.map(|law| law.exponent.value)),
     );
     let mut report = EnergyReport {
         answer: String::new(),

@@ -50,6 +50,10 @@ pub struct LargestDt {
     pub scale: f64,
     /// The step in s by the values of the laws; none if no step of the range meets the requirement.
     pub dt: Option<f64>,
+    /// Whether `dt` is none because the runs do not tell how a part depends on the step.
+    pub is_unknown: bool,
+    /// The shortest step in s of the search.
+    pub shortest_dt: f64,
     /// The step that meets it at the unfavourable ends of all intervals.
     pub low: Option<f64>,
     /// The step that meets it at the favourable ends.
@@ -74,6 +78,8 @@ enum End {
 struct Law {
     points: Vec<(f64, Estimate)>,
     exponent_below: f64,
+    /// Whether the runs tell how the size depends on the step.
+    is_known: bool,
 }
 
 impl Law {
@@ -104,7 +110,7 @@ impl Law {
     }
 }
 
-fn oscillation(runs: &[Run], cause: OscillationCause) -> Law {
+fn oscillation(runs: &[Run], cause: OscillationCause, drift_cause: DriftCause) -> Law {
     let point = |run: &Run| {
         let Estimate { value, low, high } = run.oscillation;
         let size = |x: f64| match value > 0.0 {
@@ -116,11 +122,23 @@ fn oscillation(runs: &[Run], cause: OscillationCause) -> Law {
     let points: Vec<(f64, Estimate)> = runs.iter().map(point).collect();
     let exponent_below = match (cause, &points[..]) {
         (OscillationCause::Truncation, [short, long, ..]) => {
-            crate::power_law::local_exponent(*short, *long).value.round().max(1.0)
+            exponent_of_values(short, long).round().max(1.0)
+        }
+        // Deviations that are no oscillation, such as the curvature of a drift by truncation.
+        (OscillationCause::Unresolved, [short, long, ..])
+            if drift_cause == DriftCause::Truncation =>
+        {
+            exponent_of_values(short, long).max(0.0)
         }
         _ => 0.0,
     };
-    Law { points, exponent_below }
+    let is_known = exponent_below > 0.0 || cause == OscillationCause::StepIndependent;
+    Law { points, exponent_below, is_known }
+}
+
+/// The exponent between the values of two sizes.
+fn exponent_of_values(short: &(f64, Estimate), long: &(f64, Estimate)) -> f64 {
+    (long.1.value / short.1.value).ln() / (long.0 / short.0).ln()
 }
 
 fn drift(runs: &[Run], cause: DriftCause, order: Option<f64>) -> Law {
@@ -148,51 +166,70 @@ fn drift(runs: &[Run], cause: DriftCause, order: Option<f64>) -> Law {
         DriftCause::Rounding => -1.0,
         _ => 0.0,
     };
-    Law { points, exponent_below }
+    Law { points, exponent_below, is_known: cause != DriftCause::Unclear }
 }
 
-fn walk(runs: &[Run], cause: WalkCause) -> Law {
+fn walk(runs: &[Run], cause: WalkCause, exponent: Option<f64>) -> Law {
     let none = Estimate { value: 0.0, low: 0.0, high: 0.0 };
     let point = |run: &Run| (run.dt, run.present_walk().map_or(none, |walk| walk.diffusion));
-    let exponent_below = if cause == WalkCause::Rounding { -1.0 } else { 0.0 };
-    Law { points: runs.iter().map(point).collect(), exponent_below }
+    let exponent_below = match cause {
+        WalkCause::Rounding => -1.0,
+        WalkCause::Truncation => exponent.unwrap_or(0.0).max(0.0),
+        _ => 0.0,
+    };
+    let is_known = match cause {
+        WalkCause::Unclear => false,
+        WalkCause::Truncation => exponent_below > 0.0,
+        _ => true,
+    };
+    Law { points: runs.iter().map(point).collect(), exponent_below, is_known }
 }
 
 impl LargestDt {
-    /// Searches the step, with runs that have the shortest step first. `order` is the exponent of the drift rate.
+    /// Searches the step, with runs that have the shortest step first. `exponents` are those of the drift rate and of
+    /// the variance of the walk.
     pub(crate) fn search(
         runs: &[Run],
         requirement: Requirement,
         causes: (OscillationCause, DriftCause, WalkCause),
-        order: Option<f64>,
+        exponents: (Option<f64>, Option<f64>),
     ) -> Option<Self> {
         let (first, last) = (runs.first()?, runs.last()?);
         let horizon = requirement.horizon.unwrap_or(first.duration);
         let start = first.energy_at_start.abs();
         let scale = if start > RELATIVE * first.largest_deviation { start } else { 1.0 };
         let allowed = requirement.tolerance * scale;
-        let laws =
-            (oscillation(runs, causes.0), drift(runs, causes.1, order), walk(runs, causes.2));
-        let deviation = |dt: f64, end: End| {
-            let wander = NORMAL_95 * (laws.2.at(dt, end) * horizon).sqrt();
-            laws.0.at(dt, end) + laws.1.at(dt, end) * horizon + wander
+        let laws = [
+            oscillation(runs, causes.0, causes.1),
+            drift(runs, causes.1, exponents.0),
+            walk(runs, causes.2, exponents.1),
+        ];
+        let deviation = |dt: f64, end: End, is_counted: fn(&Law) -> bool| {
+            let size = |law: &Law| if is_counted(law) { law.at(dt, end) } else { 0.0 };
+            let [oscillation, drift, walk] = laws.each_ref().map(size);
+            oscillation + drift * horizon + NORMAL_95 * (walk * horizon).sqrt()
         };
-        let search = |end: End| {
+        let shortest_dt = SHORTER * first.dt;
+        let search = |end: End, is_counted: fn(&Law) -> bool| {
             let mut dt = last.dt;
-            while dt > SHORTER * first.dt {
-                if deviation(dt, end) <= allowed {
+            while dt > shortest_dt {
+                if deviation(dt, end, is_counted) <= allowed {
                     return Some(dt);
                 }
                 dt /= RATIO;
             }
             None
         };
-        let (dt, low, high) = (search(End::Value), search(End::High), search(End::Low));
+        let all = |end: End| search(end, |_| true);
+        let (dt, low, high) = (all(End::Value), all(End::High), all(End::Low));
+        let is_unknown = dt.is_none() && search(End::Value, |law| law.is_known).is_some();
         Some(LargestDt {
             tolerance: requirement.tolerance,
             horizon,
             scale,
             dt,
+            is_unknown,
+            shortest_dt,
             low,
             high,
             is_limited_by_runs: dt == Some(last.dt),

@@ -4,6 +4,7 @@
 //! the energy, the drift by truncation, rounding, and what does not fall with the step. It names faults, and predicts the largest step
 //! for a tolerance over a horizon. Intervals honour the autocorrelation of the energy.
 
+mod answer;
 mod audit;
 mod batches;
 mod cause;

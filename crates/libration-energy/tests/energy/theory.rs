@@ -5,7 +5,7 @@ use libration_energy::{
 };
 
 use crate::molecular_dynamics::{End, lennard_jones};
-use crate::programs::{Step, chain, euler, oscillator, rk4, verlet};
+use crate::programs::{Step, chain, euler, oscillator, rk4, trace, verlet};
 
 pub(crate) fn audited(traces: &[EnergyTrace]) -> EnergyReport {
     audited_over(traces, 1000.0)
@@ -88,6 +88,25 @@ fn explicit_euler_is_named_with_its_rate() {
         assert!((run.drift_rate.value / predicted - 1.0).abs() < 1e-9, "{:?}", run.drift_rate);
     }
     assert!(report.largest_dt.unwrap().dt.is_none());
+}
+
+#[test]
+fn the_largest_step_of_explicit_euler_is_that_of_its_drift() {
+    // A Duffing oscillator: its energy grows by no exact exponential, so that the curvature looks like a walk.
+    let duffing: Step = |s, h| *s = [s[0] + h * s[1], s[1] - h * (s[0] + 0.5 * s[0].powi(3))];
+    let traces = [0.004, 0.002, 0.001].map(|dt| {
+        let mut state = [1.0, 0.0];
+        let next = || {
+            duffing(&mut state, dt);
+            let [q, v]: [f64; 2] = state;
+            0.5 * (v * v + q * q) + 0.125 * q.powi(4)
+        };
+        trace("duffing", dt, (20.0 / dt).round() as usize, 1, next, 0.625)
+    });
+    let report = audited_over(&traces, 20.0);
+    // The energy grows by about 0.95·h per second: 10⁻⁴ of 0.625 in 20 s allows h = 3.3·10⁻⁶, less by the curvature.
+    let dt = report.largest_dt.unwrap().dt.unwrap();
+    assert!(dt > 1.5e-6 && dt < 4e-6, "{dt}");
 }
 
 #[test]
