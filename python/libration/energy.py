@@ -45,9 +45,10 @@ class EnergyReport:
         return list(self.results["runs"])
 
     @property
-    def largest_dt(self) -> dict[str, Any]:
-        """The largest step for the tolerance over the horizon as ``dt``, with its interval ``low`` and ``high``."""
-        return dict(self.results["largest_dt"])
+    def largest_dt(self) -> dict[str, Any] | None:
+        """The largest step for the tolerance over the horizon as ``dt``, with its interval ``low`` and ``high``; ``None`` without ``dt``."""
+        largest = self.results["largest_dt"]
+        return None if largest is None else dict(largest)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the HTML page, or with the suffix ``.json`` all numbers; one that is not finite is null."""
@@ -70,7 +71,7 @@ def audit_energy(
     traces
         Pairs of times in s and energies, one for each run.
     dt
-        The time step of each run in s; by default the spacing of the samples.
+        The time step of each run in s; by default the spacing of the samples, and then there is no largest step.
     tolerance
         The largest deviation from the energy at the start, relative to it.
     horizon

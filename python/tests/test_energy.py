@@ -33,6 +33,11 @@ def test_a_clean_simulation_has_order_2_and_no_fault(tmp_path):
     assert json.loads((tmp_path / "audit.json").read_text())["drift_cause"] == "unresolved"
 
 
+def test_without_time_steps_there_is_no_largest_step():
+    report = libration.audit_energy([verlet(dt) for dt in (0.2, 0.1)])
+    assert report.largest_dt is None and "dt assumed" in report.answer
+
+
 def test_a_force_with_curl_is_named():
     report = libration.audit_energy([verlet(dt, curl=1e-4) for dt in (0.2, 0.1)])
     assert not report.holds

@@ -39,7 +39,14 @@ pub(crate) fn answer(report: &EnergyReport) -> String {
         }
         _ => String::new(),
     };
-    format!("{names}{order}{drift}{}", report.largest_dt.as_ref().map_or_else(String::new, longest))
+    let assumed = match report.is_dt_assumed {
+        true => {
+            " dt assumed: the spacing of the samples. The largest step requires the time steps (--dt)."
+        }
+        false => "",
+    };
+    let largest = report.largest_dt.as_ref().map_or_else(String::new, longest);
+    format!("{names}{order}{drift}{assumed}{largest}")
 }
 
 fn longest(largest: &LargestDt) -> String {

@@ -52,11 +52,16 @@ pub fn audit(traces: &[EnergyTrace], requirement: Requirement) -> Result<EnergyR
         drift_law,
         walk_cause,
         walk_law,
+        is_dt_assumed: sorted.iter().any(|trace| trace.dt.is_none()),
         largest_dt,
         libration_version: env!("CARGO_PKG_VERSION"),
         repeat_command: String::new(),
     };
     report.findings = findings(&report, &sorted);
+    if report.is_dt_assumed {
+        // Of samples that are thinned it would be too large by the thinning.
+        report.largest_dt = None;
+    }
     report.answer = answer(&report);
     Ok(report)
 }

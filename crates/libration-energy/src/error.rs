@@ -95,6 +95,16 @@ pub enum TraceError {
         /// Time between samples.
         spacing: f64,
     },
+    /// Samples at unequal distances, without a time step.
+    #[error(
+        "the times between samples of `{title}` differ by {percent:.0} % (rms); expected samples at equal distances, or the time step; help: give the time steps with --dt"
+    )]
+    Uneven {
+        /// The trace.
+        title: String,
+        /// Relative rms deviation of the times between samples in per cent.
+        percent: f64,
+    },
     /// Two time steps that are the same.
     #[error(
         "`{first}` and `{second}` have the same time step, {dt} s; expected different steps; help: of thinned traces give the steps with --dt"

@@ -25,7 +25,9 @@ pub struct EnergyReport {
     pub walk_cause: WalkCause,
     /// The law of the diffusion, by the runs that have a walk.
     pub walk_law: Option<PowerLaw>,
-    /// The largest step for the tolerance over the horizon.
+    /// Whether a run has no stated time step, so that it is taken for the spacing of its samples.
+    pub is_dt_assumed: bool,
+    /// The largest step for the tolerance over the horizon; none where a time step is assumed.
     pub largest_dt: Option<LargestDt>,
     /// The version of libration.
     pub libration_version: &'static str,

@@ -10,6 +10,8 @@ const MOST_TRACES: usize = 64;
 const SAME_STEP: f64 = 1e-3;
 /// Largest relative difference of durations.
 const SAME_DURATION: f64 = 0.05;
+/// Largest relative rms deviation of sampling intervals for which their mean is taken for the time step.
+const UNEVEN: f64 = 0.03;
 /// Part of a sampling interval by which printed times may err.
 const PRINTED: f64 = 1e-3;
 
@@ -43,6 +45,14 @@ impl EnergyTrace {
     /// The time step in s.
     pub fn step(&self) -> f64 {
         self.dt.unwrap_or_else(|| self.spacing())
+    }
+
+    /// Relative rms deviation of the times between samples from their mean.
+    fn unevenness(&self) -> f64 {
+        let spacing = self.spacing();
+        let square = |pair: &[f64]| ((pair[1] - pair[0]) / spacing - 1.0).powi(2);
+        let intervals = self.times.len().saturating_sub(1).max(1) as f64;
+        (self.times.windows(2).map(square).sum::<f64>() / intervals).sqrt()
     }
 
     /// Checks the trace.
@@ -79,6 +89,10 @@ impl EnergyTrace {
         }
         if dt > spacing * (1.0 + PRINTED) {
             return Err(TraceError::LongStep { title: title(), dt, spacing });
+        }
+        let unevenness = self.unevenness();
+        if self.dt.is_none() && unevenness > UNEVEN {
+            return Err(TraceError::Uneven { title: title(), percent: 100.0 * unevenness });
         }
         Ok(())
     }

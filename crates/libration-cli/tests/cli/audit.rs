@@ -36,7 +36,8 @@ fn energies_of_a_clean_program_have_no_fault_and_a_page() {
     let files = [0.2, 0.1, 0.05].map(|dt| run(folder.path(), dt, 0.0));
     let files = files.each_ref().map(PathBuf::as_path);
     let page = folder.path().join("audit.html");
-    let more = ["--horizon", "1000", "--page", page.to_str().unwrap()];
+    let steps = ["--dt", "0.2,0.1,0.05"];
+    let more = [&steps[..], &["--horizon", "1000", "--page", page.to_str().unwrap()]].concat();
     audit(&files, &more).success().stdout(
         predicate::str::contains("3 runs: no fault. The energy oscillates with order 2")
             .and(predicate::str::contains("The largest step for a deviation of 0.0001"))
@@ -46,6 +47,11 @@ fn energies_of_a_clean_program_have_no_fault_and_a_page() {
     assert!(page.contains("How do they depend on the time step?") && page.contains("energy-laws"));
     // Thinned traces have their steps from the option.
     audit(&files, &["--dt", "0.1,0.05,0.025"]).success();
+    // Without them there is no largest step.
+    audit(&files, &[]).success().stdout(
+        predicate::str::contains("dt assumed: the spacing of the samples")
+            .and(predicate::str::contains("The largest step for").not()),
+    );
 }
 
 #[test]

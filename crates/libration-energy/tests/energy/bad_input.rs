@@ -45,6 +45,12 @@ fn unusable_traces_are_refused_with_the_reason() {
     assert!(changed(&|trace| trace.times.truncate(2000)).contains("2000 times and 2001 energies"));
     assert!(changed(&|trace| trace.dt = Some(-1.0)).contains("is -1; expected a positive"));
     assert!(changed(&|trace| trace.dt = Some(1.0)).contains("expected at least a step between"));
+    let uneven = changed(&|trace| {
+        trace.dt = None;
+        // Every 40th sample is early by half an interval: an rms of 0.5·√(2/40) = 11 %.
+        trace.times.iter_mut().skip(40).step_by(40).for_each(|time| *time -= 0.025);
+    });
+    assert!(uneven.contains("differ by") && uneven.contains("with --dt"), "{uneven}");
     let huge = changed(&|trace| trace.energies.iter_mut().for_each(|energy| *energy *= 1e300));
     assert!(huge.contains("too large for an audit"), "{huge}");
 }

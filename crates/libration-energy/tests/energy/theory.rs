@@ -91,6 +91,19 @@ fn explicit_euler_is_named_with_its_rate() {
 }
 
 #[test]
+fn without_time_steps_there_is_no_largest_step() {
+    let traces = [0.2, 0.1].map(|dt| {
+        let whole = oscillator(verlet, dt, 300.0);
+        let thin = |values: &[f64]| values.iter().step_by(4).copied().collect();
+        let (times, energies) = (thin(&whole.times), thin(&whole.energies));
+        EnergyTrace { dt: None, times, energies, ..whole }
+    });
+    let report = audited(&traces);
+    assert!(report.is_dt_assumed && report.largest_dt.is_none());
+    assert!(report.answer.contains("dt assumed: the spacing of the samples"), "{}", report.answer);
+}
+
+#[test]
 fn the_largest_step_of_explicit_euler_is_that_of_its_drift() {
     // A Duffing oscillator: its energy grows by no exact exponential, so that the curvature looks like a walk.
     let duffing: Step = |s, h| *s = [s[0] + h * s[1], s[1] - h * (s[0] + 0.5 * s[0].powi(3))];
