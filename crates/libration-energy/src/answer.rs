@@ -2,7 +2,7 @@
 
 use libration_report::notation::{number, plural};
 
-use crate::findings::interval;
+use crate::interval::interval;
 use crate::{DriftCause, EnergyReport, LargestDt, OscillationCause};
 
 /// The answer in a few sentences.

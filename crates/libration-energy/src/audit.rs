@@ -27,7 +27,6 @@ pub fn audit(traces: &[EnergyTrace], requirement: Requirement) -> Result<EnergyR
     }
     let oscillation_cause = OscillationCause::of(&runs);
     let drift_cause = DriftCause::of(&runs);
-    let walk_cause = WalkCause::of(&runs);
     let law = |sizes: &dyn Fn(&Run) -> Option<Estimate>| {
         let points: Vec<(f64, Estimate)> =
             runs.iter().filter_map(|run| Some((run.dt, sizes(run)?))).collect();
@@ -36,6 +35,7 @@ pub fn audit(traces: &[EnergyTrace], requirement: Requirement) -> Result<EnergyR
     let oscillation_law = law(&|run| run.resolves_oscillation().then_some(run.oscillation));
     let drift_law = law(&|run| run.drifts().then_some(run.drift_rate));
     let walk_law = law(&|run| run.present_walk().map(|walk| walk.diffusion));
+    let walk_cause = WalkCause::of(&runs, walk_law);
     let largest_dt = LargestDt::search(
         &runs,
         requirement,

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::power_law::local_exponent;
-use crate::{Estimate, Run};
+use crate::{Estimate, PowerLaw, Run};
 
 /// Exponents in the middle between 0, of what does not change with the step, and 1, of the lowest order or of the number of steps.
 const MIDDLE: f64 = 0.5;
@@ -116,18 +116,21 @@ impl DriftCause {
 }
 
 impl WalkCause {
-    /// The cause in runs with the shortest step first.
-    pub(crate) fn of(runs: &[Run]) -> Self {
+    /// The cause in runs with the shortest step first, with the law of the walks that are present. Energies with a long memory look like
+    /// walks of any size, so that rounding requires that the whole interval of the exponent is below −½.
+    pub(crate) fn of(runs: &[Run], law: Option<PowerLaw>) -> Self {
         if runs.iter().all(|run| run.present_walk().is_none()) {
             return WalkCause::Absent;
         }
         let walks: Vec<(f64, Estimate)> =
             runs.iter().filter_map(|run| Some((run.dt, run.walk?.diffusion))).collect();
         match class_of(&walks) {
-            Class::Grows => WalkCause::Rounding,
+            Class::Grows if law.is_some_and(|law| law.exponent.high < -MIDDLE) => {
+                WalkCause::Rounding
+            }
             Class::Falls => WalkCause::Truncation,
             Class::Stays => WalkCause::StepIndependent,
-            Class::Unclear => WalkCause::Unclear,
+            Class::Grows | Class::Unclear => WalkCause::Unclear,
         }
     }
 

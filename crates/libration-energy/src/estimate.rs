@@ -24,6 +24,11 @@ impl Estimate {
         Estimate { value, low: value - half_width, high: value + half_width }
     }
 
+    /// A size of which no interval is known.
+    pub(crate) fn unbounded(value: f64) -> Self {
+        Estimate { value, low: 0.0, high: f64::INFINITY }
+    }
+
     /// Whether the interval contains `x`.
     pub fn contains(&self, x: f64) -> bool {
         self.low <= x && x <= self.high

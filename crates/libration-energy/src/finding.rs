@@ -26,6 +26,10 @@ pub enum FindingKind {
     UnclearDrift,
     /// The energy wanders, and the runs do not tell why.
     UnclearWalk,
+    /// A run is too short for the memory of its energy: its oscillation has no interval.
+    UnclearOscillation,
+    /// The oscillation has order 1.
+    FirstOrderOscillation,
     /// The runs are too short for the tolerance over the horizon.
     ShortRun,
     /// The runs start at different energies.
@@ -38,7 +42,7 @@ pub enum FindingKind {
 
 impl FindingKind {
     /// All kinds.
-    pub const ALL: [FindingKind; 13] = [
+    pub const ALL: [FindingKind; 15] = [
         FindingKind::StepIndependentDrift,
         FindingKind::StepIndependentOscillation,
         FindingKind::RoundingDrift,
@@ -48,6 +52,8 @@ impl FindingKind {
         FindingKind::TruncationDrift,
         FindingKind::UnclearDrift,
         FindingKind::UnclearWalk,
+        FindingKind::UnclearOscillation,
+        FindingKind::FirstOrderOscillation,
         FindingKind::ShortRun,
         FindingKind::DifferentStart,
         FindingKind::Thinned,
@@ -66,6 +72,8 @@ impl FindingKind {
             FindingKind::TruncationDrift => "truncation-drift",
             FindingKind::UnclearDrift => "unclear-drift",
             FindingKind::UnclearWalk => "unclear-walk",
+            FindingKind::UnclearOscillation => "unclear-oscillation",
+            FindingKind::FirstOrderOscillation => "first-order-oscillation",
             FindingKind::ShortRun => "short-run",
             FindingKind::DifferentStart => "different-start",
             FindingKind::Thinned => "thinned",
@@ -109,6 +117,10 @@ impl FindingKind {
             }
             FindingKind::UnclearDrift | FindingKind::UnclearWalk => {
                 "add a run with a step at least four times as short, or make all runs longer"
+            }
+            FindingKind::UnclearOscillation => "make the runs longer",
+            FindingKind::FirstOrderOscillation => {
+                "compute kinetic and potential energies at the same time; velocity Verlet has order 2"
             }
             FindingKind::ShortRun => "make the runs longer, or lower the horizon",
             FindingKind::DifferentStart => {

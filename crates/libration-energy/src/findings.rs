@@ -3,12 +3,11 @@
 use libration_report::notation::number;
 
 use crate::FindingKind as Kind;
-use crate::{
-    DriftCause, EnergyReport, EnergyTrace, Estimate, Finding, OscillationCause, PowerLaw, Run,
-    WalkCause,
-};
+use crate::interval::interval;
+use crate::oscillation_findings;
+use crate::{DriftCause, EnergyReport, EnergyTrace, Finding, PowerLaw, Run, WalkCause};
 
-/// Exponents of a drift rate below this are of first order.
+/// Exponents below this are of first order.
 const FIRST_ORDER: f64 = 1.5;
 /// Correlation of neighbouring samples below which a trace is thinned: a phase of 60° per sample, far beyond the accuracy of any step.
 const THINNED: f64 = 0.5;
@@ -19,7 +18,9 @@ const SINGLE: f64 = 6e-8;
 pub(crate) fn findings(report: &EnergyReport, traces: &[&EnergyTrace]) -> Vec<Finding> {
     let mut found = Vec::new();
     found.extend(drift(report));
-    found.extend(oscillation(report));
+    found.extend(oscillation_findings::step_independent(report));
+    found.extend(oscillation_findings::first_order(report));
+    found.extend(oscillation_findings::unclear(report));
     found.extend(walk(report));
     found.extend(short_run(report));
     found.extend(different_start(&report.runs));
@@ -27,12 +28,6 @@ pub(crate) fn findings(report: &EnergyReport, traces: &[&EnergyTrace]) -> Vec<Fi
     found.extend(coarse(report));
     found.sort_by_key(|finding| !finding.is_fault);
     found
-}
-
-/// A number with its interval.
-pub(crate) fn interval(estimate: Estimate, digits: usize) -> String {
-    let Estimate { value, low, high } = estimate;
-    format!("{} ({} to {})", number(value, digits), number(low, digits), number(high, digits))
 }
 
 fn exponent(law: Option<PowerLaw>) -> String {
@@ -90,24 +85,6 @@ fn precision(run: &Run) -> &'static str {
         true => "; all energies are numbers of single precision",
         false => "",
     }
-}
-
-fn oscillation(report: &EnergyReport) -> Option<Finding> {
-    if report.oscillation_cause != OscillationCause::StepIndependent {
-        return None;
-    }
-    let (first, last) = (report.runs.first()?, report.runs.last()?);
-    Some(Finding::new(
-        Kind::StepIndependentOscillation,
-        format!(
-            "the energy fluctuates by {} at dt = {} s and by {} at dt = {} s (standard deviations): {}",
-            interval(first.oscillation, 3),
-            number(first.dt, 4),
-            interval(last.oscillation, 3),
-            number(last.dt, 4),
-            "it is not the energy that the simulation conserves"
-        ),
-    ))
 }
 
 fn walk(report: &EnergyReport) -> Option<Finding> {

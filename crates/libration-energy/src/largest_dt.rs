@@ -114,7 +114,8 @@ fn oscillation(runs: &[Run], cause: OscillationCause, drift_cause: DriftCause) -
     let point = |run: &Run| {
         let Estimate { value, low, high } = run.oscillation;
         let size = |x: f64| match value > 0.0 {
-            true => run.largest_deviation * x / value,
+            // An infinite bound times a deviation of 0 is no number.
+            true => run.largest_deviation.max(f64::MIN_POSITIVE) * (x / value),
             false => run.largest_deviation,
         };
         (run.dt, Estimate { value: size(value), low: size(low), high: size(high) })

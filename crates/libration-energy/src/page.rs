@@ -6,7 +6,7 @@ use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 use libration_report::report;
 
-use crate::findings::interval;
+use crate::interval::interval;
 use crate::{EnergyReport, Estimate, PowerLaw, Run};
 
 /// The audit as an HTML page.

@@ -4,8 +4,9 @@ use core::f64::consts::PI;
 
 use serde::Serialize;
 
-use crate::batches::{Batches, MEAN_DISTANCE, SQUARED_WEIGHTS};
+use crate::batches::Batches;
 use crate::estimate::{NORMAL_95, NORMAL_FINDING, student};
+use crate::fluctuation::Fluctuation;
 use crate::local_level::LocalLevel;
 use crate::periods::Periods;
 use crate::single_precision::{is_single_precision, quantum};
@@ -41,7 +42,8 @@ pub struct Run {
     pub energy_at_start: f64,
     /// Largest absolute energy.
     pub largest_energy: f64,
-    /// Standard deviation of the fluctuation about the drift, without a random walk.
+    /// Standard deviation of the fluctuation about the drift, without a random walk. A run of fewer than about 50 memories has no
+    /// interval: 0 to infinity, `null` in JSON.
     pub oscillation: Estimate,
     /// Largest deviation from the drift.
     pub largest_deviation: f64,
@@ -92,7 +94,13 @@ impl Run {
         let unseen = (resolution + 24.0 / (PI * PI) * leakage) / duration;
         let width = |z: f64| student(z, trend.degrees_of_freedom) * trend.error + unseen;
         let possible = walk.as_ref().filter(|walk| walk.is_possible);
-        let fluctuation = Fluctuation::of(&batches, &residuals, possible);
+        let fluctuation = Fluctuation::of(
+            &batches,
+            &residuals,
+            possible,
+            duration,
+            trend.rate.abs() > width(NORMAL_FINDING),
+        );
         let spacing = trace.spacing();
         let run = Run {
             title: trace.title.clone(),
@@ -118,9 +126,9 @@ impl Run {
                 .windows(2)
                 .all(|pair| ((pair[1] - pair[0]) / spacing - 1.0).abs() < EQUIDISTANT),
         };
-        let known = [run.oscillation, run.drift_rate];
-        let is_finite = |x: &Estimate| [x.value, x.low, x.high].into_iter().all(f64::is_finite);
-        known.iter().all(is_finite).then_some(run)
+        let Estimate { value, low, high } = run.drift_rate;
+        let known = [run.oscillation.value, value, low, high];
+        known.into_iter().all(f64::is_finite).then_some(run)
     }
 
     /// Whether the drift is no noise, at the level of findings.
@@ -135,6 +143,11 @@ impl Run {
         self.oscillation.value > COARSE * stored
             && !(self.drifts() && self.oscillation.value < CURVED * drift)
             && !(self.is_single_precision && self.oscillation.value < SINGLE * self.largest_energy)
+    }
+
+    /// Whether the run is too short for an interval of its oscillation.
+    pub(crate) fn has_unclear_oscillation(&self) -> bool {
+        self.oscillation.high.is_infinite()
     }
 
     /// The walk, if it is present.
@@ -190,40 +203,4 @@ fn exponential(trace: &EnergyTrace, batches: &Batches, line: &LocalLevel) -> Opt
     let relative = |fit: &LocalLevel| fit.white + fit.walk.value;
     let is_better = relative(line) / (mean * mean) > BETTER * relative(&growth);
     (growth.change.abs() > GROWS && is_better).then_some(growth)
-}
-
-/// The fluctuation about a trend.
-struct Fluctuation {
-    oscillation: Estimate,
-    correlation_time: Option<f64>,
-}
-
-impl Fluctuation {
-    fn of(batches: &Batches, residuals: &[f64], walk: Option<&Walk>) -> Self {
-        let means = batches.means(residuals);
-        let count = means.len() as f64;
-        let spacing = batches.spacing();
-        // Of a walk only the part within a batch: half of the mean distance of its times, by the variance per second.
-        let (white, wander) = match walk {
-            Some(walk) => (0.0, 0.5 * MEAN_DISTANCE * spacing * walk.diffusion.value),
-            None => (means.iter().map(|mean| mean * mean).sum::<f64>() / (count - 2.0), 0.0),
-        };
-        let variances = batches.variances(residuals);
-        let mean = variances.iter().sum::<f64>() / count;
-        let scatter = variances.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>();
-        // The variance of the means has the error of a variance with as many degrees of freedom.
-        let error =
-            (scatter / (count - 1.0) / count).sqrt().hypot(white * (2.0 / (count - 2.0)).sqrt());
-        let half_width = student(NORMAL_95, means.len() - 1) * error;
-        let size = |variance: f64| (variance - wander + white).max(0.0).sqrt();
-        let oscillation = Estimate {
-            value: size(mean),
-            low: size(mean - half_width),
-            high: size(mean + half_width),
-        };
-        // A mean over a batch of length L has the variance 2 τ σ² Σw²/L.
-        let per_time = spacing / (2.0 * SQUARED_WEIGHTS * oscillation.value.powi(2));
-        let correlation_time = (walk.is_none() && per_time.is_finite()).then_some(white * per_time);
-        Fluctuation { oscillation, correlation_time }
-    }
 }

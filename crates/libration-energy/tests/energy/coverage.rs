@@ -1,8 +1,8 @@
 //! How often intervals hold, and how often a clean run is accused.
 
-use libration_energy::{EnergyTrace, Requirement, audit};
+use libration_energy::{EnergyTrace, Finding, FindingKind, Requirement, audit};
 
-use crate::programs::Noise;
+use crate::programs::{Noise, trace};
 
 /// Samples of a trace.
 const SAMPLES: usize = 8_000;
@@ -74,5 +74,46 @@ fn intervals_are_not_too_narrow_if_batches_are_only_seven_times_as_long_as_the_m
     // The shortest trace that allows: 8000/12/7. The noise then looks like a walk in some runs, which only widens their intervals.
     let Shares { covered, accused, .. } = measured(100.0);
     assert!(covered > 0.95 - TOLERANCE, "{covered}");
+    assert!(accused <= 1, "{accused}");
+}
+
+/// How often intervals of the oscillation hold, how many runs have one, and the pairs with a fault.
+fn oscillations(memory: f64) -> (f64, u32, usize) {
+    const PAIRS: usize = 100;
+    let mut noise = Noise(0x2545_f491_4f6c_dd1d);
+    let (mut covered, mut bounded, mut accused) = (0_u32, 0_u32, 0);
+    let factor = (-1.0 / memory).exp();
+    for _ in 0..PAIRS {
+        // Langevin's thermostat: a stationary energy of standard deviation 1, whatever the step.
+        let traces = [1.0, 0.5].map(|dt| {
+            let mut energy = noise.normal();
+            let next = || {
+                energy = factor * energy + (1.0 - factor * factor).sqrt() * noise.normal();
+                100.0 + energy
+            };
+            let trace = trace("memory", 1.0, SAMPLES, 1, next, 100.0);
+            EnergyTrace { dt: Some(dt), ..trace }
+        });
+        let Ok(report) = audit(&traces, Requirement::default()) else { panic!("no audit") };
+        for run in &report.runs {
+            covered += u32::from(run.oscillation.contains(1.0));
+            bounded += u32::from(run.oscillation.high.is_finite());
+        }
+        let is_rounding = |finding: &Finding| finding.kind == FindingKind::RoundingWalk;
+        accused += usize::from(report.findings.iter().any(is_rounding));
+    }
+    (f64::from(covered) / (2 * PAIRS) as f64, bounded, accused)
+}
+
+#[test]
+fn oscillations_with_a_long_memory_have_no_interval_and_those_with_a_short_one_have_one_that_holds()
+{
+    let (covered, bounded, accused) = oscillations(250.0);
+    // 32 memories of 200 runs.
+    assert!(covered > 0.9 && bounded < 20, "{covered} {bounded}");
+    assert!(accused <= 1, "{accused}");
+    let (covered, bounded, accused) = oscillations(20.0);
+    // 400 memories: three standard deviations of a share of 200 are 4.6 %.
+    assert!(covered > 0.95 - 0.046 && bounded > 180, "{covered} {bounded}");
     assert!(accused <= 1, "{accused}");
 }

@@ -91,6 +91,24 @@ fn explicit_euler_is_named_with_its_rate() {
 }
 
 #[test]
+fn velocities_half_a_step_off_are_an_oscillation_of_order_1() {
+    let traces = [0.08, 0.04, 0.02].map(|dt| {
+        let (mut q, mut v) = (1.0_f64, -0.5 * dt);
+        let start = 0.5 * (q * q + v * v);
+        let next = || {
+            q += dt * v;
+            v -= dt * q;
+            0.5 * (q * q + v * v)
+        };
+        trace("leapfrog", dt, (400.0 / dt).round() as usize, 1, next, start)
+    });
+    let report = audited(&traces);
+    let kinds: Vec<FindingKind> = report.findings.iter().map(|finding| finding.kind).collect();
+    assert_eq!(kinds, [FindingKind::FirstOrderOscillation]);
+    assert!(report.holds());
+}
+
+#[test]
 fn without_time_steps_there_is_no_largest_step() {
     let traces = [0.2, 0.1].map(|dt| {
         let whole = oscillator(verlet, dt, 300.0);

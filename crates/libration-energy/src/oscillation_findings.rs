@@ -1,0 +1,56 @@
+//! The findings about the oscillation.
+
+use libration_report::notation::number;
+
+use crate::FindingKind as Kind;
+use crate::interval::interval;
+use crate::{EnergyReport, Finding, OscillationCause};
+
+/// Exponents below this are of first order.
+const FIRST_ORDER: f64 = 1.5;
+
+pub(crate) fn step_independent(report: &EnergyReport) -> Option<Finding> {
+    if report.oscillation_cause != OscillationCause::StepIndependent {
+        return None;
+    }
+    let (first, last) = (report.runs.first()?, report.runs.last()?);
+    Some(Finding::new(
+        Kind::StepIndependentOscillation,
+        format!(
+            "the energy fluctuates by {} at dt = {} s and by {} at dt = {} s (standard deviations): {}",
+            interval(first.oscillation, 3),
+            number(first.dt, 4),
+            interval(last.oscillation, 3),
+            number(last.dt, 4),
+            "it is not the energy that the simulation conserves"
+        ),
+    ))
+}
+
+/// That the oscillation has order 1.
+pub(crate) fn first_order(report: &EnergyReport) -> Option<Finding> {
+    let law = report.oscillation_law.filter(|law| law.exponent.high < FIRST_ORDER)?;
+    (report.oscillation_cause == OscillationCause::Truncation).then(|| {
+        Finding::new(
+            Kind::FirstOrderOscillation,
+            format!(
+                "the energy oscillates with order {}, as of symplectic Euler, or of velocities half a step off",
+                interval(law.exponent, 3)
+            ),
+        )
+    })
+}
+
+/// That a run has no interval of its oscillation.
+pub(crate) fn unclear(report: &EnergyReport) -> Option<Finding> {
+    let run = report.runs.iter().find(|run| run.has_unclear_oscillation())?;
+    Some(Finding::new(
+        Kind::UnclearOscillation,
+        format!(
+            "the energy of `{}` fluctuates by about {} with a memory that is no small part of the {} s of the run: the size has no interval",
+            run.title,
+            number(run.oscillation.value, 2),
+            number(run.duration, 4)
+        ),
+    ))
+}
