@@ -2,7 +2,7 @@
 
 use libration_report::notation::{number, plural};
 
-use crate::interval::interval;
+use crate::interval::exponent;
 use crate::{DriftCause, EnergyReport, LargestDt, OscillationCause};
 
 /// The answer in a few sentences.
@@ -19,7 +19,7 @@ pub(crate) fn answer(report: &EnergyReport) -> String {
     };
     let order = match (report.oscillation_cause, report.oscillation_law) {
         (OscillationCause::Truncation, Some(law)) => {
-            format!(" The energy oscillates with order {}.", interval(law.exponent, 3))
+            format!(" The energy oscillates with order {}.", exponent(law.exponent))
         }
         (OscillationCause::Unclear, _) => {
             " How the oscillation depends on the step is unclear.".to_owned()
@@ -35,7 +35,7 @@ pub(crate) fn answer(report: &EnergyReport) -> String {
             )
         }
         (DriftCause::Truncation, Some(law)) => {
-            format!(" The drift rate has order {}.", interval(law.exponent, 3))
+            format!(" The drift rate has order {}.", exponent(law.exponent))
         }
         _ => String::new(),
     };

@@ -3,7 +3,7 @@
 use libration_report::notation::number;
 
 use crate::FindingKind as Kind;
-use crate::interval::interval;
+use crate::interval::{exponent, interval};
 use crate::oscillation_findings;
 use crate::{DriftCause, EnergyReport, EnergyTrace, Finding, PowerLaw, Run, WalkCause};
 
@@ -11,6 +11,8 @@ use crate::{DriftCause, EnergyReport, EnergyTrace, Finding, PowerLaw, Run, WalkC
 const FIRST_ORDER: f64 = 1.5;
 /// Correlation of neighbouring samples below which a trace is thinned: a phase of 60° per sample, far beyond the accuracy of any step.
 const THINNED: f64 = 0.5;
+/// Part of an advised duration from which on a run has it.
+const LONG: f64 = 1.05;
 /// Roundings of single precision by which a step with 1 to 10⁴ terms may change the energy.
 const SINGLE: f64 = 6e-8;
 
@@ -30,10 +32,10 @@ pub(crate) fn findings(report: &EnergyReport, traces: &[&EnergyTrace]) -> Vec<Fi
     found
 }
 
-fn exponent(law: Option<PowerLaw>) -> String {
+fn proportion(law: Option<PowerLaw>) -> String {
     law.map_or_else(
         || "the other runs resolve none".to_owned(),
-        |law| format!("it is proportional to dt^{}", interval(law.exponent, 3)),
+        |law| format!("it is proportional to dt^{}", exponent(law.exponent)),
     )
 }
 
@@ -55,7 +57,7 @@ fn drift(report: &EnergyReport) -> Option<Finding> {
         true => "; it grows or falls exponentially",
         false => "",
     };
-    let law = exponent(report.drift_law);
+    let law = proportion(report.drift_law);
     let is_first_order = report.drift_law.is_some_and(|law| law.exponent.value < FIRST_ORDER);
     let (kind, why) = match report.drift_cause {
         DriftCause::Unresolved => return None,
@@ -99,7 +101,7 @@ fn walk(report: &EnergyReport) -> Option<Finding> {
         number(per_step, 2),
         number(run.dt, 4)
     );
-    let law = exponent(report.walk_law);
+    let law = proportion(report.walk_law);
     let single = match per_step > 0.01 * SINGLE && per_step < 100.0 * SINGLE {
         true => "; single precision rounds by 6e-8",
         false => "",
@@ -127,14 +129,22 @@ fn short_run(report: &EnergyReport) -> Option<Finding> {
     let duration = largest.resolving_duration?;
     let run =
         report.runs.iter().rev().find(|run| Some(run.dt) <= largest.dt).or(report.runs.first())?;
+    let interval = format!(
+        "over {} s the interval of the drift, {} per second, is no small part of the tolerance",
+        number(largest.horizon, 4),
+        interval(run.drift_rate, 2)
+    );
+    if duration <= LONG * run.duration {
+        let help = "compare the largest deviation of the runs with the tolerance";
+        let text = format!(
+            "{interval}; the runs are as long as the horizon, and deviate by at most {}",
+            number(run.largest_deviation, 2)
+        );
+        return Some(Finding { help: help.to_owned(), ..Finding::new(Kind::ShortRun, text) });
+    }
     Some(Finding::new(
         Kind::ShortRun,
-        format!(
-            "over {} s the interval of the drift, {} per second, is no small part of the tolerance; runs of about {} s would resolve it",
-            number(largest.horizon, 4),
-            interval(run.drift_rate, 2),
-            number(duration, 2)
-        ),
+        format!("{interval}; runs of about {} s would resolve it", number(duration, 2)),
     ))
 }
 

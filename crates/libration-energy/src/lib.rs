@@ -32,6 +32,7 @@ pub use cause::{DriftCause, OscillationCause, WalkCause};
 pub use error::TraceError;
 pub use estimate::Estimate;
 pub use finding::{Finding, FindingKind};
+pub use interval::{exponent, interval};
 pub use largest_dt::{LargestDt, Requirement};
 pub use page::page;
 pub use power_law::PowerLaw;

@@ -3,7 +3,7 @@
 use libration_report::notation::number;
 
 use crate::FindingKind as Kind;
-use crate::interval::interval;
+use crate::interval::{exponent, interval};
 use crate::{EnergyReport, Finding, OscillationCause};
 
 /// Exponents below this are of first order.
@@ -35,7 +35,7 @@ pub(crate) fn first_order(report: &EnergyReport) -> Option<Finding> {
             Kind::FirstOrderOscillation,
             format!(
                 "the energy oscillates with order {}, as of symplectic Euler, or of velocities half a step off",
-                interval(law.exponent, 3)
+                exponent(law.exponent)
             ),
         )
     })

@@ -6,7 +6,7 @@ use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 use libration_report::report;
 
-use crate::interval::interval;
+use crate::interval::{exponent, interval};
 use crate::{EnergyReport, Estimate, PowerLaw, Run};
 
 /// The audit as an HTML page.
@@ -87,8 +87,8 @@ fn runs(page: &mut Page, audit: &EnergyReport) {
 fn laws(page: &mut Page, audit: &EnergyReport) {
     page.heading("How do they depend on the time step?");
     let mut table = Table::new("laws", &["part", "exponent of dt", "cause"]);
-    let exponent = |law: Option<PowerLaw>| {
-        law.map_or_else(|| Cell::absent("—"), |law| interval(law.exponent, 3).into())
+    let order = |law: Option<PowerLaw>| {
+        law.map_or_else(|| Cell::absent("—"), |law| exponent(law.exponent).into())
     };
     let rows = [
         ("oscillation", audit.oscillation_law, audit.oscillation_cause.text()),
@@ -96,7 +96,7 @@ fn laws(page: &mut Page, audit: &EnergyReport) {
         ("variance of the walk", audit.walk_law, audit.walk_cause.text()),
     ];
     for (part, law, cause) in rows {
-        table.push([part.into(), exponent(law), cause.into()]);
+        table.push([part.into(), order(law), cause.into()]);
     }
     page.table(&table, 3);
     page.figure(figure(audit));

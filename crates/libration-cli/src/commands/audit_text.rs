@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use libration_energy::{EnergyReport, Estimate, PowerLaw};
+use libration_energy::{EnergyReport, PowerLaw, exponent, interval};
 use libration_report::notation::number;
 
 /// Returns the report as text.
@@ -21,7 +21,7 @@ pub(super) fn describe(report: &EnergyReport) -> String {
     ];
     let _ = writeln!(text, "\n{:<22} {:<30} cause", "part", "exponent of dt");
     for (part, law, cause) in laws {
-        let _ = writeln!(text, "{part:<22} {:<30} {cause}", exponent(law));
+        let _ = writeln!(text, "{part:<22} {:<30} {cause}", order(law));
     }
     let _ = writeln!(text, "repeat with: {}", report.repeat_command);
     text
@@ -43,17 +43,13 @@ fn runs(report: &EnergyReport, text: &mut String) {
             run.title,
             number(run.dt, 4),
             number(run.duration, 4),
-            interval(run.oscillation),
-            interval(run.drift_rate),
+            interval(run.oscillation, 3),
+            interval(run.drift_rate, 3),
             walk
         );
     }
 }
 
-fn interval(Estimate { value, low, high }: Estimate) -> String {
-    format!("{} ({} to {})", number(value, 3), number(low, 3), number(high, 3))
-}
-
-fn exponent(law: Option<PowerLaw>) -> String {
-    law.map_or_else(|| "-".to_owned(), |law| interval(law.exponent))
+fn order(law: Option<PowerLaw>) -> String {
+    law.map_or_else(|| "-".to_owned(), |law| exponent(law.exponent))
 }

@@ -173,6 +173,11 @@ fn a_short_run_does_not_resolve_a_drift_and_says_which_run_does() {
     // Under noise with a short memory the interval falls as the power 3/2 of the duration: 4^(3/2) = 8.
     let duration = report.largest_dt.unwrap().resolving_duration.unwrap();
     assert!((duration / 80.0 - 1.0).abs() < 1e-6, "{duration}");
+    // Runs that are as long as the horizon are not told to be longer.
+    let strict =
+        audit(&traces, Requirement { tolerance: 0.3 * width(&first), horizon: None }).unwrap();
+    let texts: Vec<&str> = strict.findings.iter().map(|finding| finding.text.as_str()).collect();
+    assert!(texts.iter().any(|text| text.contains("runs are as long as the horizon")), "{texts:?}");
     let ratio =
         width(&first) / width(&audit(&particles(duration), Requirement::default()).unwrap());
     // Widths are estimates by at least 12 batches, with an error of 1/√(2·10) = 22 % each; three of both.
