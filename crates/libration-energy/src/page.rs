@@ -99,17 +99,22 @@ fn laws(page: &mut Page, audit: &EnergyReport) {
         table.push([part.into(), order(law), cause.into()]);
     }
     page.table(&table, 3);
-    page.figure(figure(audit));
+    if let Some(figure) = figure(audit) {
+        page.figure(figure);
+    }
 }
 
-/// Sizes against the time step.
-fn figure(audit: &EnergyReport) -> Figure {
+/// Sizes against the time step; a part that no run resolves has no panel.
+fn figure(audit: &EnergyReport) -> Option<Figure> {
     let sizes =
         |id: &str, label: &str, size: &dyn Fn(&Run) -> Option<Estimate>, law: Option<PowerLaw>| {
             let known = |run: &Run| {
                 size(run).map(|size| (run.dt, size.value.abs())).filter(|(_, size)| *size > 0.0)
             };
             let (dt, values): (Vec<f64>, Vec<f64>) = audit.runs.iter().filter_map(known).unzip();
+            if dt.is_empty() {
+                return None;
+            }
             let mut panel = Panel::new(Axis::log("dt").unit("s"), Axis::log(label)).title(id);
             if let Some(law) = law {
                 let predicted: Vec<f64> =
@@ -118,12 +123,18 @@ fn figure(audit: &EnergyReport) -> Figure {
                 panel =
                     panel.mark(Mark::line(dt.clone(), predicted).label(format!("order {order}")));
             }
-            panel.mark(Mark::points(dt, values).label("runs"))
+            Some(panel.mark(Mark::points(dt, values).label("runs")))
         };
-    Figure::new("energy-laws", "Oscillation and drift against the time step")
+    let oscillation = |run: &Run| Some(run.oscillation);
+    let drift = |run: &Run| run.drifts().then_some(run.drift_rate);
+    let panels = [
+        sizes("oscillation", "standard deviation", &oscillation, audit.oscillation_law),
+        sizes("drift", "rate per second", &drift, audit.drift_law),
+    ];
+    let panels: Vec<Panel> = panels.into_iter().flatten().collect();
+    let figure = Figure::new("energy-laws", "Oscillation and drift against the time step")
         .caption("A horizontal line is a part that no shorter step removes; one that falls to the right is rounding.")
         .description("Sizes of the oscillation and of the drift rate of each run against its time step, with the fitted power laws.")
-        .columns(2)
-        .panel(sizes("oscillation", "standard deviation", &|run| Some(run.oscillation), audit.oscillation_law))
-        .panel(sizes("drift", "rate per second", &|run| run.drifts().then_some(run.drift_rate), audit.drift_law))
+        .columns(panels.len().max(1));
+    (!panels.is_empty()).then(|| panels.into_iter().fold(figure, Figure::panel))
 }

@@ -135,7 +135,29 @@ fn log(low: f64, high: f64, most: f64) -> Vec<Tick> {
         }
     }
     ticks.sort_by(|a, b| a.value.total_cmp(&b.value));
+    if !named.is_empty() {
+        thin_labels(&mut ticks, LEAST_APART * decades / most);
+    }
     ticks
+}
+
+/// Part of the distance of ticks that labels of a logarithmic axis have at least.
+const LEAST_APART: f64 = 0.7;
+
+/// Removes labels that are closer than this many decades to one of a rounder number.
+fn thin_labels(ticks: &mut [Tick], apart: f64) {
+    let mut kept: Vec<f64> = Vec::new();
+    for digits in ["1", "25", "346789"] {
+        for tick in ticks.iter_mut().filter(|tick| !tick.label.is_empty()) {
+            let is_due = format!("{:e}", tick.value).starts_with(|digit| digits.contains(digit));
+            let place = tick.value.log10();
+            match kept.iter().any(|other| (other - place).abs() < apart) {
+                _ if !is_due => {}
+                true => tick.label.clear(),
+                false => kept.push(place),
+            }
+        }
+    }
 }
 
 /// A correctly rounded power of ten, also where `powi` underflows.
@@ -192,5 +214,10 @@ mod tests {
     fn a_part_of_a_decade_is_still_marked() {
         assert!(labels(Scale::Log, 0.1, 0.6).len() >= 2);
         assert_eq!(labels(Scale::Log, -1.2, 0.2), ["0.1", "0.2", "0.5", "1"]);
+        // 0.04 to 0.16 on a narrow axis: no room for each digit.
+        let narrow = ticks(&Span { scale: Scale::Log, low: -1.4, high: -0.8 }, 120.0, 62.0);
+        let narrow: Vec<&str> =
+            narrow.iter().map(|tick| &*tick.label).filter(|label| !label.is_empty()).collect();
+        assert_eq!(narrow, ["0.05", "0.1"]);
     }
 }
