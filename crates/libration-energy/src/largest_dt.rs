@@ -113,7 +113,8 @@ impl Law {
 fn oscillation(runs: &[Run], cause: OscillationCause, drift_cause: DriftCause) -> Law {
     let point = |run: &Run| {
         let Estimate { value, low, high } = run.oscillation;
-        let size = |x: f64| match value > 0.0 {
+        let is_rounding = run.has_unclear_oscillation() && !run.resolves_oscillation();
+        let size = |x: f64| match value > 0.0 && !is_rounding {
             // An infinite bound times a deviation of 0 is no number.
             true => run.largest_deviation.max(f64::MIN_POSITIVE) * (x / value),
             false => run.largest_deviation,

@@ -4,7 +4,7 @@ use libration_report::notation::number;
 
 use crate::FindingKind as Kind;
 use crate::interval::{exponent, interval};
-use crate::{EnergyReport, Finding, OscillationCause};
+use crate::{EnergyReport, Finding, OscillationCause, Run};
 
 /// Exponents below this are of first order.
 const FIRST_ORDER: f64 = 1.5;
@@ -43,7 +43,9 @@ pub(crate) fn first_order(report: &EnergyReport) -> Option<Finding> {
 
 /// That a run has no interval of its oscillation.
 pub(crate) fn unclear(report: &EnergyReport) -> Option<Finding> {
-    let run = report.runs.iter().find(|run| run.has_unclear_oscillation())?;
+    // What is below the digits of the energies is no oscillation.
+    let is_unclear = |run: &&Run| run.has_unclear_oscillation() && run.resolves_oscillation();
+    let run = report.runs.iter().find(is_unclear)?;
     Some(Finding::new(
         Kind::UnclearOscillation,
         format!(
