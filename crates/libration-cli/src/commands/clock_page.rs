@@ -7,7 +7,7 @@ use libration_report::record::{Cell, Table};
 use libration_report::report;
 
 use super::clock_report::ClockReport;
-use super::clock_text::{drift_words, law_words, matching_words, verdict_words};
+use super::clock_text::{CUT, drift_words, law_words, matching_words, verdict_words};
 use super::measure_jitter::{listed, time};
 
 /// Returns the report as an HTML page.
@@ -147,6 +147,12 @@ fn of_latency(page: &mut Page, latency: &Latency) {
         matching_words(latency),
         latency.clock
     ));
+    if let Some(interval) = latency.visible_up_to {
+        page.note(format!("Latencies above {} are not visible.", time(interval)));
+    }
+    if latency.is_cut {
+        page.note(format!("Warning: {CUT}."));
+    }
     let (mut x, mut y) = (Vec::new(), Vec::new());
     for (i, &(from, count)) in latency.histogram.iter().enumerate() {
         let next = latency

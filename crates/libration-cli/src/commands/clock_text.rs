@@ -8,6 +8,10 @@ use super::clock_effect::Effect;
 use super::clock_report::ClockReport;
 use super::measure_jitter::{self, listed, time};
 
+/// The warning about latencies that the interval of the earlier topic cuts.
+pub(super) const CUT: &str =
+    "latencies reach the limit or are uniform below it: true ones may be longer";
+
 /// Returns the report as text.
 pub(super) fn describe(report: &ClockReport) -> String {
     let mut text = format!("{}: {}\n", report.file, report.format);
@@ -200,8 +204,7 @@ fn latency(found: &Latency, text: &mut String) {
         line(text, "limit", format!("latencies above {} are not visible", time(interval)));
     }
     if found.is_cut {
-        let words = "latencies reach the limit or are uniform below it: true ones may be longer";
-        line(text, "warning", words);
+        line(text, "warning", CUT);
     }
     law(&found.law, "latencies", text);
     let most = found.histogram.iter().map(|bin| bin.1).max().unwrap_or(1).max(1);

@@ -130,7 +130,14 @@ pub(super) fn describe(head: &str, statistics: &Statistics) -> String {
         format!("{}, nominal {}", time(statistics.mean), time(statistics.period)),
     );
     let rms = statistics.jitter_rms;
-    line("jitter, relative rms", format!("{rms:.3e}, as in --jitter gaussian:{rms:.3}"));
+    // `--jitter` has independent intervals.
+    let is_independent = statistics.correlation.first().is_none_or(|first| first.abs() < 0.1);
+    let words = if is_independent {
+        format!("{rms:.3e}, as in --jitter gaussian:{rms:.3}")
+    } else {
+        format!("{rms:.3e}; intervals are correlated: replay the record (--jitter-file)")
+    };
+    line("jitter, relative rms", words);
     if statistics.gaps > 0 && statistics.heavy_tailed() {
         line("", "a few long gaps dominate the rms; help: replay the time stamps instead".into());
     }
