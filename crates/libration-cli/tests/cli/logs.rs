@@ -130,7 +130,7 @@ fn wrong_input_names_the_option_the_value_and_what_is_allowed() {
     fs::write(&config, LOOP).unwrap();
     let noise = folder.path().join("noise");
     fs::write(&noise, [0_u8, 1, 2, 3]).unwrap();
-    let cases: [(&[&str], &str); 8] = [
+    let cases: [(&[&str], &str); 10] = [
         (
             &["clock", &bag, "--topic", "/cmds"],
             "(--topic): the file has no topic `/cmds`; expected one of `/joint_states`, `/cmd`",
@@ -144,6 +144,14 @@ fn wrong_input_names_the_option_the_value_and_what_is_allowed() {
         (
             &["clock", &bag, "--config", config.to_str().unwrap()],
             "expected --topic with one of `/joint_states`",
+        ),
+        (
+            &["clock", &bag, "--topic", "/cmd", "--against", "/cmd"],
+            "(--against): both topics are `/cmd`",
+        ),
+        (
+            &["advise", "--config", config.to_str().unwrap(), "--topic", "/cmd"],
+            "--topic is `/cmd` without a log",
         ),
         (&["clock", noise.to_str().unwrap()], "the format is unknown; expected MCAP"),
         (
