@@ -64,15 +64,20 @@ impl LatencyPreset {
         })
     }
 
-    /// The latency in s of a value such as `preset:usb-frame`; none if the value is not the name of a preset.
+    /// The latency in s of a value such as `preset:usb-frame`, or the sum of several, `preset:usb-frame+preset:px4-gyro`; none if the value
+    /// does not begin with a preset.
     ///
     /// # Errors
     /// As [`LatencyPreset::find`].
     pub fn parse(value: &str) -> Result<Option<f64>, String> {
-        match value.trim().strip_prefix(PREFIX) {
-            None => Ok(None),
-            Some(name) => LatencyPreset::find(name).map(|preset| Some(preset.delay.seconds())),
+        if !value.trim().starts_with(PREFIX) {
+            return Ok(None);
         }
+        let seconds = |part: &str| match part.trim().strip_prefix(PREFIX) {
+            Some(name) => LatencyPreset::find(name).map(|preset| preset.delay.seconds()),
+            None => Err(format!("`{part}` is no preset; expected {PREFIX}NAME+{PREFIX}NAME")),
+        };
+        value.split('+').map(seconds).sum::<Result<f64, String>>().map(Some)
     }
 
     /// The latency in ms, with four digits.
@@ -132,6 +137,9 @@ mod tests {
     fn an_unknown_preset_is_refused_with_the_nearest_name() {
         assert_eq!(LatencyPreset::parse("preset:usb-frame"), Ok(Some(0.001)));
         assert_eq!(LatencyPreset::parse("0.001"), Ok(None));
+        assert_eq!(LatencyPreset::parse("preset:usb-frame+preset:franka-fci"), Ok(Some(0.002)));
+        let error = LatencyPreset::parse("preset:usb-frame+0.001").unwrap_err();
+        assert!(error.contains("`0.001` is no preset"), "{error}");
         let error = LatencyPreset::parse("preset:px4-gyr").unwrap_err();
         assert!(error.contains("did you mean `px4-gyro`?"), "{error}");
     }
