@@ -46,7 +46,7 @@ pub(crate) fn warnings(found: &Identification, context: &Context<'_>) -> Vec<Str
     warnings.extend(other_models(found));
     if let Some(lag) = longest_lag.filter(|lag| found.depends_on_command && *lag > found.interval) {
         warnings.push(format!(
-            "the command does not tell this dead time from a shorter one with a lag: lags up to {} are not excluded; help: random steps",
+            "a shorter dead time with a lag fits as well: lags up to {} are not excluded; help: random steps",
             seconds(lag)
         ));
     }

@@ -69,7 +69,7 @@ fn a_log_is_identified_and_its_loop_is_advised() {
     // The errors have a standard deviation of 2.3 mV/V, and steps of a quarter in the mean: 0.2 ms would be four standard errors.
     assert!((parameter("dead_time") - 0.025).abs() < 3e-4, "{}", parameter("dead_time"));
     assert!((parameter("lag") - 0.06).abs() < 2e-3, "{}", parameter("lag"));
-    assert!(fs::read_to_string(&page).unwrap().contains("Which numbers has the loop?"));
+    assert!(fs::read_to_string(&page).unwrap().contains("What are the parameters?"));
     libration(&["advise", "--config", saved.to_str().unwrap(), "-q"])
         .success()
         .stdout(predicate::str::contains("The loop is stable"));
