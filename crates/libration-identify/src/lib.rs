@@ -54,4 +54,4 @@ pub use request::{IdentifyError, MOST_BOOTSTRAPS, MOST_RESPONSES, Request};
 pub use residuals::{CONTRADICTION, ResidualTests};
 pub use response::{KnownPlant, ParameterName, ResponseKind};
 pub use simulation::SimulatedLoop;
-pub use summary::{interval, seconds, with_unit};
+pub use summary::{interval, with_unit};

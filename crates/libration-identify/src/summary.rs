@@ -1,21 +1,14 @@
 //! An identification in sentences.
 
-use libration_report::notation::number;
+use libration_report::notation::{self, number};
 
 use crate::identification::Identification;
 use crate::parameters::Estimated;
 use crate::response::ResponseKind;
 
-/// A time with three digits.
-pub fn seconds(time: f64) -> String {
-    let size = time.abs();
-    match size {
-        0.0 => "0 s".to_owned(),
-        s if s >= 1.0 => format!("{} s", number(time, 4)),
-        s if s >= 1e-3 => format!("{} ms", number(time * 1e3, 4)),
-        s if s >= 1e-6 => format!("{} µs", number(time * 1e6, 4)),
-        _ => format!("{} ns", number(time * 1e9, 4)),
-    }
+/// A time with four digits.
+pub(crate) fn seconds(time: f64) -> String {
+    notation::seconds(time, 4)
 }
 
 /// A value with its unit.

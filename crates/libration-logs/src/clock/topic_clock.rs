@@ -28,7 +28,7 @@ pub struct TopicClock {
     pub statistics: Statistics,
     /// The law of the intervals.
     pub law: LawFit,
-    /// The law of the lateness behind a grid of deadlines; none unless neighbouring intervals show that there is one.
+    /// The law of the lateness behind a grid of deadlines; none unless neighbouring intervals show a grid.
     pub lateness: Option<LawFit>,
     /// The drift of the log clock against the header clock.
     pub log_against_header: Option<Drift>,
@@ -124,7 +124,7 @@ fn check_order(stamps: &[i64], topic: &str, is_table: bool) -> Result<(), LogErr
 const GRID: f64 = -0.25;
 
 /// By how much each stamp is behind the line of least squares through all stamps over their number on the grid, which counts gaps; none
-/// if neighbouring intervals do not show that there is a grid.
+/// if neighbouring intervals show no grid.
 fn lateness(stamps: &[f64], intervals: &[f64]) -> Option<Vec<f64>> {
     let mut sorted = intervals.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
