@@ -91,6 +91,18 @@ impl<'a> ArrivalSearch<'a> {
             coordinates.extend([gain, load, noise]);
             coordinates
         };
+        // Arrivals that vary look like a longer lag: of independent delays variances add up, and that of a lag is its square.
+        let apart = |longer: f64, share: f64| {
+            let mut shape = shape.clone();
+            let lag = shape.get(1).copied().unwrap_or(0.0);
+            let left =
+                (lag * lag - share * (1.0 - share) * longer * longer).max(0.04 * lag * lag).sqrt();
+            shape[0] = (shape[0] + lag - left - share * longer).max(0.0);
+            shape.iter_mut().skip(1).take(1).for_each(|lag| *lag = left);
+            let mut coordinates = model.free(&shape);
+            coordinates.extend([gain, load, -0.7]);
+            coordinates
+        };
         let logit = |share: f64| (share / (1.0 - share)).ln();
         let starts = match law {
             ArrivalLaw::Certain => vec![common(0.0, 0.0)],
@@ -108,11 +120,13 @@ impl<'a> ArrivalSearch<'a> {
                 })
                 .map(|(loss, earlier)| [common(earlier, -0.7), vec![logit(loss)]].concat())
                 .collect(),
-            ArrivalLaw::TwoDelays => [1.0, 2.0, 4.0]
+            ArrivalLaw::TwoDelays => [0.5, 1.0, 2.0, 4.0]
                 .iter()
                 .flat_map(|&periods| [0.1, 0.3, 0.6].map(|share| (periods * period, share)))
-                .map(|(longer, share): (f64, f64)| {
-                    [common(share * longer, -0.7), vec![longer, logit(share)]].concat()
+                .flat_map(|(longer, share): (f64, f64)| {
+                    let own = vec![longer, logit(share)];
+                    [common(share * longer, -0.7), apart(longer, share)]
+                        .map(|start| [start, own.clone()].concat())
                 })
                 .collect(),
         };

@@ -27,7 +27,7 @@ const STARTS: usize = 3;
 pub(crate) const TOLERANCE: f64 = 1e-7;
 
 impl Estimate {
-    /// The fit with white noise, from a search over the whole range of the parameters.
+    /// The fit from a search over the whole range of the parameters, with the noise at its start.
     pub(crate) fn search(model: &Model, recording: &Recording) -> Option<Estimate> {
         let window = model.window(recording);
         let first = busiest(recording, window.first, SEARCHED);
@@ -47,8 +47,7 @@ impl Estimate {
             for i in 0..=counts {
                 let mut shape = shape.clone();
                 shape[0] = grid * i as f64;
-                let coordinates = model.free(&shape);
-                let cost = model.cost(searched, &coordinates);
+                let cost = model.cost(searched, &model.start(&shape));
                 tried.push((cost, shape));
                 if model.known[0].is_some() {
                     break;
@@ -71,8 +70,9 @@ impl Estimate {
         }
         let fits = starts.iter().map(|shape| {
             let mut cost = |coordinates: &[f64]| model.cost(searched, coordinates);
-            let scales = model.shape_scales(shape, 0.5 * grid);
-            simplex(&mut cost, &model.free(shape), &scales, 1e-3)
+            let mut scales = model.shape_scales(shape, 0.5 * grid);
+            scales.extend(model.noise_start().1);
+            simplex(&mut cost, &model.start(shape), &scales, 1e-3)
         });
         let best = fits.min_by(|a, b| a.value.total_cmp(&b.value))?;
         Self::from_start(model, recording, &best.point, 0.2 * grid)
@@ -121,9 +121,7 @@ impl Estimate {
 
     /// The fit of the same response with another noise, from this one.
     pub(crate) fn extended(&self, model: &Model, recording: &Recording) -> Option<Estimate> {
-        let mut start = model.free(&self.point.shape);
-        start.extend(model.noise_start().0);
-        Self::from_start(model, recording, &start, 0.2 * model.interval)
+        Self::from_start(model, recording, &model.start(&self.point.shape), 0.2 * model.interval)
     }
 
     /// The number of estimated numbers: coordinates, coefficients, and the variance of the noise.

@@ -20,6 +20,8 @@ use crate::{summary, warnings};
 
 /// Most responses of a fit: of a longer recording, those during which the command changes most.
 const MOST_USED: usize = 10_000;
+/// The longest lead of a response that is looked for, in intervals of the responses.
+const LONGEST_LEAD: f64 = 20.0;
 /// Most responses of a fit over time.
 const MOST_SHOWN: usize = 4000;
 
@@ -98,7 +100,8 @@ pub fn identify(
         "delay" => lag.and_then(|lag| longest_lag(&lag, recording)),
         _ => None,
     };
-    let context = warnings::Context { estimate: &estimate, recording, all, longest_lag };
+    let lead = lead(&estimate, recording);
+    let context = warnings::Context { estimate: &estimate, recording, all, longest_lag, lead };
     found.warnings = warnings::warnings(&found, &context);
     found.delay_range = found.dead_times();
     found.answer = summary::answer(&found);
@@ -109,6 +112,25 @@ pub fn identify(
 fn longest_lag(fit: &Estimate, recording: &Recording) -> Option<f64> {
     let place = fit.coordinates.len().checked_sub(1).filter(|_| fit.model.known[1].is_none())?;
     profile_interval(fit, recording, Functional::Coordinate(place), None).high
+}
+
+/// By how much the response leads the command, in s, if a dead time of zero is not early enough.
+fn lead(estimate: &Estimate, recording: &Recording) -> Option<f64> {
+    let model = &estimate.model;
+    let is_at_zero = estimate.point.shape[0] < 0.02 * model.interval;
+    if !is_at_zero || model.known[0].is_some() {
+        return None;
+    }
+    // The same responses, logged later: a lead is then a dead time that is shorter than this.
+    let later = (LONGEST_LEAD * model.interval).min(0.5 * model.longest);
+    let shifted = Recording {
+        response_times: recording.response_times.iter().map(|time| time + later).collect(),
+        ..recording.clone()
+    };
+    let fit = Estimate::search(model, &shifted)?;
+    let interval = profile_interval(&fit, &shifted, Functional::Coordinate(0), None);
+    let lead = later - fit.point.shape[0];
+    interval.high.filter(|&high| high < later - 0.1 * model.interval).map(|_| lead)
 }
 
 /// The matrices of the plant behind the dead time, with its gain.

@@ -18,6 +18,9 @@ pub(crate) struct Information {
 /// Central differences are taken over this part of an interval.
 const DIFFERENCE: f64 = 1e-3;
 
+/// Coordinates of noise are logarithms: with less information than this its part in the recording is nothing.
+const LEAST_OF_NOISE: f64 = 1e-6;
+
 /// The covariance of the estimates; `None` if the information has no inverse: something cannot be told at all.
 ///
 /// With independent errors `ν` of variance `v`: `Σ ∂ν∂νᵀ/v + ½ Σ ∂ln v ∂ln vᵀ` (Fisher's information of Gaussian variables; B. Porat,
@@ -93,7 +96,9 @@ pub(crate) fn information(estimate: &Estimate, recording: &Recording) -> Option<
         inner(&rows[i].0, &rows[j].0) / variance + 0.5 * inner(&rows[i].1, &rows[j].1)
     });
     // Of what the likelihood does not depend on, as of a dead time between two samples, there is no error; the others have theirs.
-    let kept: Vec<usize> = (0..n).filter(|&i| full[(i, i)] > 0.0).collect();
+    let noises = model.free_shape()..model.coordinates();
+    let least = |i: usize| if noises.contains(&i) { LEAST_OF_NOISE } else { 0.0 };
+    let kept: Vec<usize> = (0..n).filter(|&i| full[(i, i)] > least(i)).collect();
     let part = Matrix::from_fn(kept.len(), kept.len(), |i, j| full[(kept[i], kept[j])]);
     let inverse = inverse(&part)?;
     let mut covariance = Matrix::from_fn(n - 1, n - 1, |_, _| f64::NAN);

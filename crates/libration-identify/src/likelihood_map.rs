@@ -14,6 +14,9 @@ pub struct LikelihoodMap {
     pub seconds: Vec<f64>,
     /// `2 (ln L_max − ln L)`, a row for each value of the second parameter.
     pub deficits: Vec<Vec<f64>>,
+    /// Whether other parameters, such as a damping ratio or the colour of the noise, stay at their estimates. Gain, load, initial state and
+    /// the variance of the noise never do.
+    pub is_slice: bool,
 }
 
 /// Points in each direction.
@@ -41,5 +44,5 @@ pub(crate) fn likelihood_map(
             dead_times.iter().map(at).collect()
         })
         .collect();
-    LikelihoodMap { dead_times, seconds, deficits }
+    LikelihoodMap { dead_times, seconds, deficits, is_slice: estimate.coordinates.len() > 2 }
 }

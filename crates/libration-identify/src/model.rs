@@ -61,6 +61,11 @@ impl Model {
         }
     }
 
+    /// The coordinates of a response at which a search begins.
+    pub(crate) fn start(&self, shape: &[f64]) -> Vec<f64> {
+        [self.free(shape), self.noise_start().0].concat()
+    }
+
     /// First steps of a search in the free parameters of the response, around `shape`.
     pub(crate) fn shape_scales(&self, shape: &[f64], grid: f64) -> Vec<f64> {
         let all =

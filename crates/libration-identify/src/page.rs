@@ -104,7 +104,10 @@ fn told_apart(page: &mut Page, found: &Identification) {
     let panel = Panel::new(Axis::linear("dead time").unit("ms"), axis)
         .mark(Mark::raster(grid.clone(), Colors::new("2 (ln L_max − ln L)").range(0.0, 30.0)))
         // Of two parameters together: the quantile of chi squared with two degrees of freedom.
-        .mark(Mark::contour(grid, [5.991]).label("95 % region"))
+        .mark(Mark::contour(grid, [5.991]).label(match map.is_slice {
+            true => "95 % region, other parameters at their estimates",
+            false => "95 % region",
+        }))
         .mark(
             Mark::points([found.parameters[0].value * 1e3], [second.value * scale])
                 .label("estimate"),

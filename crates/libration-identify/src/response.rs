@@ -1,6 +1,6 @@
 //! What answers a command: a dead time and a plant of unit gain.
 
-use libration::linear::{LinearPlant, Matrix};
+use libration::linear::{LinearPlant, Matrix, eigenvalues};
 use serde::Serialize;
 
 /// The form of a response to a command `u`. Each begins after a dead time `τ`.
@@ -103,6 +103,13 @@ impl ResponseKind {
             }
             ResponseKind::SecondOrder => &[DEAD_TIME, ROOT_TIME, DAMPING],
         }
+    }
+
+    /// Whether it is a plant that grows by more than `e^10` within `span` seconds, so that none of its states is predicted without feedback.
+    pub(crate) fn is_unstable(&self, span: f64) -> bool {
+        let ResponseKind::Plant(plant) = self else { return false };
+        let rates = eigenvalues(&plant.a).unwrap_or_default();
+        rates.iter().any(|rate| rate.re * span > 10.0)
     }
 
     /// The plant behind the dead time, of unit gain, with the parameters behind the dead time.

@@ -49,19 +49,19 @@ pub(crate) fn select(
         .flat_map(|response| request.holds.iter().map(|&hold| (response.clone(), hold)))
         .map(|(response, hold)| model(response, hold, recording, request, largest))
         .collect();
-    let white = work.sweep("responses", &models, |model| {
+    let searched = work.sweep("responses", &models, |model| {
         Ok::<_, IdentifyError>(Estimate::search(model, recording))
     })?;
-    let mut white: Vec<Estimate> = white.into_iter().flatten().collect();
-    by_criterion(&mut white);
+    let mut searched: Vec<Estimate> = searched.into_iter().flatten().collect();
+    by_criterion(&mut searched);
     // Receivers hold commands. Lines between them, half a period earlier, imitate a held command so well that any defect of a log makes
     // them the better model: they are chosen only on request.
     let is_asked =
         |fit: &&Estimate| !request.holds.contains(&Hold::Zero) || fit.model.hold == Hold::Zero;
-    let lines: Vec<Estimate> = white.iter().filter(|fit| !is_asked(fit)).cloned().collect();
-    white.retain(|fit| is_asked(&fit));
-    let lag = white.iter().find(|fit| fit.model.response.name() == "lag").cloned();
-    let mut fits = with_noises(&white, recording, request, work)?;
+    let lines: Vec<Estimate> = searched.iter().filter(|fit| !is_asked(fit)).cloned().collect();
+    searched.retain(|fit| is_asked(&fit));
+    let lag = searched.iter().find(|fit| fit.model.response.name() == "lag").cloned();
+    let mut fits = with_noises(&searched, recording, request, work)?;
     let best = fits.first().ok_or(IdentifyError::NoFit)?;
     let depends = depends_on_command(best, recording);
     let is_suspect =
@@ -70,7 +70,7 @@ pub(crate) fn select(
     // A command that is missing from the log looks like one that is lost.
     if request.arrivals && is_suspect && depends && recording.missing_commands() == 0 {
         let held: Vec<&Estimate> =
-            white.iter().filter(|fit| fit.model.hold == Hold::Zero).take(HELD).collect();
+            searched.iter().filter(|fit| fit.model.hold == Hold::Zero).take(HELD).collect();
         random = with_arrivals(&held, recording, work)?;
     }
     by_criterion(&mut fits);
@@ -122,9 +122,15 @@ fn model(
     };
     Model {
         known: response.parameters().iter().map(|parameter| known(parameter.key)).collect(),
+        // Without a disturbance, errors of an unstable plant would have grown beyond all bounds, and nothing would follow from its responses.
+        noise: match request.noises.contains(&NoiseKind::Disturbance)
+            && response.is_unstable(recording.span())
+        {
+            true => NoiseKind::Disturbance,
+            false => NoiseKind::White,
+        },
         response,
         hold,
-        noise: NoiseKind::White,
         gain: request.gain,
         longest: largest,
         interval: recording.interval(),
@@ -133,16 +139,17 @@ fn model(
 
 /// The fits with each kind of noise, the best first; of the best forms of response only, except with white noise.
 fn with_noises(
-    white: &[Estimate],
+    searched: &[Estimate],
     recording: &Recording,
     request: &Request,
     work: &Work<'_>,
 ) -> Result<Vec<Estimate>, IdentifyError> {
     let others = request.noises.iter().filter(|&&noise| noise != NoiseKind::White);
     let jobs: Vec<(&Estimate, NoiseKind)> = others
-        .flat_map(|&noise| white.iter().take(PURSUED).map(move |fit| (fit, noise)))
+        .flat_map(|&noise| searched.iter().take(PURSUED).map(move |fit| (fit, noise)))
         // A disturbance of a plant without states is an error of the measurement.
         .filter(|(fit, noise)| *noise != NoiseKind::Disturbance || fit.has_states())
+        .filter(|(fit, _)| fit.model.noise == NoiseKind::White)
         .collect();
     let found = work.sweep("noise", &jobs, |&(fit, noise)| {
         let model = Model { noise, ..fit.model.clone() };
@@ -150,7 +157,7 @@ fn with_noises(
     })?;
     let mut fits: Vec<Estimate> = found.into_iter().flatten().collect();
     if request.noises.contains(&NoiseKind::White) || fits.is_empty() {
-        fits.extend(white.iter().cloned());
+        fits.extend(searched.iter().cloned());
     }
     by_criterion(&mut fits);
     Ok(fits)

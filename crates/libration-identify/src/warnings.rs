@@ -19,6 +19,8 @@ pub(crate) struct Context<'a> {
     pub(crate) all: usize,
     /// The longest lag that a dead time alone does not exclude, in s.
     pub(crate) longest_lag: Option<f64>,
+    /// By how much the response leads the command, in s.
+    pub(crate) lead: Option<f64>,
 }
 
 /// Models whose Bayesian criterion is larger by less than this may be the right ones.
@@ -26,7 +28,7 @@ const NEARLY_AS_GOOD: f64 = 20.0;
 
 /// Sentences, the gravest first.
 pub(crate) fn warnings(found: &Identification, context: &Context<'_>) -> Vec<String> {
-    let &Context { estimate, recording, all, longest_lag } = context;
+    let &Context { estimate, recording, all, longest_lag, lead } = context;
     let mut warnings = Vec::new();
     if !found.depends_on_command {
         warnings.push("the response does not depend on this command".to_owned());
@@ -35,6 +37,12 @@ pub(crate) fn warnings(found: &Identification, context: &Context<'_>) -> Vec<Str
         warnings.push(
             "the command is a function of the response: these are the numbers of the controller, not those of the plant; help: excite the reference".to_owned(),
         );
+    }
+    if let Some(lead) = lead {
+        warnings.push(format!(
+            "the response leads the command by {}: the clocks of both differ, a command is logged after it acts, or the signals are exchanged; help: `libration clock` compares the topics of a log",
+            seconds(lead)
+        ));
     }
     warnings.extend(periodic(recording, found.largest_dead_time));
     let missing = recording.missing_commands();

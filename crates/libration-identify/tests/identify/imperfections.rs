@@ -1,6 +1,6 @@
 //! Commands that are lost or late at random.
 
-use libration_identify::{Recording, Request, ResponseKind};
+use libration_identify::{Hold, Identification, Recording, Request, ResponseKind};
 
 use crate::loops::{Draws, commands, identified, lag_response, quick, value};
 
@@ -61,4 +61,27 @@ fn two_dead_times_are_told_apart_if_the_later_one_is_within_a_period() {
     assert!((value(&found, "second_dead_time") - 0.0294).abs() < 3e-4, "{}", found.answer);
     // 0.4 ± 0.031; four of these.
     assert!((value(&found, "second_share") - 0.4).abs() < 0.13, "{}", found.answer);
+}
+
+#[test]
+fn a_response_that_leads_its_command_is_named() {
+    let mut draws = Draws(31);
+    let (times, commands) = commands(600, 3, &mut draws);
+    // The command is logged 25 ms after it acts.
+    let arrivals: Vec<(f64, f64)> =
+        times.iter().zip(&commands).map(|(t, u)| (t - 0.025, *u)).collect();
+    let mut responses = lag_response(&arrivals, 0.02, 1.0, &times);
+    responses.iter_mut().for_each(|y| *y += 0.01 * draws.normal());
+    let recording = Recording::new(&times, &commands, &times, &responses).expect("valid");
+    let request = Request { arrivals: false, holds: vec![Hold::Zero], ..lag_only() };
+    let found = identified(&recording, &request);
+    let leads = |found: &Identification| {
+        found.warnings.iter().any(|warning| warning.contains("leads the command by 25"))
+    };
+    assert!(leads(&found), "{:?}", found.warnings);
+    // Without the error of the clock the dead time is zero, and nothing leads.
+    let late: Vec<f64> = times.iter().map(|time| time + 0.025).collect();
+    let recording = Recording::new(&times, &commands, &late, &responses).expect("valid");
+    let found = identified(&recording, &request);
+    assert!(!found.warnings.iter().any(|warning| warning.contains("leads")), "{found:?}");
 }

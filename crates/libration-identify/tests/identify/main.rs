@@ -5,3 +5,4 @@ mod errors;
 mod imperfections;
 mod loops;
 mod robustness;
+mod unstable;
