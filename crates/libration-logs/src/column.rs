@@ -36,6 +36,17 @@ pub(crate) struct Column {
     /// The number of units of time per second, if neither the file nor the name has it.
     pub(crate) default_per_second: Option<f64>,
     pub(crate) values: Values,
+    /// The first line of a text without a finite value.
+    pub(crate) gap: Option<Gap>,
+}
+
+/// A line of a text without a finite value of a column.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Gap {
+    /// The number of the line, from 1.
+    pub(crate) line: usize,
+    /// The beginning of the line.
+    pub(crate) text: String,
 }
 
 /// Times, each with the number of its row.
@@ -55,6 +66,7 @@ impl Column {
             default_per_second: None,
             name,
             values,
+            gap: None,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Columns while a text is read.
 
-use crate::column::{MISSING, Values, missing};
+use crate::column::{Column, Gap, MISSING, Values, missing};
 use crate::iso_8601::parse_iso_8601;
 
 /// The text of a number in a cell; `candump -L` writes parentheses.
@@ -17,11 +17,12 @@ pub(crate) fn number(cell: &str) -> Option<f64> {
 pub(crate) struct ColumnBuilder {
     values: Values,
     numbers: usize,
+    gap: Option<Gap>,
 }
 
 impl Default for ColumnBuilder {
     fn default() -> Self {
-        ColumnBuilder { values: Values::Whole(Vec::new()), numbers: 0 }
+        ColumnBuilder { values: Values::Whole(Vec::new()), numbers: 0, gap: None }
     }
 }
 
@@ -31,13 +32,24 @@ impl ColumnBuilder {
         self.numbers
     }
 
-    /// The values.
-    pub(crate) fn into_values(self) -> Values {
-        self.values
+    /// The column of these values.
+    pub(crate) fn into_column(self, name: String) -> Column {
+        Column { gap: self.gap, ..Column::new(name, self.values) }
     }
 
-    /// Appends the number in a cell, or none.
-    pub(crate) fn push(&mut self, cell: &str) {
+    /// Keeps the first line without a finite value.
+    pub(crate) fn note_gap(&mut self, line: usize, text: &str) {
+        self.gap.get_or_insert_with(|| Gap { line, text: text.trim().chars().take(40).collect() });
+    }
+
+    /// Appends the number in a cell, or none; whether there is a finite one.
+    pub(crate) fn push(&mut self, cell: &str) -> bool {
+        let before = self.numbers;
+        self.append(cell);
+        self.numbers > before && number(cell).is_none_or(f64::is_finite)
+    }
+
+    fn append(&mut self, cell: &str) {
         let bare = cell.strip_prefix('(').and_then(|cell| cell.strip_suffix(')')).unwrap_or(cell);
         let Some(value) = number(bare) else {
             return match parse_iso_8601(bare) {

@@ -11,7 +11,8 @@ use crate::error::LogError;
 use crate::input::Input;
 use crate::read_options::ReadOptions;
 use crate::table::Table;
-use crate::text_line::read_line;
+use crate::text_encoding;
+use crate::text_line::TextLines;
 
 /// The interval of the first thread in ns, unless the output has it: the default of the program.
 const INTERVAL: i64 = 1_000_000;
@@ -29,12 +30,12 @@ pub(crate) enum Output {
 
 impl Output {
     /// Recognises an output; none in other texts.
-    pub(crate) fn recognise(prefix: &[u8]) -> Option<Self> {
-        let text = String::from_utf8_lossy(prefix);
-        if text.lines().any(|line| line.starts_with("# Histogram")) {
+    pub(crate) fn recognise(prefix: &str) -> Option<Self> {
+        let lines = || prefix.split(['\n', '\r']);
+        if lines().any(|line| line.starts_with("# Histogram")) {
             return Some(Output::Histogram);
         }
-        let wakeups = text.lines().filter(|line| wakeup(line).is_some()).count();
+        let wakeups = lines().filter(|line| wakeup(line).is_some()).count();
         (wakeups >= 3).then_some(Output::Verbose)
     }
 }
@@ -50,16 +51,17 @@ fn wakeup(line: &str) -> Option<(usize, i64, i64)> {
 /// Reads the output.
 pub(crate) fn open(input: &Input, output: Output) -> Result<Table, LogError> {
     match output {
-        Output::Verbose => verbose(input.reader()?),
-        Output::Histogram => histogram(input.reader()?),
+        Output::Verbose => verbose(text_encoding::reader(input)?),
+        Output::Histogram => histogram(text_encoding::reader(input)?),
     }
 }
 
 /// The wake-ups of each thread, as columns of stamps and of lateness.
-fn verbose(mut input: impl BufRead) -> Result<Table, LogError> {
+fn verbose(input: impl BufRead) -> Result<Table, LogError> {
     let mut threads: BTreeMap<usize, [Vec<i64>; 2]> = BTreeMap::new();
     let (mut interval, mut line, mut all) = (None, String::new(), 0);
-    while read_line(&mut input, &mut line)? {
+    let mut lines = TextLines::new(input);
+    while lines.read(&mut line)? {
         if let Some((_, rest)) = line.split_once(" I:") {
             let number = rest.split_whitespace().next().and_then(|text| text.parse::<i64>().ok());
             interval = interval.or(number.map(|us| us.saturating_mul(1000)));
@@ -103,10 +105,11 @@ fn verbose(mut input: impl BufRead) -> Result<Table, LogError> {
 }
 
 /// The counts of each thread over the lateness, and quantiles in words: a histogram has no order in time.
-fn histogram(mut input: impl BufRead) -> Result<Table, LogError> {
+fn histogram(input: impl BufRead) -> Result<Table, LogError> {
     let mut columns: Vec<Vec<i64>> = Vec::new();
     let mut line = String::new();
-    while read_line(&mut input, &mut line)? {
+    let mut lines = TextLines::new(input);
+    while lines.read(&mut line)? {
         if line.starts_with('#') {
             continue;
         }
@@ -178,7 +181,7 @@ mod tests {
     #[test]
     fn wake_ups_of_threads_become_stamps() {
         let table = verbose(VERBOSE.as_bytes()).unwrap();
-        assert_eq!(Output::recognise(VERBOSE.as_bytes()), Some(Output::Verbose));
+        assert_eq!(Output::recognise(VERBOSE), Some(Output::Verbose));
         assert_eq!(table.stamps("thread0", ClockChoice::Log).unwrap(), [0.0, 502e-6]);
         assert_eq!(table.series("thread0.latency", ClockChoice::Log).unwrap().values, [5.0, 7.0]);
         assert_eq!(table.stamps("thread1", ClockChoice::Log).unwrap(), [4e-6]);
@@ -187,7 +190,7 @@ mod tests {
     #[test]
     fn a_histogram_has_quantiles_and_no_stamps() {
         let text = "# /dev/cpu_dma_latency set to 0us\n# Histogram\n000003 000010\t000000\n000004 000089\t000001\n000050 000001\t000000\n# Total: 000000100 000000001\n";
-        assert_eq!(Output::recognise(text.as_bytes()), Some(Output::Histogram));
+        assert_eq!(Output::recognise(text), Some(Output::Histogram));
         let table = histogram(text.as_bytes()).unwrap();
         assert!(table.topics().is_empty());
         let notes = table.notes();

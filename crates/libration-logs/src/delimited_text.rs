@@ -8,7 +8,8 @@ use crate::error::LogError;
 use crate::input::Input;
 use crate::read_options::ReadOptions;
 use crate::table::Table;
-use crate::text_line::read_line;
+use crate::text_encoding;
+use crate::text_line::TextLines;
 use crate::time_unit::{is_time_name, is_unit};
 
 /// Largest number of cells in memory: 2 GiB of numbers.
@@ -17,22 +18,11 @@ const MOST_CELLS: u64 = 1 << 28;
 /// Lines that determine the delimiter.
 const LINES: usize = 8;
 
-/// Whether the first bytes of a file are text.
-pub(crate) fn is_text(prefix: &[u8]) -> bool {
-    let whole = match std::str::from_utf8(prefix) {
-        Ok(_) => true,
-        // The last character may be cut.
-        Err(error) => error.error_len().is_none() && prefix.len() > 4000,
-    };
-    let is_control = |byte: &u8| *byte < 9 || (14..32).contains(byte) && *byte != 27;
-    whole && !prefix.is_empty() && !prefix.iter().any(is_control)
-}
-
 /// Reads a table in text.
 pub(crate) fn open(input: &Input, options: &ReadOptions) -> Result<Table, LogError> {
-    let Text { columns, notes, is_behind, empty } = read(input.reader()?)?;
+    let Text { columns, notes, empty } = read(text_encoding::reader(input)?)?;
     Table::check_time(&columns, &empty, options)?;
-    Ok(Table::new("text", columns, options, notes)?.behind_others(is_behind))
+    Table::new("text", columns, options, notes)
 }
 
 /// A text.
@@ -41,8 +31,6 @@ struct Text {
     columns: Vec<Column>,
     /// Remarks.
     notes: Vec<String>,
-    /// Whether the first column has no numbers.
-    is_behind: bool,
     /// The names of the columns without numbers.
     empty: Vec<String>,
 }
@@ -51,19 +39,15 @@ struct Text {
 ///
 /// Empty lines and those that begin with `#` are ignored. The first other line may have names; else the last line with `#` in front of
 /// the numbers has them, if it has as many.
-fn read(mut input: impl BufRead) -> Result<Text, LogError> {
+fn read(input: impl BufRead) -> Result<Text, LogError> {
+    let mut lines = TextLines::new(input);
     let mut line = String::new();
     let mut comment = String::new();
     let mut table: Option<Rows> = None;
     let mut first_lines = Vec::new();
-    let mut first = true;
-    loop {
-        if !read_line(&mut input, &mut line)? {
-            break;
-        }
-        let text = if first { line.trim_start_matches('\u{feff}') } else { &line };
-        first = false;
-        let text = text.trim_end_matches(['\n', '\r']);
+    while lines.read(&mut line)? {
+        let is_first = lines.number == 1;
+        let text = if is_first { line.trim_start_matches('\u{feff}') } else { &line };
         if text.trim().is_empty() {
             continue;
         }
@@ -74,10 +58,12 @@ fn read(mut input: impl BufRead) -> Result<Text, LogError> {
             continue;
         }
         match &mut table {
-            Some(rows) => rows.push(text)?,
-            None if first_lines.len() + 1 < LINES => first_lines.push(text.to_owned()),
+            Some(rows) => rows.push(lines.number, text)?,
+            None if first_lines.len() + 1 < LINES => {
+                first_lines.push((lines.number, text.to_owned()));
+            }
             None => {
-                first_lines.push(text.to_owned());
+                first_lines.push((lines.number, text.to_owned()));
                 table = Rows::begin(&first_lines, &comment)?;
             }
         }
@@ -86,7 +72,12 @@ fn read(mut input: impl BufRead) -> Result<Text, LogError> {
         table = Rows::begin(&first_lines, &comment)?;
     }
     let rows = table.ok_or_else(|| LogError::Damaged("it has no line of numbers".to_owned()))?;
-    Ok(rows.into_columns())
+    let mut text = rows.into_columns();
+    if lines.latin_1 > 0 {
+        let count = lines.latin_1;
+        text.notes.push(format!("lines that are not UTF-8 are read as Latin-1: {count}"));
+    }
+    Ok(text)
 }
 
 /// The rows of a table while they are read.
@@ -103,13 +94,13 @@ struct Rows {
 
 impl Rows {
     /// Begins with the first lines that are no comments; none without lines.
-    fn begin(lines: &[String], comment: &str) -> Result<Option<Self>, LogError> {
-        let Some((text, others)) = lines.split_first() else { return Ok(None) };
+    fn begin(lines: &[(usize, String)], comment: &str) -> Result<Option<Self>, LogError> {
+        let Some(((line, text), others)) = lines.split_first() else { return Ok(None) };
         let delimiter = delimiter(lines);
         let cells = cells(text, delimiter);
         let is_number =
             |cell: &&str| number(cell).is_some() || with_decimal_point(cell, delimiter).is_some();
-        let is_header = !cells.iter().any(is_number);
+        let is_header = !cells.iter().any(is_number) && number(first_word(cells[0])).is_none();
         let comment = self::cells(comment, delimiter);
         let names: Vec<String> = match (is_header, comment.len() == cells.len()) {
             (true, _) => cells.iter().map(|cell| name(cell)).collect(),
@@ -121,14 +112,16 @@ impl Rows {
         let values = names.iter().map(|_| ColumnBuilder::default()).collect();
         let mut rows = Rows { delimiter, names, values, rows: 0, ragged: 0, is_below_names: false };
         if !is_header {
-            rows.push(text)?;
+            rows.push(*line, text)?;
+        } else if is_damaged_number(cells[0]) {
+            rows.values[0].note_gap(*line, text);
         }
         rows.is_below_names = is_header;
-        others.iter().try_for_each(|text| rows.push(text))?;
+        others.iter().try_for_each(|(line, text)| rows.push(*line, text))?;
         Ok(Some(rows))
     }
 
-    fn push(&mut self, text: &str) -> Result<(), LogError> {
+    fn push(&mut self, line: usize, text: &str) -> Result<(), LogError> {
         let cells = cells(text, self.delimiter);
         if std::mem::take(&mut self.is_below_names) && is_units(&self.names, &cells) {
             for (name, unit) in
@@ -139,11 +132,19 @@ impl Rows {
             return Ok(());
         }
         self.ragged += usize::from(cells.len() != self.values.len());
+        let is_empty = cells.iter().all(|cell| cell.is_empty());
         for (i, column) in self.values.iter_mut().enumerate() {
             let cell = cells.get(i).map_or("", |cell| cell);
-            match with_decimal_point(cell, self.delimiter) {
+            let is_value = match with_decimal_point(cell, self.delimiter) {
                 Some(cell) => column.push(&cell),
+                // A line of a log begins with its time.
+                None if i == 0 && number(first_word(cell)).is_some() => {
+                    column.push(first_word(cell))
+                }
                 None => column.push(cell),
+            };
+            if !is_value && !is_empty {
+                column.note_gap(line, text);
             }
         }
         self.rows += 1;
@@ -160,26 +161,25 @@ impl Rows {
             let (ragged, cells) = (self.ragged, self.values.len());
             notes.push(format!("{ragged} of {} rows do not have {cells} cells", self.rows));
         }
-        let is_behind = self.values.first().is_some_and(|values| values.count() == 0);
         let all = self.names.into_iter().zip(self.values);
         let (some, none): (Vec<_>, Vec<_>) = all.partition(|(_, values)| values.count() > 0);
-        let column =
-            |(name, values): (String, ColumnBuilder)| Column::new(name, values.into_values());
+        let column = |(name, values): (String, ColumnBuilder)| values.into_column(name);
         let empty = none.into_iter().map(|(name, _)| name).collect();
-        Text { columns: some.into_iter().map(column).collect(), notes, is_behind, empty }
+        Text { columns: some.into_iter().map(column).collect(), notes, empty }
     }
 }
 
 /// The delimiter: one with as many cells in each of the first lines, else the first in the first line.
 ///
 /// A comma comes last, since it may be that of decimals.
-fn delimiter(lines: &[String]) -> Option<char> {
+fn delimiter(lines: &[(usize, String)]) -> Option<char> {
     let is_constant = |delimiter: &char| {
-        let mut counts = lines.iter().map(|line| cells(line, Some(*delimiter)).len());
+        let mut counts = lines.iter().map(|(_, line)| cells(line, Some(*delimiter)).len());
         let first = counts.next().unwrap_or(0);
         first > 1 && counts.all(|count| count == first)
     };
-    let contains = |delimiter: &char| lines.first().is_some_and(|line| line.contains(*delimiter));
+    let contains =
+        |delimiter: &char| lines.first().is_some_and(|(_, line)| line.contains(*delimiter));
     let constant = [';', '\t', ','].into_iter().find(is_constant);
     constant.or_else(|| [',', ';', '\t'].into_iter().find(contains))
 }
@@ -215,6 +215,16 @@ fn cells(text: &str, delimiter: Option<char>) -> Vec<&str> {
             text.split(split).map(|cell| cell.trim().trim_matches('"').trim()).collect()
         }
     }
+}
+
+fn first_word(cell: &str) -> &str {
+    cell.split_whitespace().next().unwrap_or(cell)
+}
+
+/// Whether a cell is no name but a number with an error, such as `O.01`.
+fn is_damaged_number(cell: &str) -> bool {
+    let digits = cell.bytes().filter(u8::is_ascii_digit).count();
+    cell.is_empty() || digits > cell.chars().filter(|c| c.is_alphabetic()).count()
 }
 
 /// The name in a cell; `rostopic echo -p` writes a percent sign before the first.

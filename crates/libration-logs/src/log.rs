@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::bag::Bag;
+use crate::column::Gap;
 use crate::cyclictest::{self, Output};
 use crate::error::LogError;
 use crate::input::Input;
@@ -11,6 +12,7 @@ use crate::read_options::ReadOptions;
 use crate::rosbag::Rosbag;
 use crate::signal::{ClockChoice, Series, SignalInfo, TopicInfo};
 use crate::source::Source;
+use crate::text_encoding::text_prefix;
 use crate::ulog::Ulog;
 use crate::{delimited_text, numpy_file, parquet_file, rosbag, ulog};
 
@@ -56,11 +58,13 @@ impl Log {
             }
             bytes if bytes.starts_with(&ulog::MAGIC) => Box::new(Bag::open(Ulog::new(input))?),
             bytes if bytes.starts_with(rosbag::MAGIC) => Box::new(Bag::open(Rosbag::new(input))?),
-            bytes if delimited_text::is_text(bytes) => Box::new(match Output::recognise(bytes) {
-                Some(output) => cyclictest::open(&input, output)?,
-                None => delimited_text::open(&input, options)?,
-            }),
-            _ => return Err(LogError::UnknownFormat { expected: FORMATS }),
+            bytes => match text_prefix(bytes) {
+                Some(text) => Box::new(match Output::recognise(&text) {
+                    Some(output) => cyclictest::open(&input, output)?,
+                    None => delimited_text::open(&input, options)?,
+                }),
+                None => return Err(LogError::UnknownFormat { expected: FORMATS }),
+            },
         };
         Ok(Log { source, clock: options.clock })
     }
@@ -122,15 +126,9 @@ impl Log {
         self.source.is_bag()
     }
 
-    /// Whether each row of a text begins with its time.
-    pub(crate) fn has_stamps_first(&self) -> bool {
-        self.source.has_stamps_first()
-    }
-
-    /// Whether an input seems to be a text.
-    pub(crate) fn is_text(input: &Input) -> bool {
-        let prefix = input.prefix(PREFIX);
-        prefix.map_or(true, |prefix| prefix.is_empty() || delimited_text::is_text(&prefix))
+    /// The first line of a text without a finite number in the column of time.
+    pub(crate) fn time_gap(&self) -> Option<&Gap> {
+        self.source.time_gap()
     }
 
     /// The only topic of a bag, or the column of time.
@@ -161,4 +159,4 @@ impl Log {
 }
 
 /// What [`Log::open`] reads.
-const FORMATS: &str = "MCAP, ROS 1 bag, ULog, CSV or other text, Parquet, or NumPy (.npy, .npz)";
+const FORMATS: &str = "MCAP, ROS 1 bag, ULog, CSV or other text (UTF-8, Latin-1, or UTF-16 with a byte order mark), Parquet, or NumPy (.npy, .npz)";

@@ -1,5 +1,6 @@
 //! What a reader of one format offers.
 
+use crate::column::Gap;
 use crate::error::LogError;
 use crate::signal::{ClockChoice, Series, SignalInfo, TopicInfo};
 
@@ -21,9 +22,9 @@ pub(crate) trait Source: Send {
     fn is_bag(&self) -> bool {
         false
     }
-    /// Whether each row of a text begins with its time.
-    fn has_stamps_first(&self) -> bool {
-        false
+    /// The first line of a text without a finite number in the column of time.
+    fn time_gap(&self) -> Option<&Gap> {
+        None
     }
     /// The name of the column of time.
     fn time_name(&self) -> Option<String> {

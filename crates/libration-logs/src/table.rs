@@ -1,11 +1,12 @@
 //! Tables: signals are columns, and one column is the time.
 
-use crate::column::{Column, MISSING, Times, Values};
+use crate::column::{Column, Gap, MISSING, Times, Values};
 use crate::error::LogError;
 use crate::read_options::ReadOptions;
 use crate::signal::{ClockChoice, Series, SignalInfo, TopicInfo};
 use crate::source::Source;
-use crate::time_unit::{is_time_name, split_nanoseconds, split_seconds, unit_in_name, unit_name};
+use crate::split_stamps;
+use crate::time_unit::{is_time_name, unit_in_name, unit_name};
 
 /// A table with a column of time.
 pub(crate) struct Table {
@@ -13,8 +14,6 @@ pub(crate) struct Table {
     columns: Vec<Column>,
     time: usize,
     notes: Vec<String>,
-    /// Whether the first column of the file is that of time.
-    time_is_first: bool,
     has_stamps: bool,
 }
 
@@ -27,12 +26,14 @@ impl Table {
         format: &'static str,
         mut columns: Vec<Column>,
         options: &ReadOptions,
-        notes: Vec<String>,
+        mut notes: Vec<String>,
     ) -> Result<Self, LogError> {
         if columns.is_empty() {
             return Err(LogError::Damaged("it has no column of numbers".to_owned()));
         }
-        let is_combined = options.time.is_none() && combine_seconds(&mut columns);
+        if options.time.is_none() && !split_stamps::combine_named(&mut columns) {
+            split_stamps::combine_leading(&mut columns, &mut notes);
+        }
         let named = columns.iter().position(|column| is_time_name(&column.name));
         let time = match &options.time {
             Some(name) => {
@@ -40,7 +41,6 @@ impl Table {
             }
             None => named.unwrap_or(0),
         };
-        let time_is_first = time == 0 && !is_combined;
         if let Some(unit) = options.time_unit {
             columns[time].per_second = Some(unit.per_second());
             // Other columns of stamps mostly have the same unit.
@@ -50,12 +50,15 @@ impl Table {
         }
         let (rows, count) = (columns[time].rows(), columns[time].count());
         if count == 0 || count < rows / 2 {
+            let first = columns[time].gap.as_ref().map_or_else(String::new, |gap| {
+                format!("; the first other line is {}, `{}`", gap.line, gap.text)
+            });
             return Err(LogError::Damaged(format!(
-                "only {count} of {rows} lines have a number in the column `{}`, which is the time; expected a table of numbers",
+                "only {count} of {rows} lines have a number in the column `{}`, which is the time; expected a table of numbers{first}",
                 columns[time].name
             )));
         }
-        Ok(Table { format, columns, time, notes, time_is_first, has_stamps: true })
+        Ok(Table { format, columns, time, notes, has_stamps: true })
     }
 
     /// Checks that no other column is taken for the time if that with its name has no numbers.
@@ -71,11 +74,6 @@ impl Table {
             ))),
             _ => Ok(()),
         }
-    }
-
-    /// The same table, in front of whose columns there are others without numbers.
-    pub(crate) fn behind_others(self, is_behind: bool) -> Self {
-        Table { time_is_first: self.time_is_first && !is_behind, ..self }
     }
 
     /// The same table, whose rows have no order in time.
@@ -194,8 +192,8 @@ impl Source for Table {
         column.times().nanoseconds(column.rows())
     }
 
-    fn has_stamps_first(&self) -> bool {
-        self.format == "text" && self.time_is_first
+    fn time_gap(&self) -> Option<&Gap> {
+        self.columns[self.time].gap.as_ref()
     }
 
     fn time_name(&self) -> Option<String> {
@@ -209,35 +207,6 @@ impl Source for Table {
         notes.extend(self.notes.iter().cloned());
         notes
     }
-}
-
-/// Joins a column of seconds and one of nanoseconds behind them, such as `stamp.sec` and `stamp.nanosec`, to one of stamps;
-/// false if there are none.
-fn combine_seconds(columns: &mut Vec<Column>) -> bool {
-    let pair = columns.iter().enumerate().find_map(|(second, column)| {
-        let stem = split_seconds(&column.name)?;
-        let is_rest =
-            |other: &Column| split_nanoseconds(&other.name).is_some_and(|own| own == stem);
-        let rest = columns.iter().position(is_rest)?;
-        let (Values::Whole(seconds), Values::Whole(nanoseconds)) =
-            (&column.values, &columns[rest].values)
-        else {
-            return None;
-        };
-        let sum = |(&s, &n): (&i64, &i64)| match (0..1_000_000_000).contains(&n) {
-            true => s.checked_mul(1_000_000_000)?.checked_add(n),
-            false if n == MISSING => Some(MISSING),
-            false => None,
-        };
-        let sums: Option<Vec<i64>> = seconds.iter().zip(nanoseconds).map(sum).collect();
-        Some((second, rest, stem, sums?))
-    });
-    let Some((second, rest, stem, stamps)) = pair else { return false };
-    let name = if stem.is_empty() { "time".to_owned() } else { stem };
-    columns[second] = Column::new(name, Values::Nanoseconds(stamps));
-    columns[second].per_second = Some(1.0);
-    columns.remove(rest);
-    true
 }
 
 /// The index of a column with this name, or with this name before its unit in brackets.

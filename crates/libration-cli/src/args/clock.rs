@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{TimeUnitName, TopicArgs};
+use super::TopicArgs;
 
 /// Arguments of `clock`.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct ClockArgs {
-    /// Log: MCAP, ROS 1 bag, ULog, CSV or other text, cyclictest, Parquet, NumPy; its first bytes determine the format
+    /// Log: MCAP, ROS bag, ULog, CSV or other text, cyclictest, Parquet, NumPy; its first bytes determine the format
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
     #[command(flatten)]
@@ -18,12 +18,6 @@ pub(crate) struct ClockArgs {
     /// Later topic, for the latency from --topic to it
     #[arg(long, value_name = "NAME", requires = "topic")]
     pub(crate) against: Option<String>,
-    /// Column of time of a table [default: a column named as one, else the first]
-    #[arg(long, value_name = "COLUMN")]
-    pub(crate) time: Option<String>,
-    /// Unit of the column of time [default: of the file or the name, else by the size of the numbers]
-    #[arg(long, value_name = "UNIT")]
-    pub(crate) time_unit: Option<TimeUnitName>,
     /// Loop, as for `advise`, to compute what the clock and the latency do to it
     #[arg(long, value_name = "FILE")]
     pub(crate) config: Option<PathBuf>,

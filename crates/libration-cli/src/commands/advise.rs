@@ -19,8 +19,8 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
     if args.print_config {
         return Ok(terminal::print(advise::DEFAULT)?);
     }
-    if let (Some(topic), None) = (&args.topic.topic, &args.jitter_file) {
-        let words = format!("--topic is `{topic}` without a log; help: add --jitter-file FILE");
+    if let ([option, value, ..], None) = (&args.topic.words(None)[..], &args.jitter_file) {
+        let words = format!("{option} is `{value}` without a log; help: add --jitter-file FILE");
         return Err(Failure::usage(words));
     }
     if let Some(request) = super::advise_linear::load_request(args)? {

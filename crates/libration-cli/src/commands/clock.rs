@@ -1,7 +1,7 @@
 //! `libration clock`.
 
 use libration_logs::clock::{Latency, TopicClock, phase_lags, rate_of_phase};
-use libration_logs::{Log, LogError, ReadOptions};
+use libration_logs::{Log, LogError};
 use serde_json::json;
 
 use super::clock_effect;
@@ -10,7 +10,7 @@ use super::clock_report::{ClockReport, Hold, Topic};
 use super::clock_text::describe;
 use super::measure_jitter::print_json;
 use super::result_file::ResultFile;
-use crate::args::{ClockArgs, TimeUnitName, quoted};
+use crate::args::{ClockArgs, quoted};
 use crate::error::Failure;
 use crate::terminal;
 
@@ -36,10 +36,8 @@ fn report(args: &ClockArgs, quiet: bool) -> Result<ClockReport, Failure> {
         let name = name.clone();
         move |error: LogError| Failure::usage(format!("cannot use `{name}` ({option}): {error}"))
     };
-    let option = if args.time.is_some() { "--time" } else { "FILE" };
-    let time_unit = args.time_unit.map(TimeUnitName::unit);
-    let options = ReadOptions { time: args.time.clone(), time_unit, clock };
-    let log = Log::open(&args.file, &options).map_err(wrong(option))?;
+    let option = if args.topic.time.is_some() { "--time" } else { "FILE" };
+    let log = Log::open(&args.file, &args.topic.read_options()).map_err(wrong(option))?;
     let topic = match (&args.topic.topic, log.default_topic()) {
         (Some(topic), _) => Some(topic.clone()),
         (None, Ok(topic)) => Some(topic),

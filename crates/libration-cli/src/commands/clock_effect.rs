@@ -85,13 +85,7 @@ pub(super) fn advise_words(
     let mut words: Vec<String> = ["libration", "advise", "--config"].map(str::to_owned).into();
     words.push(config.display().to_string());
     words.extend(["--jitter-file".to_owned(), args.file.display().to_string()]);
-    if let Some(topic) = args.topic.topic.as_deref().or(topic) {
-        words.extend(["--topic".to_owned(), topic.to_owned()]);
-    }
-    let clock = args.topic.clock.choice().name();
-    if clock != "log" {
-        words.extend(["--clock".to_owned(), clock.to_owned()]);
-    }
+    words.extend(args.topic.words(topic));
     if let Some(latency) = latency {
         words.extend(["--latency".to_owned(), format!("{:.6}", latency.max(0.0))]);
     }

@@ -69,7 +69,7 @@ fn clocks_that_are_none_are_refused() {
         ("time_ns\n5\n", "at least 2"),
         ("0\nfoo\n", "line 2 is `foo`"),
         ("0\n0\n", "mean step is 0"),
-        ("0\nnan\n", "time stamp 2 is NaN"),
+        ("0\nnan\n1\n", "line 2 is `nan`"),
     ] {
         fs::write(&file, text).unwrap();
         libration(&["measure-jitter", "--from", file.to_str().unwrap()])

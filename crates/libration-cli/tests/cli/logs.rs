@@ -123,6 +123,40 @@ fn logs_are_taken_wherever_time_stamps_are() {
 }
 
 #[test]
+fn the_column_of_time_and_its_unit_reach_every_command_that_takes_time_stamps() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = folder.path().join("table.csv");
+    let rows: Vec<String> = (0..40).map(|i| format!("{i},{}\n", 2500 * i)).collect();
+    fs::write(&table, format!("k,ticks\n{}", rows.concat())).unwrap();
+    let table = table.to_str().unwrap();
+    let time = ["--time", "ticks", "--time-unit", "us"];
+    let found = json(&[&["clock", table][..], &time].concat());
+    let mean = |statistics: &serde_json::Value| statistics["mean"].as_f64().unwrap();
+    assert!((mean(&found["clock"]["statistics"]) - 2.5e-3).abs() < 1e-12, "{found}");
+    let measured = json(&[&["measure-jitter", "--from", table][..], &time].concat());
+    assert!((mean(&measured) - 2.5e-3).abs() < 1e-12, "{measured}");
+    // What `clock` prints has the options.
+    let config = folder.path().join("loop.toml");
+    fs::write(&config, LOOP.replace("0.01", "0.0025")).unwrap();
+    let config = config.to_str().unwrap();
+    let found = json(&[&["clock", table, "--config", config][..], &time].concat());
+    let effect = &found["effects"][0];
+    for command in [&found["advise_command"], &effect["command"]] {
+        assert!(command.as_str().unwrap().contains(&time.join(" ")), "{command}");
+    }
+    let command = effect["command"].as_str().unwrap();
+    let words: Vec<&str> = command.split(' ').skip(1).collect();
+    assert_eq!(json(&words)["answer"], effect["answer"]);
+    let steps = ["--integrator", "rk4", "--dt", "0.0025", "--steps", "3", "--system", "oscillator"];
+    let words = [&["simulate", "--time-stamps", table][..], &time, &steps].concat();
+    let rows = libration(&words).success();
+    rows.stdout(predicate::str::contains("\n3,0.0075,"));
+    let words = ["advise", "--config", config, "--time-unit", "us"];
+    let wrong = predicate::str::contains("--time-unit is `us` without a log");
+    libration(&words).code(2).stderr(wrong);
+}
+
+#[test]
 fn wrong_input_names_the_option_the_value_and_what_is_allowed() {
     let bag = sample("zstd.mcap");
     let folder = tempfile::tempdir().unwrap();

@@ -85,6 +85,31 @@ fn seconds_and_nanoseconds_are_one_stamp() {
 }
 
 #[test]
+fn seconds_and_nanoseconds_without_names_are_recognised_by_their_shape() {
+    let epoch = "1700000000,999000000,base,0.5\n1700000001,4000000,base,0.6\n";
+    let simulated = "7,980000000,0\n7,990000000,1\n8,0,2\n8,10000000,3\n";
+    assert_eq!(series(epoch, "column_4").0, [0.0, 0.005]);
+    assert_eq!(series(simulated, "column_3").0, [0.0, 0.01, 0.02, 0.03]);
+    let notes = table(epoch).notes().join("\n");
+    assert!(notes.contains("`column_1` and `column_2` are taken as the seconds"), "{notes}");
+    assert!(notes.contains("the column of time is `time`"), "{notes}");
+    // Rows and an encoder, a motor and an encoder, seconds and a reading, and what is above a second.
+    for text in [
+        "0,1000000,3\n1,1000100,3\n2,1000200,3\n",
+        "5,1000000,3\n5,1000100,3\n5,1000200,3\n",
+        "1700000000,512,1\n1700000001,513,1\n1700000002,514,1\n",
+        "1700000000,5,1\n1700000001,1000000000,1\n",
+        "1700000000,900000000,1\n1700000000,1000000,1\n",
+    ] {
+        assert_eq!(table(text).time_name().unwrap(), "column_1", "{text}");
+    }
+    let options = ReadOptions::of_time("column_2");
+    let Text { columns, notes, .. } = read(epoch.as_bytes()).unwrap();
+    let table = Table::new("text", columns, &options, notes).unwrap();
+    assert_eq!(table.time_name().unwrap(), "column_2");
+}
+
+#[test]
 fn decimal_commas_are_points_and_thousands_are_not() {
     for text in [
         "t;x\n0,25;1,5\n0,75;2,5\n",

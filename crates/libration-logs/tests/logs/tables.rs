@@ -43,6 +43,37 @@ fn parquet_has_units_of_time_and_holes() {
 }
 
 #[test]
+fn texts_in_other_encodings_and_with_other_ends_of_lines_are_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("log.csv");
+    let text = "Größe,time [µs]\n1,10\n2,2510\n";
+    let utf_16 = |unit: fn(u16) -> [u8; 2]| {
+        format!("\u{feff}{text}").encode_utf16().flat_map(unit).collect::<Vec<u8>>()
+    };
+    let latin_1 = || text.chars().map(|c| c as u8).collect::<Vec<u8>>();
+    for bytes in [
+        text.as_bytes().to_vec(),
+        text.replace('\n', "\r").into_bytes(),
+        text.replace('\n', "\r\n").into_bytes(),
+        utf_16(u16::to_le_bytes),
+        utf_16(u16::to_be_bytes),
+        latin_1(),
+    ] {
+        std::fs::write(&file, &bytes).unwrap();
+        let log = Log::open(&file, &ReadOptions::default()).unwrap();
+        let series = log.series("Größe").unwrap();
+        assert_eq!((series.time, series.values), (vec![0.0, 0.0025], vec![1.0, 2.0]));
+        assert_eq!(read_time_stamps(&file, &StampOptions::default()).unwrap(), [0.0, 0.0025]);
+        let has_note = log.notes().iter().any(|note| note.contains("read as Latin-1"));
+        assert_eq!(has_note, bytes == latin_1());
+    }
+    // UTF-16 without a mark is no text.
+    std::fs::write(&file, &utf_16(u16::to_le_bytes)[2..]).unwrap();
+    let error = Log::open(&file, &ReadOptions::default()).err().unwrap().to_string();
+    assert!(error.contains("UTF-16 with a byte order mark"), "{error}");
+}
+
+#[test]
 fn a_column_of_time_can_be_chosen() {
     let options = |time: &str| ReadOptions { time: Some(time.to_owned()), ..Default::default() };
     let log = Log::open(&path("matrix.npy"), &options("column_2")).unwrap();
@@ -62,7 +93,19 @@ fn time_stamps_are_those_of_the_column_of_time_wherever_it_is() {
     assert_eq!(read("x,time_ms\n1,10\n2,12.5\n").unwrap(), [0.0, 0.0025]);
     assert_eq!(read("name,time\na,1\nb,1.5\n").unwrap(), [0.0, 0.5]);
     assert_eq!(read("5,1\n7,1.5\n").unwrap(), [0.0, 2.0]);
+    assert_eq!(read("# of a robot\nt,load\n0.5,3\n\n 1.0 \n1.75,x\n").unwrap(), [0.0, 0.5, 1.25]);
+    // Milliseconds since 1970 have the unit that their size shows, as in all commands.
+    assert_eq!(read("1700000000000\n1700000000005\n").unwrap(), [0.0, 0.005]);
+    // A line of a log begins with its time, whatever follows.
+    assert_eq!(read("0.5 started, slowly\n0.75 stopped, at once\n").unwrap(), [0.0, 0.25]);
+    assert_eq!(read("time,x\n1,5\n2,6\n,\n").unwrap(), [0.0, 1.0]);
     // Errors of lines have their numbers.
     assert!(read("time\n0\nfoo\n").unwrap_err().starts_with("line 3 is `foo`"));
+    assert!(read("t\n0.5\n\nt\n1\n").unwrap_err().starts_with("line 4 is `t`"));
+    assert!(read("0.5\n1.0s\n2\n").unwrap_err().contains("line 2 is `1.0s`"));
+    assert!(read(",1\n1,2\n2,3\n").unwrap_err().contains("line 1 is `,1`"));
+    assert!(read("x,time\n0,1\n1,\n2,3\n").unwrap_err().contains("line 3 is `1,`"));
+    // A number that is damaged is not the name of a column.
+    assert!(read("O.01\n0.02\n0.03\n").unwrap_err().contains("line 1 is `O.01`"));
     assert!(read("x,time\n0,5\n1,4\n").unwrap_err().contains("time stamp 2"));
 }
