@@ -3,6 +3,7 @@
 //! [`Log::open`] recognises the format of a file by its first bytes. [`Log::series`] returns a signal over time, [`Log::stamps`] the
 //! time stamps of a topic. Memory is bounded: no count in a file is trusted before its bytes are there.
 
+mod arrow_schema;
 mod bag;
 pub mod clock;
 mod column;

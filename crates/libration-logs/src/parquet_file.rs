@@ -10,6 +10,7 @@ use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
+use crate::arrow_schema;
 use crate::column::{Column, MISSING, Values, missing};
 use crate::error::LogError;
 use crate::input::Input;
@@ -47,6 +48,7 @@ pub(crate) fn open(input: &Input, options: &ReadOptions) -> Result<Table, LogErr
 fn read(reader: &dyn FileReader, options: &ReadOptions) -> Result<Table, LogError> {
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     let units = units(reader);
+    let durations = metadata(reader, "ARROW:schema").map_or_else(Vec::new, arrow_schema::durations);
     let (mut columns, mut ignored, mut cells) = (Vec::new(), Vec::new(), 0);
     let mut empty = Vec::new();
     for (index, descriptor) in schema.columns().iter().enumerate() {
@@ -61,21 +63,25 @@ fn read(reader: &dyn FileReader, options: &ReadOptions) -> Result<Table, LogErro
             continue;
         };
         let unit = units.iter().find(|(column, _)| *column == name).map(|(_, unit)| unit.clone());
+        let duration = durations.iter().find(|(column, _)| *column == name).map(|found| found.1);
         let mut column = Column::new(name, values);
         column.unit = unit.or(column.unit);
-        column.per_second = per_second(descriptor);
+        column.per_second = per_second(descriptor).or(duration);
         columns.push(column);
     }
     Table::check_time(&columns, &empty, options)?;
     Table::new("Parquet", columns, options, ignored)
 }
 
+/// The text of a key of the file.
+fn metadata<'a>(reader: &'a dyn FileReader, key: &str) -> Option<&'a str> {
+    let entries = reader.metadata().file_metadata().key_value_metadata()?;
+    entries.iter().find(|entry| entry.key == key)?.value.as_deref()
+}
+
 /// The units that `libration` writes.
 fn units(reader: &dyn FileReader) -> Vec<(String, String)> {
-    let entries = reader.metadata().file_metadata().key_value_metadata();
-    let text = entries
-        .and_then(|entries| entries.iter().find(|entry| entry.key == "libration.units"))
-        .and_then(|entry| entry.value.as_deref());
+    let text = metadata(reader, "libration.units");
     let map: Option<std::collections::BTreeMap<String, String>> =
         text.and_then(|text| serde_json::from_str(text).ok());
     map.unwrap_or_default().into_iter().filter(|(_, unit)| unit != "1").collect()

@@ -43,6 +43,16 @@ fn parquet_has_units_of_time_and_holes() {
 }
 
 #[test]
+fn durations_of_parquet_have_the_units_of_the_schema_of_arrow() {
+    for (name, last) in [("s", 47_500.0), ("ms", 47.5), ("us", 0.0475), ("ns", 47.5e-6)] {
+        let options = ReadOptions { time: Some(name.to_owned()), ..Default::default() };
+        let log = Log::open(&path("durations.parquet"), &options).unwrap();
+        assert_eq!(log.stamps(name).unwrap()[19], last, "{name}");
+        assert_eq!(log.notes(), [format!("the column of time is `{name}`")]);
+    }
+}
+
+#[test]
 fn texts_in_other_encodings_and_with_other_ends_of_lines_are_the_same() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("log.csv");
