@@ -10,6 +10,7 @@ use crate::input::Input;
 use crate::mcap::Mcap;
 use crate::read_options::ReadOptions;
 use crate::rosbag::Rosbag;
+use crate::rosbag2::{self, Rosbag2};
 use crate::signal::{ClockChoice, Series, SignalInfo, TopicInfo};
 use crate::source::Source;
 use crate::text_encoding::text_prefix;
@@ -58,6 +59,7 @@ impl Log {
             }
             bytes if bytes.starts_with(&ulog::MAGIC) => Box::new(Bag::open(Ulog::new(input))?),
             bytes if bytes.starts_with(rosbag::MAGIC) => Box::new(Bag::open(Rosbag::new(input))?),
+            bytes if bytes.starts_with(rosbag2::MAGIC) => Box::new(Bag::open(Rosbag2::new(input))?),
             bytes => match text_prefix(bytes) {
                 Some(text) => Box::new(match Output::recognise(&text) {
                     Some(output) => cyclictest::open(&input, output)?,
@@ -159,4 +161,4 @@ impl Log {
 }
 
 /// What [`Log::open`] reads.
-const FORMATS: &str = "MCAP, ROS 1 bag, ULog, CSV or other text (UTF-8, Latin-1, or UTF-16 with a byte order mark), Parquet, or NumPy (.npy, .npz)";
+const FORMATS: &str = "MCAP, ROS 1 bag, ROS 2 bag in SQLite, ULog, CSV or other text (UTF-8, Latin-1, or UTF-16 with a byte order mark), Parquet, or NumPy (.npy, .npz)";

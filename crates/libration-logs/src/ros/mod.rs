@@ -1,5 +1,6 @@
 //! Messages of ROS 1 and ROS 2: definitions as text, and numbers in the bytes.
 
+mod common_types;
 mod cursor;
 mod definition;
 mod idl;
@@ -45,6 +46,12 @@ impl RosDecoder {
     /// In words, if the text cannot be understood.
     pub(crate) fn of_idl(root: &str, text: &str) -> Result<Self, String> {
         Ok(Self::new(idl::parse(root, text)?, Wire::Cdr))
+    }
+
+    /// A decoder for a type of a common package of ROS 2 without a definition, perhaps only of its header; none if it is not known.
+    pub(crate) fn of_common_type(root: &str) -> Option<Self> {
+        let text = common_types::definition(root)?;
+        Self::of_text(root, text, Wire::Cdr).ok()
     }
 
     fn new(definition: Definition, wire: Wire) -> Self {

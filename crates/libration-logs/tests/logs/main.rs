@@ -1,8 +1,9 @@
-//! Logs that other programs wrote; `tools/make_log_files.py` runs them.
+//! Logs that other programs wrote; `tools/make_log_files.py` and `tools/make_db3_files.py` run them.
 
 mod bags;
 mod mutations;
 mod other_bags;
+mod sqlite_bags;
 mod tables;
 
 use std::path::PathBuf;
