@@ -171,6 +171,9 @@ def tables():
         "s": ["a"] * 50,
     }
     pq.write_table(pa.table(table), FOLDER / "table.parquet", compression="zstd")
+    ticks = np.arange(20, dtype=np.int64) * 2500
+    table = {unit: pa.array(ticks, pa.duration(unit)) for unit in ("s", "ms", "us", "ns")}
+    pq.write_table(pa.table({"x": pa.array(x[:20]), **table}), FOLDER / "durations.parquet", compression="zstd")
 
 
 def expected(name):
@@ -194,7 +197,7 @@ def rosbag1(path, compression):
     path.unlink(missing_ok=True)
     writer = Writer1(path)
     if compression:
-        writer.set_compression(Writer1.CompressionFormat.LZ4)
+        writer.set_compression(compression)
     with writer:
         connection = writer.add_connection("/joint_states", kind.__msgtype__, typestore=store)
         for k in range(40):
@@ -235,8 +238,9 @@ def ulog(path):
     path.with_suffix(".json").write_text(json.dumps(rows) + "\n")
 
 
-rosbag1(FOLDER / "ros1.bag", False)
-rosbag1(FOLDER / "ros1_lz4.bag", True)
+rosbag1(FOLDER / "ros1.bag", None)
+rosbag1(FOLDER / "ros1_lz4.bag", Writer1.CompressionFormat.LZ4)
+rosbag1(FOLDER / "ros1_bz2.bag", Writer1.CompressionFormat.BZ2)
 ulog(FOLDER / "px4.ulg")
 ros_bag(FOLDER / "zstd.mcap", mcap.writer.CompressionType.ZSTD, 160)
 ros_bag(FOLDER / "lz4.mcap", mcap.writer.CompressionType.LZ4, 60)

@@ -1,11 +1,12 @@
 //! Bags of ROS 1, version 2.0.
 //!
 //! The format is that of <http://wiki.ros.org/Bags/Format/2.0>: records with a header of named fields and data. Connections and
-//! messages are in chunks. Chunks are uncompressed or frames of LZ4; those of bzip2 are left out.
+//! messages are in chunks. Chunks are uncompressed, frames of LZ4, or streams of bzip2.
 
 use std::collections::HashMap;
 use std::io::{self, Read};
 
+use bzip2::read::BzDecoder;
 use lz4_flex::frame::FrameDecoder;
 
 use crate::bag::{Channel, Decoder, Event, Message, MessageStream};
@@ -50,7 +51,7 @@ impl MessageStream for Rosbag {
         let mut reading = Reading::new(visit);
         let mut notes = Vec::new();
         let mut damaged = 0_usize;
-        let mut packed = 0_usize;
+        let mut unknown = 0_usize;
         let truncated = loop {
             let header = match Header::read(&mut file) {
                 Ok(Some(header)) => header,
@@ -65,7 +66,14 @@ impl MessageStream for Rosbag {
                 (CHUNK, Some(b"lz4")) => {
                     damaged += usize::from(!reading.records(&mut FrameDecoder::new(&mut body)));
                 }
-                (CHUNK, Some(_)) => packed += 1,
+                (CHUNK, Some(b"bz2")) => {
+                    // A few bytes of bzip2 can be many zeros, so that the header limits them.
+                    let size = header.field("size").and_then(|bytes| bytes.first_chunk());
+                    let size = size.map_or(0, |bytes| u64::from(u32::from_le_bytes(*bytes)));
+                    damaged +=
+                        usize::from(!reading.records(&mut BzDecoder::new(&mut body).take(size)));
+                }
+                (CHUNK, Some(_)) => unknown += 1,
                 _ => damaged += usize::from(reading.record(&header, &mut body).is_err()),
             }
             if reading.stopped {
@@ -82,9 +90,9 @@ impl MessageStream for Rosbag {
                 "the end of the file is missing: read up to there, {messages} messages"
             ));
         }
-        if packed > 0 {
+        if unknown > 0 {
             notes.push(format!(
-                "{packed} chunks are compressed with bzip2, which is not read; help: rosbag decompress"
+                "{unknown} chunks have an unknown compression: ignored; help: rosbag decompress"
             ));
         }
         if damaged > 0 {

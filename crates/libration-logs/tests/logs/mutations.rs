@@ -121,11 +121,15 @@ no_mutation_leads_to_a_panic! {
     of_mcap_without_chunks: "json.mcap";
     of_ros_1: "ros1.bag";
     of_ros_1_by_lz4: "ros1_lz4.bag";
+    of_ros_1_by_bzip2: "ros1_bz2.bag";
+    of_ros_2_in_sqlite: "humble.db3";
+    of_ros_2_with_definitions: "iron.db3";
     of_ulog: "px4.ulg";
     of_archives: "table.npz";
     of_arrays: "matrix.npy";
     of_records: "records.npy";
     of_parquet: "table.parquet";
+    of_durations: "durations.parquet";
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::{open, path};
 
 #[test]
 fn bags_of_ros_1_have_stamps_and_numbers() {
-    for name in ["ros1.bag", "ros1_lz4.bag"] {
+    for name in ["ros1.bag", "ros1_lz4.bag", "ros1_bz2.bag"] {
         let log = open(name, ClockChoice::Log);
         let topics: Vec<_> =
             log.topics().into_iter().map(|t| (t.name, t.message_type, t.count)).collect();
