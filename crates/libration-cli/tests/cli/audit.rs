@@ -55,6 +55,32 @@ fn energies_of_a_clean_program_have_no_fault_and_a_page() {
 }
 
 #[test]
+fn a_column_of_time_has_precedence_over_one_of_steps() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, per_second) in
+        [("time", 1.0), ("t", 1.0), ("time_ps", 1e12), ("time [ps]", 1e12), ("Time (fs)", 1e15)]
+    {
+        let files = [0.2, 0.1].map(|dt| {
+            let path = run(folder.path(), dt, 0.0);
+            let text = fs::read_to_string(&path).unwrap();
+            let mut rows = format!("step,{name},E\n");
+            for (step, line) in text.lines().skip(1).enumerate() {
+                let (time, energy) = line.split_once(',').unwrap();
+                let time = time.parse::<f64>().unwrap() * per_second;
+                let _ = writeln!(rows, "{step},{time:e},{energy}");
+            }
+            fs::write(&path, rows).unwrap();
+            path
+        });
+        let files = files.each_ref().map(PathBuf::as_path);
+        let report = audit(&files, &["--json"]).success().get_output().stdout.clone();
+        let report: Value = serde_json::from_slice(&report).unwrap();
+        let dt = report["runs"][0]["dt"].as_f64().unwrap();
+        assert!((dt - 0.1).abs() < 1e-9, "{name}: {dt}");
+    }
+}
+
+#[test]
 fn friction_is_named_and_the_exit_code_is_1() {
     let folder = tempfile::tempdir().unwrap();
     let files = [0.2, 0.1].map(|dt| run(folder.path(), dt, 1e-4));
