@@ -73,6 +73,11 @@ def image(i, time):
     return message.data()
 
 
+def array(i):
+    """Of 8 bytes for each of 126 to 130 numbers: only the least part of the record stays on its first page."""
+    return Cdr().number("I", 0).number("I", 0).floats([k + i / 4 for k in range(126 + 2 * i)]).data()
+
+
 def load(i, time):
     return Cdr().header(time, "").number("f", i / 2).data()
 
@@ -109,6 +114,8 @@ for i in range(MESSAGES):
     log, stamp = times(i)
     rows.append((1, log, joint_state(i, stamp)))
     rows.append((2, log + 2_000_000, load(i, stamp)))
+    if i < 3:
+        rows.append((4, log + 2000, array(i)))
     if i % 20 == 3:
         rows.append((3, log + 1000, image(i, stamp)))
 write(
@@ -119,6 +126,7 @@ write(
         ("/joint_states", "sensor_msgs/msg/JointState"),
         ("/load", "my_msgs/msg/Load"),
         ("/camera", "sensor_msgs/msg/Image"),
+        ("/array", "std_msgs/msg/Float64MultiArray"),
     ],
     rows,
 )

@@ -17,7 +17,13 @@ fn a_bag_of_humble_has_stamps_of_both_clocks_and_fields_of_common_types() {
     let topics: Vec<_> =
         log.topics().into_iter().map(|t| (t.name, t.count, t.clocks.len())).collect();
     let row = |name: &str, count, clocks| (name.to_owned(), count, clocks);
-    assert_eq!(topics, [row("/joint_states", 40, 2), row("/load", 40, 1), row("/camera", 2, 2)]);
+    let rows = [
+        row("/joint_states", 40, 2),
+        row("/load", 40, 1),
+        row("/camera", 2, 2),
+        row("/array", 3, 1),
+    ];
+    assert_eq!(topics, rows);
     let stamps = |topic: &str, clock| log.exact_stamps(topic, clock).unwrap();
     let logged: Vec<_> = (0..40).map(|i| Some(log_time(i))).collect();
     let stamped: Vec<_> = (0..40).map(|i| Some(log_time(i) - 1_000_000)).collect();
@@ -25,6 +31,8 @@ fn a_bag_of_humble_has_stamps_of_both_clocks_and_fields_of_common_types() {
     assert_eq!(stamps("/joint_states", ClockChoice::Header), stamped);
     // Its messages need overflow pages.
     assert_eq!(stamps("/camera", ClockChoice::Header), [stamped[3], stamped[23]]);
+    assert_eq!(log.series("/array.data[125]").unwrap().values, [125.0, 125.25, 125.5]);
+    assert_eq!(log.series("/array.data[129]").unwrap().values, [129.5]);
     let values: Vec<f64> = (0..40).map(|i| f64::from(i) + 0.25).collect();
     assert_eq!(log.series("/joint_states.position[1]").unwrap().values, values);
     let error = log.exact_stamps("/load", ClockChoice::Header).unwrap_err().to_string();
