@@ -3,7 +3,7 @@
 mod chapter;
 
 use crate::figure;
-use crate::page::{Chapter, Page};
+use crate::page::{Block, Chapter, Page};
 use crate::text::{escape, plain, render_html};
 
 const STYLE: &str = include_str!("../../assets/report.css");
@@ -76,18 +76,29 @@ pub fn render(cover: &Cover, chapters: &[Chapter]) -> String {
 
 /// Renders a single page, with its answer first.
 pub fn render_page(page: &Page, sub: &str) -> String {
+    let mut links = String::from("<a href=\"#top\">The answer</a>");
+    let mut blocks = String::new();
+    for (i, block) in page.blocks.iter().enumerate() {
+        blocks += &match block {
+            Block::Heading(heading) => {
+                let heading = render_html(heading);
+                links += &format!("<a href=\"#part-{i}\">{heading}</a>");
+                format!("<h3 id=\"part-{i}\">{heading}</h3>\n")
+            }
+            block => chapter::block(block),
+        };
+    }
     format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
          <title>{name}</title>\n<style>{STYLE}</style></head><body>\n\
-         <nav aria-label=\"Chapters\"><b>Libration</b><a href=\"#top\">The answer</a></nav>\n<main id=\"top\">\n\
+         <nav aria-label=\"Chapters\"><b>Libration</b>{links}</nav>\n<main id=\"top\">\n\
          <h1>{title}</h1>\n<p class=\"sub\">{sub}</p>\n<p class=\"lead\">{answer}</p>\n{blocks}</main>\n\
          {scripts}<script>{SCRIPT}</script>\n</body></html>\n",
         name = escape(&plain(&page.title)),
         title = render_html(&page.title),
         sub = render_html(sub),
         answer = render_html(&page.answer),
-        blocks = page.blocks.iter().map(chapter::block).collect::<String>(),
         scripts = figure::scripts(),
     )
 }
@@ -163,3 +174,6 @@ fn machine(cover: &Cover) -> String {
     let text = render_html(&cover.machine);
     format!("<h2 id=\"machine\">This machine</h2>\n<p class=\"sub\">{text}</p>\n")
 }
+
+#[cfg(test)]
+mod tests;
