@@ -75,25 +75,12 @@ fn a_clock_does_not_go_back() {
 }
 
 #[test]
-fn a_file_that_holds_no_time_stamps_is_told_by_its_line() {
-    let stamps = Recorded::stamps_in("# of a robot\nt,load\n0.5,3\n\n 1.0 \n1.75,x\n").unwrap();
-    assert_eq!(stamps, [0.0, 0.5, 1.25]);
-    assert_eq!(Recorded::steps_in(&stamps, 0.25).unwrap(), [2.0, 3.0]);
-    let error = |text: &str| Recorded::stamps_in(text).unwrap_err().to_string();
-    assert_eq!(
-        error("t\n0.5\n\nt\n"),
-        "line 4 is `t`; it must begin with a number, the time in seconds or nanoseconds"
-    );
-    assert!(error("0.5\n1.0s\n").contains("line 2 is `1.0s`"));
-    assert!(error(",1\n").contains("line 1"));
-    // A number that is damaged is not the name of a column.
-    assert!(error("O.01\n0.02\n").contains("line 1 is `O.01`"));
-    assert_eq!(Recorded::stamps_in("\u{feff}time\n1\n2\n").unwrap(), [0.0, 1.0]);
+fn time_stamps_become_steps_of_a_positive_length() {
+    assert_eq!(Recorded::steps_in(&[0.0, 0.5, 1.25], 0.25).unwrap(), [2.0, 3.0]);
     for dt in [0.0, -1.0, f64::NAN] {
         let told = Recorded::steps_in(&[0.0, 1.0], dt).unwrap_err().to_string();
         assert!(told.contains("above 0"), "{told}");
     }
-    assert_eq!(Recorded::stamps_in("").unwrap(), [0.0; 0]);
 }
 
 /// What is said of a clock before any step.

@@ -9,7 +9,6 @@ mod noise;
 mod random_walk;
 mod sinusoidal;
 mod time_record;
-mod time_stamps;
 
 pub use autoregressive::Correlated;
 pub use clock_rate::{Drifting, Fixed, Rates, Skewed};

@@ -23,16 +23,6 @@ pub enum RecordedError {
         /// The number of time stamps.
         count: usize,
     },
-    /// A line of a file is not a time stamp.
-    #[error(
-        "line {line} is `{text}`; it must begin with a number, the time in seconds or nanoseconds"
-    )]
-    Line {
-        /// The number of the line, from 1.
-        line: usize,
-        /// The text of the line.
-        text: String,
-    },
     /// A time stamp is not finite.
     #[error("time stamp {} is {value}; it must be a finite number", index + 1)]
     NotFinite {
@@ -60,17 +50,6 @@ pub enum RecordedError {
 }
 
 impl<'a> Recorded<'a> {
-    /// The time stamps of a file, in seconds from the first: one at the beginning of each line, in seconds or in nanoseconds. The
-    /// unit follows from the name of a column in the first line (`time_ns`); without it, whole numbers more than 1000 apart are
-    /// nanoseconds. Lines of `candump -L` and of `rostopic echo -p` are such lines, and so are rows of CSV. Empty lines and those
-    /// that begin with `#` are passed over.
-    ///
-    /// # Errors
-    /// The first line that is not a time stamp.
-    pub fn stamps_in(text: &str) -> Result<Vec<f64>, RecordedError> {
-        super::time_stamps::read(text)
-    }
-
     /// The steps between `stamps`, which are in seconds, as multiples of `dt` seconds.
     ///
     /// # Errors
