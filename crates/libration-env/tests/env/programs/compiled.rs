@@ -12,45 +12,57 @@ use libration_env::environments::{
     AnyEnvironments, EnvironmentFloat, EnvironmentSettings, Selection, Task,
 };
 
-/// Compiled environments of the engine, which know nothing of programs.
+/// Compiled environments of the engine, which know nothing of programs; none if the kernel is compiled for the other float only.
+///
+/// A kernel takes a second to compile: each system has half of the methods in one float and half of them in the other.
 pub(super) fn compiled<T: EnvironmentFloat>(
     settings: &EnvironmentSettings,
     which: Selection<'_>,
-) -> Box<dyn AnyEnvironments<T>> {
+) -> Option<Box<dyn AnyEnvironments<T>>> {
     match (settings.system.any(), settings.task) {
         (AnySystem::Oscillator(model), Task::Regulate(task)) => {
-            of_system(Model::<1>::on::<T>(&model), task, settings, which)
+            of_system::<T, _, _, _, true>(Model::<1>::on::<T>(&model), task, settings, which)
         }
         (AnySystem::DampedOscillator(model), Task::Regulate(task)) => {
-            of_system(Model::<1>::on::<T>(&model), task, settings, which)
+            of_system::<T, _, _, _, false>(Model::<1>::on::<T>(&model), task, settings, which)
         }
         (AnySystem::Pendulum(model), Task::SwingUp(task)) => {
-            of_system(Model::<1>::on::<T>(&model), task, settings, which)
+            of_system::<T, _, _, _, true>(Model::<1>::on::<T>(&model), task, settings, which)
         }
         (AnySystem::Duffing(model), Task::Track(task)) => {
-            of_system(Model::<1>::on::<T>(&model), task, settings, which)
+            of_system::<T, _, _, _, false>(Model::<1>::on::<T>(&model), task, settings, which)
         }
         other => panic!("no case is {other:?}"),
     }
 }
 
-fn of_system<T, S, K, const O: usize>(
+fn of_system<T, S, K, const O: usize, const EVEN: bool>(
     system: S,
     task: K,
     settings: &EnvironmentSettings,
     which: Selection<'_>,
-) -> Box<dyn AnyEnvironments<T>>
+) -> Option<Box<dyn AnyEnvironments<T>>>
 where
     T: EnvironmentFloat,
     S: System<T, 1> + Copy + Send + Sync + 'static,
     K: libration::rl::Task<T, 1, O> + 'static,
 {
-    match settings.method {
-        Method::VelocityVerlet => of_method(system, VelocityVerlet, task, settings, which),
-        Method::Rk4 => of_method(system, Rk4, task, settings, which),
-        Method::SymplecticEuler => of_method(system, SymplecticEuler, task, settings, which),
-        Method::Yoshida4 => of_method(system, YOSHIDA4, task, settings, which),
-        other => panic!("no setting has {other:?}"),
+    if const { (size_of::<T>() == 4) == EVEN } {
+        match settings.method {
+            Method::VelocityVerlet => {
+                Some(of_method(system, VelocityVerlet, task, settings, which))
+            }
+            Method::SymplecticEuler => {
+                Some(of_method(system, SymplecticEuler, task, settings, which))
+            }
+            _ => None,
+        }
+    } else {
+        match settings.method {
+            Method::Rk4 => Some(of_method(system, Rk4, task, settings, which)),
+            Method::Yoshida4 => Some(of_method(system, YOSHIDA4, task, settings, which)),
+            _ => None,
+        }
     }
 }
 
