@@ -8,7 +8,7 @@ use libration::rl::policy::{GaussianExploration, Linear, Random};
 use libration::rl::{Autoreset, Environments, Layout, Plan, Policy, Rollout, Task, World, Writes};
 
 use crate::scalar_reference::{Told, alone};
-use crate::{chosen, executions, ideal, perturbed};
+use crate::{chosen, executions, ideal, perturbed, plain};
 
 pub(crate) const POLICY: Linear<2, 1> = Linear { weights: [[-3.0, 0.5]], bias: [0.25] };
 pub(crate) const EXPLORING: GaussianExploration<Linear<2, 1>, 1> =
@@ -128,8 +128,8 @@ fn a_step_is_the_same_by_the_short_way_as_by_the_long() {
         }
     }
     let how = (Layout::Interleaved, Writes::Plain);
-    let short = told(ideal(), POLICY, 0..100, Execution::serial(), &[200], how);
-    let long = told(ideal(), Long(POLICY), 0..100, Execution::serial(), &[200], how);
+    let short = told(plain(), POLICY, 0..100, Execution::serial(), &[200], how);
+    let long = told(plain(), Long(POLICY), 0..100, Execution::serial(), &[200], how);
     assert_eq!(short, long);
 }
 

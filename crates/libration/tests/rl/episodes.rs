@@ -10,11 +10,11 @@ use libration::rl::{Autoreset, Delays, Environment, Environments, Layout, Plan, 
 use libration::system::BaselineOnly;
 
 use crate::bits::POLICY;
-use crate::{SPRING, TASK, ideal, perturbed};
+use crate::{SPRING, TASK, perturbed, plain};
 
 #[test]
 fn an_episode_that_ends_is_kept_with_what_was_seen_last_and_what_it_paid() {
-    let mut all = Environments::new(ideal(), 200, 4, Execution::serial()).unwrap();
+    let mut all = Environments::new(plain(), 200, 4, Execution::serial()).unwrap();
     let mut rollout = Rollout::new(Plan::new(130, 200).truncated().layout(Layout::Planes)).unwrap();
     all.rollout(POLICY, &mut rollout).unwrap();
     let flags = (0..130 * 200).filter(|&at| rollout.terminated()[at] + rollout.truncated()[at] > 0);
@@ -61,7 +61,7 @@ fn an_action_or_a_reward_that_is_no_number_ends_the_episode_of_its_environment_a
  {
     use libration::rl::policy::ActionSequence;
     let run = |bad: Option<f32>, delays| {
-        let environment = ideal().delays(delays);
+        let environment = plain().delays(delays);
         let mut all = Environments::new(environment, 70, 1, Execution::serial()).unwrap();
         let mut actions = vec![0.5_f32; 70 * 6];
         bad.into_iter().for_each(|action| actions[2 * 70 + 33] = action);
@@ -92,7 +92,7 @@ fn what_is_lost_is_seen_so_in_no_transition_and_begins_again() {
     use libration::rl::policy::ActionSequence;
     for autoreset in [Autoreset::NextStep, Autoreset::Disabled] {
         let mut all =
-            Environments::new(ideal().autoreset(autoreset), 70, 1, Execution::serial()).unwrap();
+            Environments::new(plain().autoreset(autoreset), 70, 1, Execution::serial()).unwrap();
         let mut actions = vec![0.5_f32; 70 * 6];
         actions[2 * 70 + 33] = f32::INFINITY;
         let mut rollout = Rollout::new(Plan::new(6, 70).truncated()).unwrap();

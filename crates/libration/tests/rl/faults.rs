@@ -15,10 +15,10 @@ use libration::rl::{
     ActionSample, Delays, Distribution, Environment, Environments, ErrorScale, Estimates, Plan,
     Policy, Rollout, StepIndex, World, Writes,
 };
-use libration::system::Oscillator;
+use libration::system::{BaselineOnly, Oscillator};
 
 use crate::bits::POLICY;
-use crate::{ANYWHERE, ideal};
+use crate::{ANYWHERE, plain};
 
 fn made<E: World<f32, 2, 1>>(world: E) -> Result<Environments<f32, E, 2, 1>, String> {
     Environments::new(world, 2, 0, Execution::serial()).map_err(|error| error.to_string())
@@ -30,24 +30,24 @@ fn refused<E: World<f32, 2, 1>>(world: E) -> String {
 
 #[test]
 fn an_environment_that_cannot_be_is_refused() {
-    let mut backwards = ideal();
+    let mut backwards = plain();
     backwards.dt = -1.0;
     assert_eq!(
         refused(backwards),
         "the time step is -1.0 s; it must be a finite number above 0, in the float type as well"
     );
-    assert_eq!(refused(ideal().substeps(0)), "there are 0 substeps; there must be at least 1");
+    assert_eq!(refused(plain().substeps(0)), "there are 0 substeps; there must be at least 1");
     assert_eq!(
-        refused(ideal().limit(0)),
+        refused(plain().limit(0)),
         "the time limit is 0 actions; it must be at least 1, or absent"
     );
-    let mut turned = ideal();
+    let mut turned = plain();
     turned.start = UniformStart(ANYWHERE.1, ANYWHERE.0);
     assert_eq!(
         refused(turned),
         "width of the start 0 is -2; it must be a finite number of at least 0"
     );
-    let late = |observation, action| ideal().delays(Delays { observation, action });
+    let late = |observation, action| plain().delays(Delays { observation, action });
     assert_eq!(
         refused(late([0, 5000], [0, 0])),
         "latency of observations is 5000; it must be at most 4096 steps"
@@ -56,15 +56,16 @@ fn an_environment_that_cannot_be_is_refused() {
         refused(late([0, 0], [3, 2])),
         "latency of actions is 3; it must be at most the largest"
     );
-    assert!(refused(ideal().clock(Jittered(Gaussian(f64::NAN)))).contains("rms of step times"));
-    let noisy = ideal().sensor(Noisy([Uniform(0.1), Uniform(-0.1)]));
+    assert!(refused(plain().clock(Jittered(Gaussian(f64::NAN)))).contains("rms of step times"));
+    let noisy = plain().sensor(Noisy([Uniform(0.1), Uniform(-0.1)]));
     assert_eq!(
         refused(noisy),
         "the rms of the noise of observation 1 is -0.1; it must be a finite number of at least 0"
     );
     let varied = |distribution| {
-        let apply = |_: [f32; 1], system: Oscillator<f32>, task: Regulate| (system, task);
-        refused(ideal().variation(RandomParameters { numbers: [distribution], apply }))
+        let apply =
+            |_: [f32; 1], system: BaselineOnly<Oscillator<f32>>, task: Regulate| (system, task);
+        refused(plain().variation(RandomParameters { numbers: [distribution], apply }))
     };
     for (distribution, wanted) in [
         (
@@ -104,7 +105,7 @@ fn an_environment_that_cannot_be_is_refused() {
 
 #[test]
 fn a_rollout_that_does_not_fit_is_refused_and_nothing_has_moved() {
-    let mut two = made(ideal()).unwrap();
+    let mut two = made(plain()).unwrap();
     let mut fill = |plan: Plan| {
         let mut rollout = Rollout::new(plan).unwrap();
         two.rollout(POLICY, &mut rollout).map_err(|error| error.to_string())
@@ -126,10 +127,10 @@ fn a_rollout_that_does_not_fit_is_refused_and_nothing_has_moved() {
     // Half of it, since others may have taken some meanwhile.
     large(steps.parse::<usize>().unwrap() / 2, 1 << 26).unwrap();
     assert!(large(usize::MAX / 4, 1 << 20).unwrap_err().to_string().contains("memory"));
-    let mut none = Environments::new(ideal(), 0, 0, Execution::serial()).unwrap();
+    let mut none = Environments::new(plain(), 0, 0, Execution::serial()).unwrap();
     none.rollout(POLICY, &mut Rollout::new(Plan::new(3, 0).truncated()).unwrap()).unwrap();
     let clock = Recorded::once(&[1.0, 1.1, 0.9]);
-    let mut short = Environments::new(ideal().clock(clock), 2, 0, Execution::serial()).unwrap();
+    let mut short = Environments::new(plain().clock(clock), 2, 0, Execution::serial()).unwrap();
     let mut rollout = Rollout::new(Plan::new(5, 2).truncated()).unwrap();
     let error = short.rollout(POLICY, &mut rollout).unwrap_err().to_string();
     assert_eq!(error, "the record of a clock or a delay has 3 steps; the run requires 5");
@@ -138,7 +139,7 @@ fn a_rollout_that_does_not_fit_is_refused_and_nothing_has_moved() {
 #[test]
 fn a_policy_that_cannot_act_is_refused() {
     fn told<P: Policy<f32, 2, 1>>(policy: P) -> String {
-        let mut two = made(ideal()).unwrap();
+        let mut two = made(plain()).unwrap();
         let mut rollout = Rollout::new(Plan::new(5, 2).truncated()).unwrap();
         two.rollout(policy, &mut rollout).unwrap_err().to_string()
     }
@@ -186,7 +187,7 @@ fn a_policy_that_cannot_act_is_refused() {
 #[test]
 fn tasks_and_starts_that_cannot_be_are_refused() {
     let with = |task, start| {
-        let Environment { systems, method, dt, .. } = ideal();
+        let Environment { systems, method, dt, .. } = plain();
         refused(Environment::new(systems, method, dt, task, start))
     };
     let told = with(Regulate { bound: f64::NAN, ..crate::TASK }, ANYWHERE);
@@ -198,15 +199,15 @@ fn tasks_and_starts_that_cannot_be_are_refused() {
     let told = with(crate::TASK, far);
     assert!(told.contains("upper end of the start is 1e300"), "{told}");
     let kind = ErrorScale { clock: [-0.5, 1.0], ..ErrorScale::default() };
-    let told = refused(ideal().error_scale(kind));
+    let told = refused(plain().error_scale(kind));
     assert!(
         told.contains("error scale of the clock is -0.5; it must be a finite number of at least 0"),
         "{told}"
     );
     let told =
-        refused(ideal().error_scale(ErrorScale { sensor: [0.0, 1e39], ..ErrorScale::default() }));
+        refused(plain().error_scale(ErrorScale { sensor: [0.0, 1e39], ..ErrorScale::default() }));
     assert!(told.contains("error scale of the sensor is 1e39; it must be small enough"), "{told}");
-    let far = Environments::<f32, _, 2, 1>::shard(ideal(), usize::MAX, 3, 0, Execution::serial());
+    let far = Environments::<f32, _, 2, 1>::shard(plain(), usize::MAX, 3, 0, Execution::serial());
     assert!(far.unwrap_err().to_string().contains("number of the first environment"));
     // Most plans are larger than any memory, and some than any number.
     for plan in [Plan::new(usize::MAX, usize::MAX), Plan::new(usize::MAX, 0)] {
@@ -237,7 +238,7 @@ fn a_policy_that_draws_without_saying_so_is_refused() {
             ActionSample::deterministic([word() as f32])
         }
     }
-    let mut all = made(ideal()).unwrap();
+    let mut all = made(plain()).unwrap();
     let mut rollout = Rollout::new(Plan::new(1, 2).truncated()).unwrap();
     assert!(all.rollout(Secretive(0), &mut rollout).is_ok());
     assert_eq!(
@@ -249,10 +250,10 @@ fn a_policy_that_draws_without_saying_so_is_refused() {
 #[test]
 fn systems_must_be_as_many_as_environments() {
     let three = [crate::SPRING; 3];
-    let Environment { method, dt, task, start, .. } = ideal();
+    let Environment { method, dt, task, start, .. } = plain();
     let each =
         Environment::new(libration::ensemble::PerTrajectory(&three), method, dt, task, start);
     assert!(refused(each).contains("3 systems for 2 trajectories"));
-    let one = Environment::new(All(crate::SPRING), method, dt, task, start);
+    let one = Environment::new(All(BaselineOnly(crate::SPRING)), method, dt, task, start);
     assert!(made(one).is_ok());
 }

@@ -22,7 +22,7 @@ use libration::rl::start::UniformStart;
 use libration::rl::task::Regulate;
 use libration::rl::variation::NoVariation;
 use libration::rl::{Autoreset, Delays, Distribution, Environment, ErrorScale, Variation, World};
-use libration::system::Oscillator;
+use libration::system::{BaselineOnly, Oscillator};
 use libration::{Method, State};
 
 const SPRING: Oscillator<f32> = Oscillator { omega2: 10.0 };
@@ -31,16 +31,8 @@ const ANYWHERE: UniformStart<1> =
     UniformStart(State { q: [-1.0], v: [-2.0] }, State { q: [1.0], v: [2.0] });
 
 /// A spring in one degree of freedom.
-type Spring<C = Fixed, N = Exact, V = NoVariation> = Environment<
-    Oscillator<f32>,
-    All<Oscillator<f32>>,
-    SymplecticEuler,
-    Regulate,
-    UniformStart<1>,
-    C,
-    N,
-    V,
->;
+type Spring<C = Fixed, N = Exact, V = NoVariation, S = Oscillator<f32>> =
+    Environment<S, All<S>, SymplecticEuler, Regulate, UniformStart<1>, C, N, V>;
 
 /// Clocks that are wrong and uneven.
 type Uneven = (Skewed, Jittered<Gaussian>);
@@ -48,6 +40,11 @@ type Uneven = (Skewed, Jittered<Gaussian>);
 /// Energy is pumped in, so that some episodes end at the bound before the limit of 60 steps.
 fn ideal() -> Spring {
     Environment::new(All(SPRING), SymplecticEuler, 0.06, TASK, ANYWHERE).limit(60)
+}
+
+/// The same on one instruction set, which is compiled once and not once for each: for tests that do not compare them.
+fn plain() -> Spring<Fixed, Exact, NoVariation, BaselineOnly<Oscillator<f32>>> {
+    Environment::new(All(BaselineOnly(SPRING)), SymplecticEuler, 0.06, TASK, ANYWHERE).limit(60)
 }
 
 /// All that an environment can suffer from.
@@ -74,11 +71,11 @@ fn perturbed(
         })
 }
 
-/// One whose integrator is known only when the program runs.
+/// One whose integrator is known only when the program runs: a large kernel, on one instruction set.
 fn chosen(method: Method) -> impl World<f32, 2, 1> {
     use libration::control::Jitter;
 
-    Environment::new(All(SPRING), method, 0.02, TASK, ANYWHERE)
+    Environment::new(All(BaselineOnly(SPRING)), method, 0.02, TASK, ANYWHERE)
         .substeps(3)
         .limit(60)
         .delays(Delays { observation: [0, 4], action: [2, 7] })

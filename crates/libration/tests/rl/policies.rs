@@ -5,17 +5,22 @@ use libration::rl::policy::{
     ActionSequence, Activation, GaussianExploration, Linear, LinearPerEnvironment, Perceptron,
     PerceptronPerEnvironment, Random,
 };
-use libration::rl::{Environments, Plan, Policy, Rollout};
+use libration::rl::{Environments, Plan, Policy, Rollout, World};
 
 use crate::bits::{POLICY, told};
-use crate::{executions, ideal};
+use crate::{executions, ideal, plain};
 
-fn rollout<P: Policy<f32, 2, 1>>(
+fn rollout<P: Policy<f32, 2, 1>>(policy: P, count: usize) -> Rollout<f32, 2, 1> {
+    rollout_of(plain(), policy, count, Execution::serial())
+}
+
+fn rollout_of<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
+    world: E,
     policy: P,
     count: usize,
     execution: Execution,
 ) -> Rollout<f32, 2, 1> {
-    let mut all = Environments::new(ideal(), count, 2, execution).unwrap();
+    let mut all = Environments::new(world, count, 2, execution).unwrap();
     let mut rollout = Rollout::new(Plan::new(300, count).truncated().log_probabilities()).unwrap();
     all.rollout(policy, &mut rollout).unwrap();
     rollout
@@ -23,8 +28,8 @@ fn rollout<P: Policy<f32, 2, 1>>(
 
 #[test]
 fn actions_that_were_recorded_and_are_given_again_lead_to_the_same() {
-    let first = rollout(POLICY, 70, Execution::serial());
-    let again = rollout(ActionSequence(first.action()), 70, Execution::serial());
+    let first = rollout(POLICY, 70);
+    let again = rollout(ActionSequence(first.action()), 70);
     assert_eq!(first.observation(), again.observation());
     assert_eq!(first.reward(), again.reward());
 }
@@ -33,8 +38,8 @@ fn actions_that_were_recorded_and_are_given_again_lead_to_the_same() {
 fn weights_for_each_environment_act_as_the_same_for_all() {
     let weights: Vec<f32> = [-3.0, 0.5, 0.25].iter().flat_map(|&w| [w; 70]).collect();
     for execution in executions() {
-        let each = rollout(LinearPerEnvironment(&weights), 70, execution);
-        let all = rollout(POLICY, 70, Execution::serial());
+        let each = rollout_of(ideal(), LinearPerEnvironment(&weights), 70, execution);
+        let all = rollout(POLICY, 70);
         // The bias is added first here as there.
         assert_eq!(each.observation(), all.observation());
     }
@@ -43,8 +48,8 @@ fn weights_for_each_environment_act_as_the_same_for_all() {
     for at in [40, 110, 180] {
         other[at] = 0.0;
     }
-    let other = rollout(LinearPerEnvironment(&other), 70, Execution::serial());
-    let all = rollout(POLICY, 70, Execution::serial());
+    let other = rollout(LinearPerEnvironment(&other), 70);
+    let all = rollout(POLICY, 70);
     for n in 0..70 {
         assert_eq!(other.done(5, n) == all.done(5, n), n != 40);
     }
@@ -54,8 +59,7 @@ fn weights_for_each_environment_act_as_the_same_for_all() {
 #[test]
 fn exploration_has_the_deviation_and_the_log_probability_that_it_says() {
     let sigma = 0.7;
-    let found =
-        rollout(GaussianExploration { policy: POLICY, sigma: [sigma] }, 256, Execution::serial());
+    let found = rollout(GaussianExploration { policy: POLICY, sigma: [sigma] }, 256);
     let mean = Linear { weights: [[-3.0_f64, 0.5]], bias: [0.25] };
     let (mut sum, mut squares) = (0.0, 0.0);
     for t in 0..300 {
@@ -78,7 +82,7 @@ fn exploration_has_the_deviation_and_the_log_probability_that_it_says() {
 
 #[test]
 fn random_actions_are_uniform_between_their_ends_and_equally_likely() {
-    let found = rollout(Random::between([-1.0], [3.0]), 256, Execution::serial());
+    let found = rollout(Random::between([-1.0], [3.0]), 256);
     let mean = found.action().iter().map(|&a| f64::from(a)).sum::<f64>() / (300.0 * 256.0);
     assert!(found.action().iter().all(|a| (-1.0..=3.0).contains(a)));
     // Four standard errors: the deviation is 4/√12.
@@ -97,10 +101,10 @@ fn a_network_acts_alike_on_every_instruction_set_and_beside_any_number_of_others
         // Networks for each, which happen to be the same; and where one is not, it alone does something else.
         let mut copies: Vec<f32> = parameters.iter().flat_map(|&p| [p; 130]).collect();
         let each = PerceptronPerEnvironment::<f32, 16> { parameters: &copies, activation };
-        assert_eq!(told(ideal(), each, 0..130, Execution::serial(), &[100], how), wanted);
+        assert_eq!(told(plain(), each, 0..130, Execution::serial(), &[100], how), wanted);
         copies[(COUNT - 1) * 130 + 77] += 0.5;
         let each = PerceptronPerEnvironment::<f32, 16> { parameters: &copies, activation };
-        let found = told(ideal(), each, 0..130, Execution::serial(), &[100], how);
+        let found = told(plain(), each, 0..130, Execution::serial(), &[100], how);
         for n in 0..130 {
             assert_eq!(found[n] == wanted[n], n != 77);
         }

@@ -10,7 +10,7 @@ use libration::rl::{
 
 use crate::bits::{EXPLORING, told};
 use crate::scalar_reference::Told;
-use crate::{executions, ideal, perturbed};
+use crate::{executions, perturbed, plain};
 
 /// The transitions of every environment, one after the other.
 fn transitions(autoreset: Autoreset, limit: u32) -> Vec<Vec<Told>> {
@@ -89,11 +89,11 @@ fn a_seed_of_its_own_makes_an_environment_the_first_of_a_batch() {
 
 #[test]
 fn seeds_are_refused_where_there_are_not_as_many_or_clocks_are_listed_by_number() {
-    let mut all = Environments::new(ideal(), 3, 0, Execution::serial()).unwrap();
+    let mut all = Environments::new(plain(), 3, 0, Execution::serial()).unwrap();
     let short = all.seed(&[None, Some(4)]).unwrap_err();
     assert_eq!(short.to_string(), "the number of seeds is 2; it must be 3");
     let rates = [1.0, 1.1, 0.9];
     let mut listed =
-        Environments::new(ideal().clock(Rates(&rates)), 3, 0, Execution::serial()).unwrap();
+        Environments::new(plain().clock(Rates(&rates)), 3, 0, Execution::serial()).unwrap();
     assert_eq!(listed.seed(&[None; 3]), Err(EnvironmentError::Seeded));
 }

@@ -7,7 +7,7 @@ use libration::rl::{
 };
 
 use crate::bits::EXPLORING;
-use crate::{executions, ideal, perturbed};
+use crate::{executions, perturbed, plain};
 
 const STEPS: usize = 150;
 const AUTORESETS: [Autoreset; 3] = [Autoreset::SameStep, Autoreset::NextStep, Autoreset::Disabled];
@@ -28,7 +28,7 @@ fn to_act_step_by_step_is_to_do_so_at_once() {
                 compare(perturbed(autoreset), count, &execution);
             }
             // Nobody looks before an action that was given.
-            compare(ideal().autoreset(autoreset), count, &executions()[0]);
+            compare(plain().autoreset(autoreset), count, &executions()[0]);
         }
     }
 }
@@ -97,7 +97,7 @@ fn a_rollout_that_is_filled_piece_by_piece_is_the_whole_one() {
 
 #[test]
 fn a_step_whose_room_is_for_more_or_fewer_is_refused_and_nothing_has_moved() {
-    let mut all = Environments::new(ideal(), 3, 0, executions().remove(0)).unwrap();
+    let mut all = Environments::new(plain(), 3, 0, executions().remove(0)).unwrap();
     let mut refused = |seen: &mut [f32], reward: &mut [f32], flags: &mut [u8], actions: &[f32]| {
         let mut other = vec![0; flags.len()];
         let to = StepBuffers { seen, reward, terminated: flags, truncated: &mut other };

@@ -126,7 +126,7 @@ fn what_the_near_caches_hold_is_written_through_them_and_what_they_do_not_past_t
 fn values_have_their_room_and_nobody_else_writes_there() {
     let mut rollout = Rollout::<f32, 2, 1>::new(Plan::new(4, 64).values()).unwrap();
     rollout.value_mut().fill(2.5);
-    let mut all = Environments::new(crate::ideal(), 64, 0, Execution::serial()).unwrap();
+    let mut all = Environments::new(crate::plain(), 64, 0, Execution::serial()).unwrap();
     let refused = all.rollout(Constant([0.0]), &mut rollout).unwrap_err().to_string();
     assert_eq!(
         refused,
@@ -173,7 +173,7 @@ fn advantages(
 fn advantages_are_those_of_the_definition_under_every_autoreset() {
     use libration::rl::{Discounts, Estimates};
     for autoreset in [Autoreset::SameStep, Autoreset::NextStep, Autoreset::Disabled] {
-        let environment = crate::ideal().autoreset(autoreset);
+        let environment = crate::plain().autoreset(autoreset);
         let mut all = Environments::new(environment, 90, 6, Execution::serial()).unwrap();
         let plan = Plan::new(100, 90).truncated().values();
         let mut rollout = Rollout::new(plan).unwrap();
