@@ -158,15 +158,20 @@ def test_a_wrong_directional_derivative_is_found(make, version):
     def kinds(report):
         return [finding["kind"] for finding in report.findings]
 
-    # 0.1 s × 0.01 is a thousandth of the row of the step; 0.001 s × 0.01 are less than the 1e-4 that derivatives may differ.
     text = f"fmi{version}GetDirectionalDerivative is -1.01 of the derivative of x1 (m/s) by x0 (m), but differences are -1"
-    for dt, is_finding in ((0.1, True), (0.001, False)):
-        wrong = audit("wrong derivative", dt)
-        assert ("derivatives-differ" in kinds(wrong)) == is_finding and text in wrong.notes
+    # 0.1 s × 0.01 is a thousandth of the row of the step.
+    wrong = audit("wrong derivative", 0.1)
+    assert "derivatives-differ" in kinds(wrong) and text in wrong.notes
+    assert wrong.results["reference"]["source"] == f"fmi{version}GetDirectionalDerivative"
+    if version == 2:
+        # What follows does not depend on the version, and an audit takes seconds.
+        return
+    # 0.001 s × 0.01 are less than the 1e-4 that derivatives may differ.
+    small = audit("wrong derivative", 0.001)
+    assert "derivatives-differ" not in kinds(small) and text in small.notes
     # The longer the step, the larger is what a false difference would weigh.
     right = audit(None, 0.1)
     assert "derivatives-differ" not in kinds(right) and not any("GetDirectional" in note for note in right.notes)
-    assert wrong.results["reference"]["source"] == f"fmi{version}GetDirectionalDerivative"
 
 
 @VERSIONS
