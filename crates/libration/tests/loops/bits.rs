@@ -10,7 +10,7 @@ use libration::control::delay::{Latencies, Order, Packets, Random, RecordedLaten
 use libration::control::{Clock, Controller, Delay, Feedback, Jitter, Latency, RandomLatency};
 use libration::ensemble::{All, Assign, Execution, InstructionSet, Loops, PerTrajectory, Setup};
 use libration::integrator::{ExplicitEuler, Rk4, SymplecticEuler, VelocityVerlet};
-use libration::system::{Oscillator, Pendulum};
+use libration::system::{BaselineOnly, Oscillator, Pendulum};
 use libration::{Integrator, State, System};
 use proptest::prelude::*;
 
@@ -94,6 +94,11 @@ where
 
 fn oscillator<M>(method: M) -> Setup<All<Oscillator<f32>>, M> {
     Setup::new(All(Oscillator { omega2: 4.0 }), method)
+}
+
+/// On one instruction set, for tests that do not compare them: a loop is compiled for each.
+fn plain_oscillator<M>(method: M) -> Setup<All<BaselineOnly<Oscillator<f32>>>, M> {
+    Setup::new(All(BaselineOnly(Oscillator { omega2: 4.0 })), method)
 }
 
 /// Five clocks in one.
@@ -182,7 +187,7 @@ proptest! {
         let start = State { q: [1.0], v: [0.25] };
         let mut one = One::new(omega2, VelocityVerlet, feedback, latency, start);
         (0..steps).for_each(|_| one.step(dt));
-        let setup = Setup::new(All(Oscillator { omega2 }), VelocityVerlet)
+        let setup = Setup::new(All(BaselineOnly(Oscillator { omega2 })), VelocityVerlet)
             .controller(StateFeedback::to_origin(feedback));
         let (states, latencies) = (vec![start; 70], vec![latency; 70]);
         let serial = Execution::serial;
@@ -204,7 +209,7 @@ fn explicit_euler_is_symplectic_euler_with_the_force_one_step_late_bit_for_bit()
     let (spring, dt) = (Oscillator { omega2: 10.0 }, 0.01);
     let start = State { q: [1.0], v: [0.25] };
     // Nothing but the late force acts, and before it arrives, nothing.
-    let late = Setup::new(All(Oscillator { omega2: 0.0 }), SymplecticEuler)
+    let late = Setup::new(All(BaselineOnly(Oscillator { omega2: 0.0 })), SymplecticEuler)
         .controller(Force(spring))
         .delay(Schedule::late(Latency::of_steps(1.0).unwrap()));
     let mut delayed = Loops::new(late, dt, 0, [0.0], &[start], Execution::serial()).unwrap();
@@ -221,7 +226,7 @@ fn explicit_euler_is_symplectic_euler_with_the_force_one_step_late_bit_for_bit()
 
 #[test]
 fn loops_that_are_restored_go_on_bit_for_bit_and_one_that_is_reset_begins_anew() {
-    let setup = oscillator(Rk4)
+    let setup = plain_oscillator(Rk4)
         .controller(StateFeedback::to_origin(GAINS))
         .clock(Correlated { rms: 0.1, correlation: 0.9 })
         .delay(Schedule::new(1.0, 0.5, 4.25).unwrap());
@@ -255,7 +260,7 @@ fn latencies_of_its_own_make_of_a_trajectory_what_a_schedule_for_all_does() {
     let pairs: Vec<[f64; 2]> =
         (0..40_u32).map(|n| [n % 5, n / 5].map(|x| f64::from(x) * 0.75)).collect();
     let [seen, commands] = [0, 1].map(|i| pairs.iter().map(|p| steps(p[i])).collect::<Vec<_>>());
-    let setup = oscillator(VelocityVerlet)
+    let setup = plain_oscillator(VelocityVerlet)
         .controller(StateFeedback { gains: GAINS, target: [0.5] })
         .clock(shaken());
     let starts = [State { q: [1.0_f32], v: [0.25] }; 40];

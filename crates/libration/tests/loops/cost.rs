@@ -9,7 +9,7 @@ use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::Exact;
 use libration::random::{Address, Purpose};
 use libration::system::{BaselineOnly, Oscillator};
-use libration::{Integrator, Method, State, with_method};
+use libration::{Integrator, Method, State};
 
 const MODEL: Oscillator<f64> = Oscillator { omega2: 10.0 };
 const ORIGIN: State<f64, 1> = State { q: [0.0], v: [0.0] };
@@ -100,11 +100,12 @@ fn state_feedback_costs_what_is_predicted_in_eleven_settings() {
         (VelocityVerlet, 0.15, of(0.0, Jitter::Gaussian(0.3), 0.0, 0.1)),
         (Rk4, 0.05, of(2.3, Jitter::Gaussian(0.1), 0.05, 0.1)),
     ];
+    // Methods are dispatched at each step: a loop is compiled once and not once for each of them.
     for (method, dt, imperfections) in settings {
-        let plant = with_method!(method, |m| Plant::new(m, MODEL, ORIGIN, dt));
+        let plant = Plant::new(method, MODEL, ORIGIN, dt);
         let predicted = plant.cost(&GAINS.into(), &imperfections, WEIGHTS).unwrap();
         let controller = StateFeedback::to_origin(GAINS);
-        let measured = with_method!(method, |m| simulated(m, controller, dt, imperfections));
+        let measured = simulated(method, controller, dt, imperfections);
         agrees(&format!("{method:?} {imperfections:?}"), predicted, measured);
     }
 }

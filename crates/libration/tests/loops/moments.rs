@@ -6,7 +6,6 @@ use libration::control::controller::StateFeedback;
 use libration::control::delay::Random;
 use libration::control::{Feedback, Jitter, RandomLatency};
 use libration::ensemble::{All, Execution, Loops, Setup};
-use libration::integrator::{Rk4, SymplecticEuler, VelocityVerlet};
 use libration::system::{BaselineOnly, Oscillator};
 use libration::{Method, State};
 
@@ -14,27 +13,8 @@ const ORIGIN: State<f64, 1> = State { q: [0.0], v: [0.0] };
 const START: State<f64, 1> = State { q: [1.0], v: [0.5] };
 const COUNT: usize = 4000;
 const SPRING: Oscillator<f64> = Oscillator { omega2: 10.0 };
+// They are dispatched at each step: a loop is compiled once and not once for each method.
 const METHODS: [Method; 3] = [Method::SymplecticEuler, Method::VelocityVerlet, Method::Rk4];
-
-/// `$body` with one of [`METHODS`] bound to `$m`: kernels of the others would only be compiled.
-macro_rules! with {
-    ($method:expr, |$m:ident| $body:expr) => {
-        match $method {
-            Method::SymplecticEuler => {
-                let $m = SymplecticEuler;
-                $body
-            }
-            Method::VelocityVerlet => {
-                let $m = VelocityVerlet;
-                $body
-            }
-            _ => {
-                let $m = Rk4;
-                $body
-            }
-        }
-    };
-}
 
 /// The mean of some numbers and its standard error.
 fn mean(numbers: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
@@ -58,10 +38,10 @@ fn second_moments_under_jitter_are_within_three_standard_errors_of_theory() {
             Jitter::Uniform(0.9),
         ] {
             for feedback in [Feedback::default(), Feedback { position: 4.0, velocity: 0.2 }] {
-                let plant = with!(method, |m| Plant::new(m, SPRING, ORIGIN, 0.1));
+                let plant = Plant::new(method, SPRING, ORIGIN, 0.1);
                 let [.., wanted] = plant.mean_square(feedback, law).moments(&START, 100);
-                let [found, error] = with!(method, |m| {
-                    let setup = Setup::new(All(BaselineOnly(SPRING)), m)
+                let [found, error] = {
+                    let setup = Setup::new(All(BaselineOnly(SPRING)), method)
                         .controller(StateFeedback::to_origin(feedback))
                         .clock(Jittered(law));
                     let starts = [START; COUNT];
@@ -69,7 +49,7 @@ fn second_moments_under_jitter_are_within_three_standard_errors_of_theory() {
                         Loops::new(setup, 0.1, 20, [0.0], &starts, Execution::serial()).unwrap();
                     all.advance(100).unwrap();
                     mean(all.trajectories().v(0).iter().map(|v| v * v))
-                });
+                };
                 settings += 1;
                 assert!(
                     (found - wanted).abs() < 3.0 * error,
@@ -92,18 +72,18 @@ fn means_over_asynchronous_clocks_are_within_three_standard_errors_of_theory() {
                 Jitter::Gaussian(0.02),
                 Jitter::Uniform(0.03),
             ] {
-                let plant = with!(method, |m| Plant::new(m, SPRING, ORIGIN, dt));
+                let plant = Plant::new(method, SPRING, ORIGIN, dt);
                 // A third of the time in which the mean falls to 1/e.
                 let steps = (plant.dephasing_steps(law).unwrap().to_f64() / 3.0) as u64;
                 let wanted = plant.asynchronous_mean(&START, law, steps).q[0];
-                let [found, error] = with!(method, |m| {
-                    let setup = Setup::new(All(BaselineOnly(SPRING)), m).clock(Skewed(law));
+                let [found, error] = {
+                    let setup = Setup::new(All(BaselineOnly(SPRING)), method).clock(Skewed(law));
                     let starts = [START; COUNT];
                     let mut all =
                         Loops::new(setup, dt, 8, [0.0], &starts, Execution::serial()).unwrap();
                     all.advance(steps).unwrap();
                     mean(all.trajectories().q(0).iter().copied())
-                });
+                };
                 settings += 1;
                 assert!(
                     (found - wanted).abs() < 3.0 * error,
@@ -129,10 +109,10 @@ fn second_moments_under_random_latency_are_within_three_standard_errors_of_theor
             ] {
                 let feedback = Feedback { position: 3.0, velocity: 1.0 };
                 let latency = RandomLatency::new(table, hold).unwrap();
-                let plant = with!(method, |m| Plant::new(m, SPRING, ORIGIN, 0.1));
+                let plant = Plant::new(method, SPRING, ORIGIN, 0.1);
                 let [.., wanted] = plant.moments_late(feedback, &latency, &START, 40);
-                let [found, error] = with!(method, |m| {
-                    let setup = Setup::new(All(BaselineOnly(SPRING)), m)
+                let [found, error] = {
+                    let setup = Setup::new(All(BaselineOnly(SPRING)), method)
                         .controller(StateFeedback::to_origin(feedback))
                         .delay(Random(&latency));
                     let starts = [START; COUNT];
@@ -140,7 +120,7 @@ fn second_moments_under_random_latency_are_within_three_standard_errors_of_theor
                         Loops::new(setup, 0.1, 5, [0.0], &starts, Execution::serial()).unwrap();
                     all.advance(40).unwrap();
                     mean(all.trajectories().v(0).iter().map(|v| v * v))
-                });
+                };
                 settings += 1;
                 // What is not random at all differs by rounding.
                 let rounding = 1e-12 * wanted.abs();
