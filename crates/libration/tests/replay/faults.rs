@@ -148,13 +148,12 @@ fn a_buffer_of_wider_numbers_and_more_dimensions_keeps_them() {
     use libration::rl::start::FixedStart;
     use libration::rl::task::Regulate;
     use libration::rl::{Environment, Environments};
-    use libration::system::HenonHeiles;
+    use libration::system::{BaselineOnly, HenonHeiles};
 
     let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 };
     let start = FixedStart(State { q: [0.1, 0.2], v: [0.0, 0.1] });
-    let world =
-        Environment::new(All(HenonHeiles { lambda: 1.0 }), VelocityVerlet, 0.01, task, start)
-            .limit(50);
+    let system = All(BaselineOnly(HenonHeiles { lambda: 1.0 }));
+    let world = Environment::new(system, VelocityVerlet, 0.01, task, start).limit(50);
     let mut all = Environments::<f64, _, 4, 2>::new(world, 70, 1, Execution::serial()).unwrap();
     let mut rollout = Rollout::new(Plan::new(120, 70).truncated()).unwrap();
     all.rollout(Random::between([-1.0; 2], [1.0; 2]), &mut rollout).unwrap();
