@@ -16,6 +16,7 @@ mod outcome;
 mod overflow;
 mod request;
 mod run;
+mod three_digits;
 
 use std::io::Write;
 use std::sync::atomic::AtomicBool;

@@ -11,4 +11,6 @@ mod loop_growth;
 mod overflow;
 mod reference;
 mod stability_windows;
+#[path = "../../src/trajectory/three_digits.rs"]
+mod three_digits;
 mod trajectory;
