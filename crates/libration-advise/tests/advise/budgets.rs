@@ -13,7 +13,7 @@ use super::case::{Case, drawn};
 use super::requests::with_work;
 
 #[test]
-fn of_forty_random_loops_each_budget_ends_where_simulations_become_unstable() {
+fn of_twenty_random_loops_each_budget_ends_where_simulations_become_unstable() {
     let mut tried = [0; 3];
     let cases = (0..).map(|i| Case {
         omega2: drawn(1000 + 4 * i, 0.5, 30.0),
@@ -54,12 +54,12 @@ fn of_forty_random_loops_each_budget_ends_where_simulations_become_unstable() {
             }
         }
         loops += 1;
-        if loops == 40 {
+        if loops == 20 {
             break;
         }
     }
     // Late enough every loop fails, and slow enough most; of jitter many bear all that there is.
-    assert!(tried[0] == 40 && tried[2] > 24 && tried[1] > 6, "{tried:?}, {skipped} unstable");
+    assert!(tried[0] == 20 && tried[2] > 12 && tried[1] > 3, "{tried:?}, {skipped} unstable");
 }
 
 #[test]
