@@ -8,8 +8,8 @@ use libration_lab::STUDIES;
 use libration_report::Record;
 use libration_report::record::ClaimVerdict::{Conditional, Confirmed, NotReproducible, Refuted};
 use libration_report::record::{ClaimVerdict, Verdict};
-use libration_study::{Config, Effort, Lab, Silent, Spring, Start};
-use libration_study_motion::{DriftSettings, PrecisionSettings};
+use libration_study::{Config, Effort, Lab, Silent, Spring, Start, Study};
+use libration_study_motion::DriftSettings;
 
 use crate::default_run::{measured, predicted, records};
 
@@ -196,10 +196,7 @@ fn a_conditional_verdict_says_its_condition_and_no_other_has_one() {
 
 #[test]
 fn findings_agree_for_other_springs_starts_methods_and_steps() {
-    let defaults = STUDIES.config();
-    let precision =
-        PrecisionSettings { steps: 50_000, ..defaults.get::<PrecisionSettings>().clone() };
-    let base = defaults.with(precision);
+    let base = STUDIES.config();
     let drift = |dt: &[f64], steps| DriftSettings { dt: dt.to_vec(), steps };
     let all = Method::ALL.to_vec();
     let configs = [
@@ -227,15 +224,20 @@ fn findings_agree_for_other_springs_starts_methods_and_steps() {
             Config { integrators: all, start: Start { q: 0.0, v: 1.0 }, ..base.clone() }
                 .with(drift(&[0.7, 1.5], 5_000)),
         ),
-        ("a single step", base.with(drift(&[1e-6], 1))),
     ];
     let stop = AtomicBool::new(false);
+    // A setting of this study alone.
+    let single = base.with(drift(&[1e-6], 1));
+    let lab = Lab::new(&single, Effort::Quick, &Silent, &stop);
+    all_agree(&[libration_study_motion::Drift.run(&lab).unwrap()], "a single step");
     for (what, config) in &configs {
         let lab = Lab::new(config, Effort::Quick, &Silent, &stop);
-        // What concerns other systems, or one oscillator and no other, does not depend on these.
+        // What concerns other systems, or one oscillator and no other, does not depend on these. Of `precision` other tests have
+        // such settings.
         let others = [
             "convergence",
             "nonlinear",
+            "precision",
             "latency",
             "jitter",
             "asynchrony",
@@ -260,8 +262,16 @@ fn a_run_repeats_to_the_bit_on_one_thread_and_on_many() {
     for (study, a) in STUDIES.studies.iter().zip(records()) {
         // That ensembles of loops repeat on any number of threads the engine's tests show, and `determinism`; `throughput`,
         // `memory`, `rollout` and `storage` measure time.
-        let others =
-            ["latency", "jitter", "asynchrony", "throughput", "memory", "rollout", "storage"];
+        let others = [
+            "latency",
+            "jitter",
+            "asynchrony",
+            "hierarchy",
+            "throughput",
+            "memory",
+            "rollout",
+            "storage",
+        ];
         if others.contains(&study.name()) {
             continue;
         }
