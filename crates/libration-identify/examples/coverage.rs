@@ -1,6 +1,6 @@
 //! How often 95 % intervals contain the truth, for noise that the model has and that it has not.
 //!
-//! `cargo run --release -p libration-identify --example coverage -- 10000`
+//! `cargo run --release -p libration-identify --example coverage -- 1500`, with a part of the name of a noise for that noise alone.
 
 use std::sync::atomic::AtomicBool;
 
@@ -83,13 +83,14 @@ const CASES: [Case; 7] = [
 
 fn main() -> Result<(), IdentifyError> {
     let count: u64 = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(200);
+    let wanted = std::env::args().nth(2).unwrap_or_default();
     let stop = AtomicBool::new(false);
     let work = Work::new(&Silent, &stop);
     println!(
         "{:<34} {:>9} {:>9} {:>9} {:>9} {:>13}",
         "noise", "dead time", "lag", "latency", "gain", "contradicted"
     );
-    for case in &CASES {
+    for case in CASES.iter().filter(|case| case.name.contains(&wanted)) {
         let trajectories: Vec<u64> = (0..count).collect();
         let found = work.sweep("loops", &trajectories, |&trajectory| {
             Ok::<_, Interrupted>(identified(case, trajectory).ok())

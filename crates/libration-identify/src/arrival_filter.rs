@@ -24,13 +24,22 @@ pub(crate) struct Start {
     pub(crate) variance: f64,
 }
 
-/// The log likelihood of a recording; each response leaves a normal score in `scores`, if they are wanted.
+/// What each response leaves behind.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Trace {
+    /// Normal scores.
+    pub(crate) scores: Vec<f64>,
+    /// Parts of the log likelihood.
+    pub(crate) terms: Vec<f64>,
+}
+
+/// The log likelihood of a recording, and its trace if one is wanted.
 pub(crate) fn log_likelihood(
     recording: &Recording,
     plant: &UnitPlant,
     model: &ArrivalModel,
     start: &Start,
-    mut scores: Option<&mut Vec<f64>>,
+    mut trace: Option<&mut Trace>,
 ) -> f64 {
     let n = plant.states();
     let (times, values) = (&recording.command_times[..], &recording.commands[..]);
@@ -70,7 +79,7 @@ pub(crate) fn log_likelihood(
         let mut total = 0.0;
         for h in &mut hypotheses {
             let (error, spread) = h.measure(plant, model, values, response);
-            if scores.is_some() {
+            if trace.is_some() {
                 below += h.weight * normal_probability(error / spread.sqrt());
             }
             h.weight *= (-0.5 * error * error / spread).exp() / (TAU * spread).sqrt();
@@ -80,8 +89,9 @@ pub(crate) fn log_likelihood(
         if total <= 0.0 || total.is_nan() {
             return f64::NEG_INFINITY;
         }
-        if let Some(scores) = &mut scores {
-            scores.push(normal_quantile(below));
+        if let Some(trace) = &mut trace {
+            trace.scores.push(normal_quantile(below));
+            trace.terms.push(total.ln());
         }
         log_likelihood += total.ln();
         hypotheses.iter_mut().for_each(|h| h.weight /= total);

@@ -25,7 +25,10 @@ pub(crate) fn arrival_parameters(
         }
         _ => 0.0,
     };
-    let error = |i: usize| covariance.map(|covariance| covariance[(i, i)].sqrt().max(least(i)));
+    let error = |i: usize| {
+        let error = covariance.map(|covariance| covariance[(i, i)].sqrt())?;
+        error.is_finite().then(|| error.max(least(i)))
+    };
     let quantile = normal_quantile(0.5 + 0.5 * LEVEL);
     let around = |row: Estimated, error: Option<f64>, least: f64| Estimated {
         standard_error: error,
@@ -76,9 +79,10 @@ pub(crate) fn arrival_parameters(
         ArrivalLaw::TwoDelays => {
             let (longer, late) = fit.model.second;
             // Of the sum of both coordinates.
-            let sum = covariance.filter(|_| model.known[0].is_none()).map(|c| {
-                (c[(0, 0)] + c[(last - 1, last - 1)] + 2.0 * c[(0, last - 1)]).max(0.0).sqrt()
-            });
+            let sum = covariance
+                .filter(|_| model.known[0].is_none())
+                .map(|c| c[(0, 0)] + c[(last - 1, last - 1)] + 2.0 * c[(0, last - 1)]);
+            let sum = sum.filter(|square| square.is_finite()).map(|square| square.max(0.0).sqrt());
             let value = fit.model.shape[0] + longer;
             let row = Estimated::plain("second_dead_time", "longer dead time", "s", value);
             rows.push(around(row, sum, 0.0));

@@ -1,11 +1,9 @@
 //! Fits of lost commands and of two dead times.
 
-use libration::linear::{Matrix, solve_matrix};
-
-use crate::arrival_filter::{Start, log_likelihood};
+use crate::arrival_filter::{Start, Trace, log_likelihood};
 use crate::estimate::Estimate;
 use crate::hypothesis::{ArrivalModel, MOST_STATES};
-use crate::minimum::{restarted, simplex};
+use crate::minimum::{restarted, within};
 use crate::model::Model;
 use crate::noise::NoiseKind;
 use crate::recording::Recording;
@@ -53,18 +51,21 @@ pub(crate) struct ArrivalFit {
 
 /// Starts of a search.
 const STARTS: usize = 2;
+/// Most calls per coordinate of each simplex of a search, and of the fit to all responses.
+const ROUGH_CALLS: usize = 40;
+const FINE_CALLS: usize = 60;
 /// Responses of a search, before all of them.
 const SEARCHED: usize = 500;
 
 /// What is fixed during a search.
 pub(crate) struct ArrivalSearch<'a> {
-    model: Model,
-    recording: &'a Recording,
+    pub(crate) model: Model,
+    pub(crate) recording: &'a Recording,
     law: ArrivalLaw,
     start: Start,
     /// The standard deviation of the noise of the base.
     deviation: f64,
-    scales: Vec<f64>,
+    pub(crate) scales: Vec<f64>,
     starts: Vec<Vec<f64>>,
     /// Coefficients of the base that are no coordinates.
     hidden: usize,
@@ -143,8 +144,8 @@ impl<'a> ArrivalSearch<'a> {
         Some(ArrivalSearch { model, recording, law, start, deviation, scales, starts, hidden })
     }
 
-    /// The fit of greatest likelihood.
-    pub(crate) fn fit(&self) -> Option<ArrivalFit> {
+    /// The fit of greatest likelihood of the first responses, with its likelihood of all.
+    pub(crate) fn rough(&self) -> Option<ArrivalFit> {
         let mut cost = |coordinates: &[f64]| self.cost_of(coordinates, SEARCHED);
         let mut rough: Vec<(f64, &Vec<f64>)> =
             self.starts.iter().map(|start| (cost(start), start)).collect();
@@ -153,22 +154,27 @@ impl<'a> ArrivalSearch<'a> {
         let found = rough
             .into_iter()
             .take(STARTS)
-            .map(|(_, start)| restarted(&mut cost, start, &self.scales, 0.1))
+            .map(|(_, start)| within(&mut cost, start, &self.scales, 0.1, ROUGH_CALLS))
             .min_by(|a, b| a.value.total_cmp(&b.value))?;
-        self.fit_near(&found.point)
+        let found = restarted(&mut cost, &found.point, &self.scales, 0.1, ROUGH_CALLS);
+        self.fit_of(self.cost(&found.point), found.point)
     }
 
     /// The fit near these coordinates.
     pub(crate) fn fit_near(&self, start: &[f64]) -> Option<ArrivalFit> {
         let mut cost = |coordinates: &[f64]| self.cost(coordinates);
         let fresh: Vec<f64> = self.scales.iter().map(|scale| 0.3 * scale).collect();
-        let found = simplex(&mut cost, start, &fresh, 1e-3);
+        let found = restarted(&mut cost, start, &fresh, 1e-2, FINE_CALLS);
+        self.fit_of(found.value, found.point)
+    }
+
+    fn fit_of(&self, cost: f64, coordinates: Vec<f64>) -> Option<ArrivalFit> {
         Some(ArrivalFit {
             law: self.law,
-            model: self.arrival_model(&found.point)?,
-            log_likelihood: -found.value,
-            parameters: found.point.len() + self.hidden,
-            coordinates: found.point,
+            model: self.arrival_model(&coordinates)?,
+            log_likelihood: -cost,
+            parameters: coordinates.len() + self.hidden,
+            coordinates,
         })
     }
 
@@ -209,7 +215,12 @@ impl<'a> ArrivalSearch<'a> {
         Some(model)
     }
 
-    fn cost(&self, coordinates: &[f64]) -> f64 {
+    /// The number of responses.
+    pub(crate) fn count(&self) -> usize {
+        self.recording.responses.len() - self.start.first
+    }
+
+    pub(crate) fn cost(&self, coordinates: &[f64]) -> f64 {
         self.cost_of(coordinates, usize::MAX)
     }
 
@@ -222,58 +233,18 @@ impl<'a> ArrivalSearch<'a> {
         })
     }
 
-    /// Normal scores of the responses, which are independent if the model holds.
-    pub(crate) fn scores(&self, fit: &ArrivalFit) -> Vec<f64> {
-        let plant = self.model.response.dynamics(&fit.model.shape[1..]);
-        let mut scores = Vec::new();
-        log_likelihood(self.recording, &plant, &fit.model, &self.start, Some(&mut scores));
-        scores
+    /// What the responses leave behind at these coordinates; `None` outside of the model.
+    pub(crate) fn trace(&self, coordinates: &[f64]) -> Option<Trace> {
+        let model = self.arrival_model(coordinates)?;
+        let plant = self.model.response.dynamics(&model.shape[1..]);
+        let mut trace = Trace::default();
+        let value = log_likelihood(self.recording, &plant, &model, &self.start, Some(&mut trace));
+        value.is_finite().then_some(trace)
     }
 
-    /// The covariance of the coordinates, by the curvature of the likelihood.
-    pub(crate) fn covariance(&self, fit: &ArrivalFit) -> Option<Matrix> {
-        let n = fit.coordinates.len();
-        let mut steps: Vec<f64> = self.scales.iter().map(|scale| 0.02 * scale.abs()).collect();
-        let at = |moves: &[(usize, f64)]| {
-            let mut coordinates = fit.coordinates.clone();
-            moves.iter().for_each(|&(i, step)| coordinates[i] += step);
-            self.cost(&coordinates)
-        };
-        let centre = -fit.log_likelihood;
-        // Steps over which the likelihood falls by about one half.
-        for (i, step) in steps.iter_mut().enumerate() {
-            for _ in 0..12 {
-                let rise = 0.5 * (at(&[(i, *step)]) + at(&[(i, -*step)])) - centre;
-                if rise >= 2.0 || rise.is_nan() {
-                    *step *= 0.5;
-                } else if rise < 0.1 {
-                    *step *= 1.7;
-                } else {
-                    break;
-                }
-            }
-        }
-        let hessian = Matrix::from_fn(n, n, |i, j| {
-            let (a, b) = (steps[i], steps[j]);
-            match i == j {
-                true => (at(&[(i, a)]) + at(&[(i, -a)]) - 2.0 * centre) / (a * a),
-                false => {
-                    let (a, b) = (0.7 * a, 0.7 * b);
-                    (at(&[(i, a), (j, b)]) + at(&[(i, -a), (j, -b)])
-                        - at(&[(i, a), (j, -b)])
-                        - at(&[(i, -a), (j, b)]))
-                        / (4.0 * a * b)
-                }
-            }
-        });
-        let is_given = self.model.gain.is_some();
-        let gain = self.model.free_shape();
-        let hessian = Matrix::from_fn(n, n, |i, j| match is_given && (i == gain || j == gain) {
-            true => f64::from(u8::from(i == j)),
-            false => hessian[(i, j)],
-        });
-        let covariance = solve_matrix(&hessian, &Matrix::identity(n))?;
-        (0..n).all(|i| covariance[(i, i)] > 0.0).then_some(covariance)
+    /// Normal scores of the responses, which are independent if the model holds.
+    pub(crate) fn scores(&self, fit: &ArrivalFit) -> Vec<f64> {
+        self.trace(&fit.coordinates).unwrap_or_default().scores
     }
 }
 

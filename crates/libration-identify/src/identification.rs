@@ -45,7 +45,7 @@ pub struct Identification {
     pub correlation: Option<f64>,
     /// Tests of the residuals.
     pub residuals: ResidualTests,
-    /// Whether the residuals contradict the model, so that its intervals cannot be trusted.
+    /// Whether the residuals contradict the model, or more than 5 % of the commands are missing, so that its intervals cannot be trusted.
     pub is_contradicted: bool,
     /// All tried models, the best first.
     pub candidates: Vec<CandidateRow>,
@@ -94,13 +94,13 @@ pub struct StateSpace {
 }
 
 impl Identification {
-    /// The range of dead times.
-    pub(crate) fn dead_times(&self) -> Option<[f64; 2]> {
+    /// The range of dead times; of a dead time that is not known, only with its interval.
+    pub(crate) fn dead_times(&self, known: Option<f64>) -> Option<[f64; 2]> {
         let value = |key: &str| self.parameter(key).map_or(0.0, |parameter| parameter.value);
         let dead_time = self.parameter("dead_time")?;
         let [low, high] = match dead_time.interval {
             Some(interval) => [interval.low, interval.high?],
-            None => [dead_time.value; 2],
+            None => [known?; 2],
         };
         let jitter = 2.0 * value("jitter");
         Some([(low - jitter).max(0.0), (high + jitter).max(value("second_dead_time"))])

@@ -20,6 +20,8 @@ use crate::{summary, warnings};
 
 /// Most responses of a fit: of a longer recording, those during which the command changes most.
 const MOST_USED: usize = 10_000;
+/// The largest share of commands that may be missing from a log.
+const MOST_MISSING: f64 = 0.05;
 /// The longest lead of a response that is looked for, in intervals of the responses.
 const LONGEST_LEAD: f64 = 20.0;
 /// Most responses of a fit over time.
@@ -74,7 +76,7 @@ pub fn identify(
         noise: estimate.model.noise,
         arrivals: arrivals.as_ref().map_or(ArrivalLaw::Certain, |fit| fit.law).name(),
         correlation,
-        is_contradicted: residuals.contradict(),
+        is_contradicted: residuals.contradict() || lacks_commands(recording),
         residuals,
         candidates,
         bootstrap,
@@ -103,7 +105,7 @@ pub fn identify(
     let lead = lead(&estimate, recording);
     let context = warnings::Context { estimate: &estimate, recording, all, longest_lag, lead };
     found.warnings = warnings::warnings(&found, &context);
-    found.delay_range = found.dead_times();
+    found.delay_range = found.dead_times(estimate.model.known[0]);
     found.answer = summary::answer(&found);
     Ok(found)
 }
@@ -112,6 +114,11 @@ pub fn identify(
 fn longest_lag(fit: &Estimate, recording: &Recording) -> Option<f64> {
     let place = fit.coordinates.len().checked_sub(1).filter(|_| fit.model.known[1].is_none())?;
     profile_interval(fit, recording, Functional::Coordinate(place), None).high
+}
+
+/// Whether so many commands are missing from the log that no model can be right.
+fn lacks_commands(recording: &Recording) -> bool {
+    recording.missing_commands() as f64 > MOST_MISSING * recording.commands.len() as f64
 }
 
 /// By how much the response leads the command, in s, if a dead time of zero is not early enough.

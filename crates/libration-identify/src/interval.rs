@@ -4,8 +4,10 @@ use serde::Serialize;
 
 use crate::estimate::{Estimate, TOLERANCE};
 use crate::minimum::simplex;
+use crate::model::Model;
 use crate::quantiles::student;
 use crate::recording::Recording;
+use crate::whitening::COMMAND;
 
 /// A 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -30,6 +32,8 @@ pub(crate) enum Functional {
     Coordinate(usize),
     /// The sum of the first two: of dead time and lag.
     Sum,
+    /// The gain.
+    Gain,
 }
 
 /// The interval of values that a likelihood ratio does not exclude (W. Q. Meeker and L. A. Escobar, American Statistician 49, 1995), with
@@ -46,19 +50,17 @@ pub(crate) fn profile_interval(
     let count = estimate.regression.residuals.len() as f64;
     let freedom = (count - estimate.parameters() as f64).max(1.0);
     let threshold = 0.5 * count * (student(freedom).powi(2) / freedom).ln_1p();
-    let value = value(&estimate.coordinates, of);
+    let value = match of {
+        Functional::Coordinate(i) => estimate.coordinates[i].abs(),
+        Functional::Sum => estimate.coordinates[0].abs() + estimate.coordinates[1].abs(),
+        Functional::Gain => estimate.regression.coefficients[COMMAND],
+    };
     let first = deviation.filter(|step| step.is_finite() && *step > 0.0);
     let first = first.unwrap_or(0.1 * estimate.model.interval);
     let low = end(estimate, recording, of, value, -first, threshold);
     let high = end(estimate, recording, of, value, first, threshold);
-    Interval { low: low.unwrap_or(0.0), high }
-}
-
-fn value(coordinates: &[f64], of: Functional) -> f64 {
-    match of {
-        Functional::Coordinate(i) => coordinates[i].abs(),
-        Functional::Sum => coordinates[0].abs() + coordinates[1].abs(),
-    }
+    let lowest = if of == Functional::Gain { f64::NEG_INFINITY } else { 0.0 };
+    Interval { low: low.unwrap_or(lowest), high }
 }
 
 /// The end of an interval on the side of `step`; `None` if it has none.
@@ -78,7 +80,11 @@ fn end(
         }
         cost + estimate.log_likelihood - threshold
     };
-    let limit = if step < 0.0 { 0.0 } else { 1e3 * (centre + estimate.model.interval) };
+    let limit = match of {
+        Functional::Gain => centre + 1e3 * step,
+        _ if step < 0.0 => 0.0,
+        _ => 1e3 * (centre + estimate.model.interval),
+    };
     // Outward until the likelihood has fallen far enough.
     let (mut inner, mut inner_excess) = (centre, -threshold);
     let mut width = step;
@@ -129,10 +135,11 @@ fn end(
 /// The coordinates without that of the functional.
 fn others(coordinates: &[f64], of: Functional) -> Vec<f64> {
     let left_out = match of {
-        Functional::Coordinate(i) => i,
-        Functional::Sum => 0,
+        Functional::Coordinate(i) => Some(i),
+        Functional::Sum => Some(0),
+        Functional::Gain => None,
     };
-    let kept = coordinates.iter().enumerate().filter(|&(i, _)| i != left_out);
+    let kept = coordinates.iter().enumerate().filter(|&(i, _)| Some(i) != left_out);
     kept.map(|(_, &x)| x).collect()
 }
 
@@ -144,7 +151,10 @@ pub(crate) fn constrained(
     at: f64,
     warm: &[f64],
 ) -> (f64, Vec<f64>) {
-    let model = &estimate.model;
+    let model = match of {
+        Functional::Gain => Model { gain: Some(at), ..estimate.model.clone() },
+        _ => estimate.model.clone(),
+    };
     let window = model.window(recording);
     let mut cost = |free: &[f64]| {
         let mut coordinates = free.to_vec();
@@ -157,6 +167,7 @@ pub(crate) fn constrained(
                 }
                 coordinates.insert(0, first);
             }
+            Functional::Gain => {}
         }
         model.cost(window, &coordinates)
     };

@@ -4,6 +4,7 @@
 //! for a dead time that is any part of a period. [`identify`] maximises it.
 
 mod arrival_filter;
+mod arrival_information;
 mod arrival_parameters;
 mod arrivals;
 mod bootstrap;

@@ -18,6 +18,17 @@ pub(crate) fn simplex(
     scales: &[f64],
     tolerance: f64,
 ) -> Minimum {
+    within(f, start, scales, tolerance, MOST_CALLS)
+}
+
+/// The same with at most this many calls per coordinate.
+pub(crate) fn within(
+    f: &mut dyn FnMut(&[f64]) -> f64,
+    start: &[f64],
+    scales: &[f64],
+    tolerance: f64,
+    most: usize,
+) -> Minimum {
     let n = start.len();
     let mut value = |point: &[f64]| {
         let found = f(point);
@@ -35,7 +46,7 @@ pub(crate) fn simplex(
     // The cost of a minimum rises with the square of the distance.
     let size = tolerance.sqrt().clamp(1e-5, 0.05);
     let mut calls = 0;
-    while calls < MOST_CALLS * n {
+    while calls < most * n {
         points.sort_by(|a, b| a.value.total_cmp(&b.value));
         let spread = points[n].value - points[0].value;
         let is_small = (0..n).all(|i| {
@@ -83,18 +94,20 @@ pub(crate) fn simplex(
 /// Most restarts of a search.
 const MOST_RESTARTS: usize = 3;
 
-/// The minimum of simplexes that begin where the one before collapsed, until another gains less than `10 · tolerance` or a tenth.
+/// The minimum of simplexes of at most `most` calls per coordinate that begin where the one before collapsed, until another gains less than
+/// `10 · tolerance` or a tenth.
 pub(crate) fn restarted(
     f: &mut dyn FnMut(&[f64]) -> f64,
     start: &[f64],
     scales: &[f64],
     tolerance: f64,
+    most: usize,
 ) -> Minimum {
-    let mut best = simplex(f, start, scales, tolerance);
+    let mut best = within(f, start, scales, tolerance, most);
     for round in 0..MOST_RESTARTS {
         let sign = if round % 2 == 0 { -0.6 } else { 0.6 };
         let fresh: Vec<f64> = scales.iter().map(|scale| sign * scale).collect();
-        let found = simplex(f, &best.point, &fresh, tolerance);
+        let found = within(f, &best.point, &fresh, tolerance, most);
         let gained = best.value - found.value;
         if gained > 0.0 {
             best = found;

@@ -46,7 +46,7 @@ pub(crate) fn certain_parameters(
     information: Option<&Information>,
 ) -> Vec<Estimated> {
     let mut parameters = shape_parameters(estimate, recording, information);
-    parameters.extend(linear_parameters(estimate, information));
+    parameters.extend(linear_parameters(estimate, recording, information));
     parameters.extend(noise_parameters(estimate));
     parameters
 }
@@ -134,7 +134,11 @@ fn normal_interval(value: f64, error: f64, estimate: &Estimate) -> Interval {
 }
 
 /// Gain and load.
-fn linear_parameters(estimate: &Estimate, information: Option<&Information>) -> Vec<Estimated> {
+fn linear_parameters(
+    estimate: &Estimate,
+    recording: &Recording,
+    information: Option<&Information>,
+) -> Vec<Estimated> {
     let coordinates = estimate.model.coordinates();
     let error = |column: usize| {
         let found = information?;
@@ -156,7 +160,19 @@ fn linear_parameters(estimate: &Estimate, information: Option<&Information>) -> 
                 standard_error,
             }
         })
+        .map(|row| match row.key == "gain" && estimate.model.gain.is_none() {
+            true => Estimated { interval: gain_interval(estimate, recording, &row), ..row },
+            false => row,
+        })
         .collect()
+}
+
+/// The interval of the gain: with noise of which the colour is fitted too, the normal one is too narrow.
+fn gain_interval(estimate: &Estimate, recording: &Recording, row: &Estimated) -> Option<Interval> {
+    let first = row.standard_error.unwrap_or(0.01 * row.value.abs());
+    let profile = profile_interval(estimate, recording, Functional::Gain, Some(first));
+    let is_whole = profile.high.is_some() && profile.low.is_finite();
+    if is_whole { Some(profile) } else { row.interval }
 }
 
 /// Standard deviations of the noise.

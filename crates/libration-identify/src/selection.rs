@@ -30,6 +30,9 @@ pub(crate) struct Selection {
 /// Forms of response whose noise and arrivals are searched.
 const PURSUED: usize = 3;
 
+/// Models whose criterion is larger by more than this before they are fitted to all responses are not fitted to them.
+const MAY_WIN: f64 = 60.0;
+
 /// Forms of response with held commands whose arrivals are searched.
 const HELD: usize = 2;
 
@@ -172,9 +175,26 @@ fn with_arrivals(
     let laws = ArrivalLaw::ALL;
     let jobs: Vec<(&Estimate, ArrivalLaw)> =
         held.iter().flat_map(|&base| laws.map(|law| (base, law))).collect();
-    let found = work.sweep("arrivals", &jobs, |&(base, law)| {
+    let rough = work.sweep("arrivals", &jobs, |&(base, law)| {
         let search = ArrivalSearch::new(law, base, recording);
-        Ok::<_, IdentifyError>(search.and_then(|search| search.fit()))
+        Ok::<_, IdentifyError>(search.and_then(|search| search.rough()))
+    })?;
+    // Only what may win is fitted to all responses.
+    let count = |base: &Estimate| base.regression.residuals.len();
+    let criteria: Vec<f64> = jobs
+        .iter()
+        .zip(&rough)
+        .map(|((base, _), fit)| {
+            fit.as_ref().map_or(f64::INFINITY, |fit| fit.criterion(count(base)))
+        })
+        .collect();
+    let least = criteria.iter().copied().fold(f64::INFINITY, f64::min);
+    let jobs: Vec<_> = jobs.into_iter().zip(rough).zip(criteria).collect();
+    let found = work.sweep("arrivals", &jobs, |(((base, law), fit), criterion)| {
+        let Some(fit) = fit else { return Ok::<_, IdentifyError>(None) };
+        let is_near = *criterion < least + MAY_WIN || *law == ArrivalLaw::Certain;
+        let search = ArrivalSearch::new(*law, base, recording).filter(|_| is_near);
+        Ok(search.map_or(Some(fit.clone()), |search| search.fit_near(&fit.coordinates)))
     })?;
     let mut rows = Vec::new();
     for (base, fits) in held.iter().zip(found.chunks(laws.len())) {

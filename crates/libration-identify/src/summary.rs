@@ -53,6 +53,9 @@ pub(crate) fn answer(found: &Identification) -> String {
     );
     let verdict = match found.is_contradicted {
         false => "The residuals do not contradict the model.",
+        true if !found.residuals.contradict() => {
+            "Too many commands are missing from the log: the intervals cannot be trusted."
+        }
         true => "The residuals contradict the model: its intervals cannot be trusted.",
     };
     if !found.depends_on_command {

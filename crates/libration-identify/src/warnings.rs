@@ -7,6 +7,7 @@ use crate::arrivals::spread;
 use crate::candidate::CandidateRow;
 use crate::estimate::Estimate;
 use crate::identification::Identification;
+use crate::interval::Interval;
 use crate::recording::Recording;
 use crate::residuals::CONTRADICTION;
 use crate::summary::seconds;
@@ -95,6 +96,29 @@ pub(crate) fn warnings(found: &Identification, context: &Context<'_>) -> Vec<Str
         && found.parameters.iter().any(|p| p.interval.is_some_and(|i| i.high.is_none()));
     if reached {
         warnings.push("the upper end of a parameter is unknown".to_owned());
+    }
+    let known = estimate.model.response.parameters().iter().zip(&estimate.model.known);
+    let known: Vec<&str> =
+        known.filter(|(_, known)| known.is_some()).map(|(name, _)| name.key).collect();
+    for parameter in found.parameters.iter().filter(|parameter| parameter.interval.is_none()) {
+        let is_asked = matches!(
+            &*parameter.key,
+            "dead_time" | "lag" | "time_constant" | "jitter" | "loss" | "second_dead_time"
+        );
+        if is_asked && !known.contains(&&*parameter.key) {
+            warnings.push(format!(
+                "the {} has no interval: the likelihood is not smooth enough here",
+                parameter.name
+            ));
+        }
+    }
+    let dead_time = found.parameter("dead_time").and_then(|p| Some((p.value, p.interval?)));
+    let is_vague = |(value, interval): (f64, Interval)| {
+        value > found.interval
+            && interval.high.is_some_and(|high| high - interval.low > 2.0 * value)
+    };
+    if dead_time.is_some_and(is_vague) {
+        warnings.push("the dead time is hardly known: its interval is wider than twice the dead time; help: commands that change less often".to_owned());
     }
     if let Some(warning) = quantisation(estimate, recording) {
         warnings.push(warning);

@@ -1,13 +1,23 @@
 //! Commands that are lost or late at random.
 
-use libration_identify::{Hold, Identification, Recording, Request, ResponseKind};
+use libration_identify::{Hold, Identification, Interval, Recording, Request, ResponseKind};
 
 use crate::loops::{Draws, commands, identified, lag_response, quick, value};
 
 /// A loop whose commands arrive as `arrival` says; a command that arrives after a newer one is ignored.
 fn recorded(seed: u64, arrival: impl Fn(&mut Draws) -> Option<f64>) -> Recording {
+    held(750, 3, seed, arrival)
+}
+
+/// The same of this many commands, each of which is repeated `dwell` times.
+fn held(
+    count: usize,
+    dwell: usize,
+    seed: u64,
+    arrival: impl Fn(&mut Draws) -> Option<f64>,
+) -> Recording {
     let mut draws = Draws(seed);
-    let (times, commands) = commands(750, 3, &mut draws);
+    let (times, commands) = commands(count, dwell, &mut draws);
     let mut arrivals: Vec<(f64, usize)> = Vec::new();
     for (k, time) in times.iter().enumerate() {
         arrivals.extend(arrival(&mut draws).map(|late| (time + late, k)));
@@ -39,6 +49,23 @@ fn losses_are_found_and_counted() {
     assert!((value(&found, "loss") - 0.15).abs() < 0.09, "{}", found.answer);
     assert!((value(&found, "dead_time") - 0.0234).abs() < 2e-4, "{}", found.answer);
     assert!(!found.is_contradicted, "{:?}", found.residuals);
+}
+
+#[test]
+fn numbers_of_commands_that_are_lost_and_never_repeated_have_intervals() {
+    let recording = held(300, 1, 22, |draws| (draws.uniform() > 2.0 * 0.1 - 1.0).then_some(0.0234));
+    let found = identified(&recording, &lag_only());
+    // A command that arrives more than a period late finds a newer one, and is lost too.
+    let share = if found.arrivals == "loss" { "loss" } else { "second_share" };
+    for (key, truth) in [("dead_time", 0.0234), ("lag", 0.04), ("gain", 1.0), (share, 0.1)] {
+        let parameter = found.parameter(key).expect("a parameter");
+        let interval = parameter.interval.expect("an interval");
+        let width = interval.high.expect("an upper end") - interval.low;
+        // A 95 % interval is four standard errors wide: the truth is within another four.
+        let wide = Interval { low: interval.low - width, high: interval.high.map(|x| x + width) };
+        assert!(wide.contains(truth) && width < truth, "{key}: {parameter:?}");
+    }
+    assert!(found.delay_range.is_some_and(|[low, high]| low < high), "{found:?}");
 }
 
 #[test]
