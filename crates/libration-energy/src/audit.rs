@@ -54,6 +54,7 @@ pub fn audit(traces: &[EnergyTrace], requirement: Requirement) -> Result<EnergyR
         walk_law,
         is_dt_assumed: sorted.iter().any(|trace| trace.dt.is_none()),
         largest_dt,
+        warnings: Vec::new(),
         libration_version: env!("CARGO_PKG_VERSION"),
         repeat_command: String::new(),
     };

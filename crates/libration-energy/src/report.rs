@@ -29,6 +29,8 @@ pub struct EnergyReport {
     pub is_dt_assumed: bool,
     /// The largest step for the tolerance over the horizon; none where a time step is assumed.
     pub largest_dt: Option<LargestDt>,
+    /// Remarks of the reader of the files that may change a result; [`audit`](crate::audit()) has none.
+    pub warnings: Vec<String>,
     /// The version of libration.
     pub libration_version: &'static str,
     /// The command that repeats the audit.

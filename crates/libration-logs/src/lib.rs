@@ -40,5 +40,5 @@ pub use log::Log;
 pub use parquet_file::PARQUET_THREAD;
 pub use read_options::ReadOptions;
 pub use signal::{ClockChoice, Series, SignalInfo, TopicInfo};
-pub use time_stamps::{StampOptions, read_time_stamps};
+pub use time_stamps::{StampOptions, TimeStamps, read_stamps_and_warnings, read_time_stamps};
 pub use time_unit::TimeUnit;

@@ -158,6 +158,21 @@ impl Log {
     pub fn notes(&self) -> Vec<String> {
         self.source.notes()
     }
+
+    /// The notes that may change a result, such as a guessed unit or a missing end.
+    pub fn warnings(&self) -> Vec<String> {
+        without_headings(self.source.warnings(false))
+    }
+
+    /// As [`Log::warnings`], for results in the unit of the file: seconds that are assumed are no warning.
+    pub fn warnings_in_own_unit(&self) -> Vec<String> {
+        without_headings(self.source.warnings(true))
+    }
+}
+
+fn without_headings(notes: Vec<String>) -> Vec<String> {
+    let bare = |note: String| note.strip_prefix("warning: ").map(str::to_owned).unwrap_or(note);
+    notes.into_iter().map(bare).collect()
 }
 
 /// What [`Log::open`] reads.

@@ -43,7 +43,8 @@ fn table(bytes: &[u8], options: &ReadOptions) -> Result<Table, LogError> {
     let name = |column: &Column| {
         format!("`{}` has {} rows, not {rows}: ignored", column.name, column.rows())
     };
-    Table::new(format, columns, options, others.iter().map(name).collect())
+    let ignored = others.iter().map(name).collect();
+    Ok(Table::new(format, columns, options, Vec::new())?.with_ignored(ignored))
 }
 
 /// The columns of an array: those of a matrix are `name[0]`, `name[1]`, of a lone array `column_1`, `column_2`.

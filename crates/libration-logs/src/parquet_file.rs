@@ -70,7 +70,7 @@ fn read(reader: &dyn FileReader, options: &ReadOptions) -> Result<Table, LogErro
         columns.push(column);
     }
     Table::check_time(&columns, &empty, options)?;
-    Table::new("Parquet", columns, options, ignored)
+    Ok(Table::new("Parquet", columns, options, Vec::new())?.with_ignored(ignored))
 }
 
 /// The text of a key of the file.

@@ -34,4 +34,8 @@ pub(crate) trait Source: Send {
     fn notes(&self) -> Vec<String> {
         Vec::new()
     }
+    /// The notes that may change a result. With `keeps_seconds`, an assumed second is none, as for results in the unit of the file.
+    fn warnings(&self, _keeps_seconds: bool) -> Vec<String> {
+        self.notes()
+    }
 }

@@ -14,6 +14,8 @@ pub(crate) struct Table {
     columns: Vec<Column>,
     time: usize,
     notes: Vec<String>,
+    /// Columns without numbers.
+    ignored: Vec<String>,
     has_stamps: bool,
 }
 
@@ -58,7 +60,7 @@ impl Table {
                 columns[time].name
             )));
         }
-        Ok(Table { format, columns, time, notes, has_stamps: true })
+        Ok(Table { format, columns, time, notes, ignored: Vec::new(), has_stamps: true })
     }
 
     /// Checks that no other column is taken for the time if that with its name has no numbers.
@@ -74,6 +76,11 @@ impl Table {
             ))),
             _ => Ok(()),
         }
+    }
+
+    /// The same table, with notes about columns without numbers.
+    pub(crate) fn with_ignored(self, ignored: Vec<String>) -> Self {
+        Table { ignored, ..self }
     }
 
     /// The same table, whose rows have no order in time.
@@ -203,9 +210,16 @@ impl Source for Table {
     fn notes(&self) -> Vec<String> {
         let time = &self.columns[self.time];
         let mut notes = vec![format!("the column of time is `{}`", time.name)];
-        notes.extend(self.guessed_unit());
-        notes.extend(self.notes.iter().cloned());
+        notes.extend(self.warnings(false));
+        notes.extend(self.ignored.iter().cloned());
         notes
+    }
+
+    fn warnings(&self, keeps_seconds: bool) -> Vec<String> {
+        let keeps_unit = keeps_seconds && self.columns[self.time].unit_of_time().0 == 1.0;
+        let mut warnings = if keeps_unit { Vec::new() } else { self.guessed_unit() };
+        warnings.extend(self.notes.iter().cloned());
+        warnings
     }
 }
 

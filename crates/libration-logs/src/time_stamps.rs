@@ -16,14 +16,33 @@ pub struct StampOptions {
     pub read: ReadOptions,
 }
 
-/// Reads the time stamps of a file, in s.
+/// The time stamps of a file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TimeStamps {
+    /// In s.
+    pub seconds: Vec<f64>,
+    /// The notes about the file that may change a result.
+    pub warnings: Vec<String>,
+    /// Whether they belong to the messages of a bag.
+    pub is_of_bag: bool,
+}
+
+/// Reads the time stamps of a file, in s, as [`read_stamps_and_warnings`] without the warnings.
+///
+/// # Errors
+/// As [`read_stamps_and_warnings`].
+pub fn read_time_stamps(path: &Path, options: &StampOptions) -> Result<Vec<f64>, String> {
+    read_stamps_and_warnings(path, options).map(|stamps| stamps.seconds)
+}
+
+/// Reads the time stamps of a file.
 ///
 /// Messages of a bag may be in another order than their stamps, which are sorted. Without a topic, each line of a text must have a finite
 /// number in its column of time.
 ///
 /// # Errors
 /// In words, if the file cannot be read or its time stamps are invalid.
-pub fn read_time_stamps(path: &Path, options: &StampOptions) -> Result<Vec<f64>, String> {
+pub fn read_stamps_and_warnings(path: &Path, options: &StampOptions) -> Result<TimeStamps, String> {
     let words = |error: &dyn std::fmt::Display| error.to_string();
     let log = Log::open(path, &options.read).map_err(|error| words(&error))?;
     let topic = match (&options.topic, log.time_gap()) {
@@ -36,10 +55,10 @@ pub fn read_time_stamps(path: &Path, options: &StampOptions) -> Result<Vec<f64>,
         }
         (None, None) => log.default_topic()?,
     };
-    let mut stamps = log.stamps(&topic).map_err(|error| words(&error))?;
+    let mut seconds = log.stamps(&topic).map_err(|error| words(&error))?;
     if log.is_bag() {
-        stamps.sort_unstable_by(f64::total_cmp);
+        seconds.sort_unstable_by(f64::total_cmp);
     }
-    Recorded::steps_between(&stamps).map_err(|error| words(&error))?;
-    Ok(stamps)
+    Recorded::steps_between(&seconds).map_err(|error| words(&error))?;
+    Ok(TimeStamps { seconds, warnings: log.warnings(), is_of_bag: log.is_bag() })
 }

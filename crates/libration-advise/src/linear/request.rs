@@ -147,6 +147,11 @@ impl LinearRequest {
         })
     }
 
+    /// The period of the loop, in s.
+    pub fn period(&self) -> f64 {
+        self.timed.linear.period()
+    }
+
     /// The same loop with recorded time stamps in s; their mean interval determines the skew.
     ///
     /// # Errors

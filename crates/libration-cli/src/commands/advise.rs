@@ -1,18 +1,21 @@
 //! `libration advise`.
 
 use std::fmt::Write as _;
+use std::ops::RangeInclusive;
 
 use libration_advise as advise;
-use libration_advise::{Advice, AdviseError, Budget, LoopAdvice, Request, linear, rounded};
+use libration_advise::{Advice, Budget, LoopAdvice, Request, linear, rounded};
 use libration_work::Work;
-use serde::Serialize;
 
-use super::result_file::ResultFile;
+use super::advice_output::{AdviceOutput, failure};
 use super::{config_file, equation_file, time_stamps};
 use crate::args::{AdviseArgs, quoted};
 use crate::error::Failure;
 use crate::progress::Reporter;
 use crate::{interrupt, terminal};
+
+/// Mean intervals of time stamps over the period.
+const INTERVALS: RangeInclusive<f64> = 0.5..=2.0;
 
 /// Computes the limits of a loop or a simulation and prints them.
 pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
@@ -23,12 +26,18 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
         let words = format!("{option} is `{value}` without a log; help: add --jitter-file FILE");
         return Err(Failure::usage(words));
     }
-    if let Some(request) = super::advise_linear::load_request(args)? {
-        return super::advise_linear::run(args, request, quiet);
+    if let Some((request, warnings)) = super::advise_linear::load_request(args)? {
+        return super::advise_linear::run(args, request, warnings, quiet);
     }
-    let request = load_request(args)?;
+    let (request, warnings) = load_request(args)?;
     let compute = |work: &Work<'_>| advise::advise(work, &request);
-    deliver(args, quiet, compute, describe, advise::page, Advice::holds)
+    let output = AdviceOutput {
+        describe,
+        page: advise::page,
+        holds: Advice::holds,
+        warnings: |advice| &mut advice.warnings,
+    };
+    output.deliver(args, quiet, &warnings, compute)
 }
 
 /// The part of advice on a loop that a clock changes.
@@ -44,7 +53,8 @@ pub(super) struct Verdict {
 /// Computes advice on a loop, without printing it; `command` repeats it.
 pub(super) fn verdict(args: &AdviseArgs, command: &str, quiet: bool) -> Result<Verdict, Failure> {
     let stop = interrupt::listen();
-    if let Some(mut request) = super::advise_linear::load_request(args)? {
+    // `clock` prints the warnings about its file itself.
+    if let Some((mut request, _)) = super::advise_linear::load_request(args)? {
         command.clone_into(&mut request.invocation);
         let reporter = Reporter::new(quiet);
         let advice = linear::advise(&Work::new(&reporter, stop), &request);
@@ -54,7 +64,7 @@ pub(super) fn verdict(args: &AdviseArgs, command: &str, quiet: bool) -> Result<V
         let linear::LinearAdvice { answer, warnings, budgets, period, .. } = advice;
         return Ok(Verdict { answer, warnings, budgets, period: Some(period), holds });
     }
-    let mut request = load_request(args)?;
+    let (mut request, _) = load_request(args)?;
     command.clone_into(&mut request.invocation);
     let reporter = Reporter::new(quiet);
     let advice = advise::advise(&Work::new(&reporter, stop), &request);
@@ -66,32 +76,8 @@ pub(super) fn verdict(args: &AdviseArgs, command: &str, quiet: bool) -> Result<V
     Ok(Verdict { answer: advice.answer, warnings: advice.warnings, budgets, period, holds })
 }
 
-/// Computes advice, prints it as text or JSON, and writes its page if the options ask for one.
-pub(super) fn deliver<A: Serialize>(
-    args: &AdviseArgs,
-    quiet: bool,
-    compute: impl FnOnce(&Work<'_>) -> Result<A, AdviseError>,
-    describe: impl Fn(&A) -> String,
-    page: impl Fn(&A) -> String,
-    holds: impl Fn(&A) -> bool,
-) -> Result<(), Failure> {
-    let stop = interrupt::listen();
-    let file = ResultFile::create("--page", args.page.as_deref())?;
-    let reporter = Reporter::new(quiet);
-    let advice = compute(&Work::new(&reporter, stop));
-    reporter.clear();
-    let advice = advice.map_err(failure)?;
-    let text = match args.json {
-        true => serde_json::to_string_pretty(&advice).map_err(Failure::run)? + "\n",
-        false => describe(&advice),
-    };
-    terminal::print(&text)?;
-    file.write(|| page(&advice))?;
-    if holds(&advice) { Ok(()) } else { Err(Failure::Disagreement) }
-}
-
-/// Returns the request of the file or of the options.
-fn load_request(args: &AdviseArgs) -> Result<Request, Failure> {
+/// Returns the request of the file or of the options, and the warnings about the log.
+fn load_request(args: &AdviseArgs) -> Result<(Request, Vec<String>), Failure> {
     args.ensure_no_linear_options()?;
     let mut request = match &args.config {
         Some(path) => args.with_timing(config_file::read(path, advise::parse)?)?,
@@ -102,36 +88,21 @@ fn load_request(args: &AdviseArgs) -> Result<Request, Failure> {
     };
     request.map = args.page.is_some();
     request.invocation = command_line();
+    let mut warnings = Vec::new();
     if let Some(path) = &args.jitter_file {
         let Some(control) = request.control.take() else {
             return Err(Failure::usage(
                 "--jitter-file is given, but there is no loop; expected --feedback, or a controller in the file",
             ));
         };
-        let replaying =
-            time_stamps::read(path, "--jitter-file", &args.topic.options(), |stamps| {
-                control.with_time_stamps(&stamps)
-            })?;
+        let (options, period) = (args.topic.options(), control.period);
+        let replay = |stamps: &[f64]| control.with_time_stamps(stamps);
+        let (replaying, own) =
+            time_stamps::read_for_period(path, &options, period, INTERVALS, replay)?;
         request.control = Some(replaying);
+        warnings = own;
     }
-    Ok(request)
-}
-
-fn failure(error: AdviseError) -> Failure {
-    match error {
-        AdviseError::Interrupted(error) => Failure::Interrupted(error.to_string()),
-        AdviseError::Value { name, value, allowed } => {
-            let flag = match name.rsplit('.').next().unwrap_or(name) {
-                "cost" => "cost-weights",
-                flag => flag,
-            };
-            Failure::usage(format!("--{flag} is {value:?}; expected {allowed}"))
-        }
-        error @ (AdviseError::Unstable { .. }
-        | AdviseError::LatencyTooLong(_)
-        | AdviseError::Ensemble(_)) => Failure::run(error),
-        error => Failure::usage(error),
-    }
+    Ok((request, warnings))
 }
 
 /// Returns the command line that repeats this request, without `--json` and `--page`.

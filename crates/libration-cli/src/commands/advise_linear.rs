@@ -1,18 +1,25 @@
 //! `libration advise` for loops around linear plants.
 
 use std::fmt::Write as _;
+use std::ops::RangeInclusive;
 
 use libration_advise::linear::{self, ChainLink, InputMargins, LinearAdvice, LinearRequest};
 use libration_advise::{Budget, StabilityWindow, rounded};
 use libration_work::Work;
 
-use super::advise::{command_line, deliver};
+use super::advice_output::AdviceOutput;
+use super::advise::command_line;
 use super::{config_file, time_stamps};
 use crate::args::AdviseArgs;
 use crate::error::Failure;
 
-/// Returns the request of the file or of the options, if it is about a linear plant.
-pub(super) fn load_request(args: &AdviseArgs) -> Result<Option<LinearRequest>, Failure> {
+/// Mean intervals of time stamps over the period.
+const INTERVALS: RangeInclusive<f64> = 0.01..=8.9;
+
+/// Returns the request of the file or of the options, if it is about a linear plant, and the warnings about the log.
+pub(super) fn load_request(
+    args: &AdviseArgs,
+) -> Result<Option<(LinearRequest, Vec<String>)>, Failure> {
     let request = match (&args.config, args.linear_request()) {
         (_, Some(request)) => Some(request?),
         (Some(path), None) => config_file::read(path, |text, name| {
@@ -28,18 +35,31 @@ pub(super) fn load_request(args: &AdviseArgs) -> Result<Option<LinearRequest>, F
     request.map = args.page.is_some();
     request.redesign = args.linear.redesign;
     request.invocation = command_line();
+    let mut warnings = Vec::new();
     if let Some(path) = &args.jitter_file {
-        request = time_stamps::read(path, "--jitter-file", &args.topic.options(), |stamps| {
-            request.with_time_stamps(&stamps)
-        })?;
+        let (options, period) = (args.topic.options(), request.period());
+        let replay = |stamps: &[f64]| request.with_time_stamps(stamps);
+        (request, warnings) =
+            time_stamps::read_for_period(path, &options, period, INTERVALS, replay)?;
     }
-    Ok(Some(request))
+    Ok(Some((request, warnings)))
 }
 
 /// Computes the limits of a loop around a linear plant and prints them.
-pub(super) fn run(args: &AdviseArgs, request: LinearRequest, quiet: bool) -> Result<(), Failure> {
+pub(super) fn run(
+    args: &AdviseArgs,
+    request: LinearRequest,
+    warnings: Vec<String>,
+    quiet: bool,
+) -> Result<(), Failure> {
     let compute = |work: &Work<'_>| linear::advise(work, &request);
-    deliver(args, quiet, compute, describe, linear::page, LinearAdvice::holds)
+    let output = AdviceOutput {
+        describe,
+        page: linear::page,
+        holds: LinearAdvice::holds,
+        warnings: |advice| &mut advice.warnings,
+    };
+    output.deliver(args, quiet, &warnings, compute)
 }
 
 /// Returns the answer as text.

@@ -8,6 +8,7 @@ use libration_report::notation::plural;
 
 use super::advise::command_line;
 use super::audit_text::describe;
+use super::log_warnings;
 use super::result_file::ResultFile;
 use crate::args::AuditArgs;
 use crate::error::Failure;
@@ -27,14 +28,17 @@ pub(crate) fn run(args: &AuditArgs) -> Result<(), Failure> {
         )));
     }
     let mut traces = Vec::with_capacity(args.files.len());
+    let mut warnings = Vec::new();
     for (i, path) in args.files.iter().enumerate() {
-        let trace = read(args, path, args.dt.get(i).copied())
+        let (trace, own) = read(args, path, args.dt.get(i).copied())
             .map_err(|error| Failure::usage(format!("cannot use `{}`: {error}", path.display())))?;
         traces.push(trace);
+        warnings.extend(log_warnings::warn(path, &own));
     }
     let requirement = Requirement { tolerance: args.tolerance, horizon: args.horizon };
     let mut report = audit(&traces, requirement).map_err(Failure::usage)?;
     report.repeat_command = command_line();
+    report.warnings = warnings;
     let text = match args.json {
         true => serde_json::to_string_pretty(&report).map_err(Failure::run)? + "\n",
         false => describe(&report),
@@ -44,8 +48,12 @@ pub(crate) fn run(args: &AuditArgs) -> Result<(), Failure> {
     if report.holds() { Ok(()) } else { Err(Failure::Disagreement) }
 }
 
-/// The energies of a file. Without `dt` the time step is that of a column, if there is one.
-fn read(args: &AuditArgs, path: &Path, dt: Option<f64>) -> Result<EnergyTrace, LogError> {
+/// The energies of a file, and the warnings about it. Without `dt` the time step is that of a column, if there is one.
+fn read(
+    args: &AuditArgs,
+    path: &Path,
+    dt: Option<f64>,
+) -> Result<(EnergyTrace, Vec<String>), LogError> {
     let options = ReadOptions { time: args.time.clone(), ..ReadOptions::default() };
     let log = Log::open(path, &options)?;
     let energies = log.series(&args.energy)?;
@@ -55,5 +63,6 @@ fn read(args: &AuditArgs, path: &Path, dt: Option<f64>) -> Result<EnergyTrace, L
         dt => dt,
     };
     let title = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-    Ok(EnergyTrace { title, dt, times: energies.time, energies: energies.values })
+    let trace = EnergyTrace { title, dt, times: energies.time, energies: energies.values };
+    Ok((trace, log.warnings_in_own_unit()))
 }

@@ -12,6 +12,7 @@ use libration_settings::linear_loop::read_plant;
 use libration_work::Work;
 
 use super::advise::command_line;
+use super::log_warnings;
 use super::result_file::ResultFile;
 use crate::args::{IdentifyArgs, TimeUnitName};
 use crate::error::Failure;
@@ -23,7 +24,7 @@ pub(crate) fn run(args: &IdentifyArgs, quiet: bool) -> Result<(), Failure> {
     let stop = interrupt::listen();
     check(args)?;
     let request = request(args)?;
-    let recording = recording(args)?;
+    let (recording, warnings) = recording(args)?;
     let page_file = ResultFile::create("--page", args.page.as_deref())?;
     let saved = ResultFile::create("--save-loop", args.save_loop.as_deref())?;
     let reporter = Reporter::new(quiet);
@@ -31,9 +32,12 @@ pub(crate) fn run(args: &IdentifyArgs, quiet: bool) -> Result<(), Failure> {
     reporter.clear();
     let mut found = found.map_err(failure)?;
     found.repeat_command = command_line();
+    // They are on stderr, and not a second time in the text.
+    let text = describe(&found);
+    found.warnings.splice(0..0, warnings);
     let text = match args.json {
         true => serde_json::to_string_pretty(&found).map_err(Failure::run)? + "\n",
-        false => describe(&found),
+        false => text,
     };
     terminal::print(&text)?;
     saved.write(|| loop_file(&found))?;
@@ -109,19 +113,21 @@ fn request(args: &IdentifyArgs) -> Result<Request, Failure> {
     })
 }
 
-/// The signals of the options.
-fn recording(args: &IdentifyArgs) -> Result<Recording, Failure> {
+/// The signals of the options, and the warnings about the log, which are printed.
+fn recording(args: &IdentifyArgs) -> Result<(Recording, Vec<String>), Failure> {
     let path = args.log.display();
     let time_unit = args.time_unit.map(TimeUnitName::unit);
     let options = ReadOptions { time: args.time.clone(), time_unit, ..ReadOptions::default() };
     let log = Log::open(&args.log, &options)
         .map_err(|error| Failure::usage(format!("cannot read `{path}`: {error}")))?;
+    let warnings = log_warnings::warn(&args.log, &log.warnings());
     let series = |option: &str, name: &str| {
         log.series(name).map_err(|error| Failure::usage(format!("`{path}` ({option}): {error}")))
     };
     let command = series("--command", &args.command)?;
     let response = series("--response", &args.response)?;
     Recording::new(&command.time, &command.values, &response.time, &response.values)
+        .map(|recording| (recording, warnings))
         .map_err(|error| Failure::usage(format!("`{path}`: {error}")))
 }
 

@@ -1,5 +1,6 @@
 //! One module for each subcommand.
 
+mod advice_output;
 mod advise;
 mod advise_linear;
 mod analyze;
@@ -24,6 +25,7 @@ mod identify;
 mod lab;
 mod linear_closed_loop;
 mod list;
+mod log_warnings;
 mod measure_jitter;
 mod mujoco;
 mod presets;

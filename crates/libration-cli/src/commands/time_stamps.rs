@@ -1,22 +1,67 @@
 //! Files of time stamps.
 
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use libration::control::clock::RecordedError;
-use libration_logs::{StampOptions, read_time_stamps};
+use libration_logs::{StampOptions, TimeStamps, read_stamps_and_warnings};
+use libration_report::notation::number;
 
+use super::log_warnings;
+use super::measure_jitter::time;
 use crate::error::Failure;
 
-/// Reads the time stamps, in seconds, of the file of an option, and converts them.
+/// Reads the time stamps of the file of an option, prints the warnings about it, and converts the stamps.
 pub(super) fn read<T>(
     path: &Path,
     flag: &str,
     options: &StampOptions,
     make: impl FnOnce(Vec<f64>) -> Result<T, RecordedError>,
 ) -> Result<T, Failure> {
-    let wrong = |reason: String| {
-        Failure::usage(format!("cannot use `{}` ({flag}): {reason}", path.display()))
-    };
-    let stamps = read_time_stamps(path, options).map_err(wrong)?;
-    make(stamps).map_err(|error| wrong(error.to_string()))
+    let stamps = load(path, flag, options)?;
+    log_warnings::warn(path, &stamps.warnings);
+    make(stamps.seconds).map_err(|error| wrong(path, flag, &error.to_string()))
+}
+
+/// Reads the time stamps of the file of `--jitter-file`, whose mean interval over the period lies in `range`, and converts them. The
+/// warnings about the file are returned.
+pub(super) fn read_for_period<T>(
+    path: &Path,
+    options: &StampOptions,
+    period: f64,
+    range: RangeInclusive<f64>,
+    make: impl FnOnce(&[f64]) -> Result<T, RecordedError>,
+) -> Result<(T, Vec<String>), Failure> {
+    const FLAG: &str = "--jitter-file";
+    let TimeStamps { seconds, warnings, is_of_bag } = load(path, FLAG, options)?;
+    let fails = |why: &str| wrong(path, FLAG, why);
+    let span = seconds.last().zip(seconds.first()).map_or(0.0, |(last, first)| last - first);
+    let mean = span / seconds.len().saturating_sub(1).max(1) as f64;
+    let ratio = mean / period;
+    if !range.contains(&ratio) {
+        let help = match is_of_bag {
+            true => "choose a --topic with one message per period",
+            false => {
+                "give the unit of the time stamps with --time-unit, or choose their column with --time"
+            }
+        };
+        return Err(fails(&format!(
+            "the mean interval of the record is {} times the period ({} and {}); expected {} to {} times; help: {help}",
+            number(ratio, 3),
+            time(mean),
+            time(period),
+            range.start(),
+            range.end()
+        )));
+    }
+    let made = make(&seconds).map_err(|error| fails(&error.to_string()))?;
+    Ok((made, warnings))
+}
+
+fn load(path: &Path, flag: &str, options: &StampOptions) -> Result<TimeStamps, Failure> {
+    read_stamps_and_warnings(path, options).map_err(|why| wrong(path, flag, &why))
+}
+
+fn wrong(path: &Path, flag: &str, reason: &str) -> Failure {
+    Failure::usage(format!("cannot use `{}` ({flag}): {reason}", path.display()))
 }

@@ -27,6 +27,7 @@ mod linear_redesign;
 mod linear_simulation;
 mod linear_weights;
 #[cfg(unix)]
+mod log_warnings;
 mod logs;
 mod long_files;
 #[cfg(target_os = "linux")]
