@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use libration_identify::{Hold, NoiseKind, ResponseKind};
 
-use super::{TimeUnitName, timing};
+use super::{ClockName, TimeUnitName, timing};
 
 /// Arguments of `identify`.
 #[derive(Args, Debug)]
@@ -26,6 +26,9 @@ pub(crate) struct IdentifyArgs {
     /// Unit of the column of time [default: of the file or the name, else by the size of the numbers]
     #[arg(long, value_name = "UNIT")]
     pub(crate) time_unit: Option<TimeUnitName>,
+    /// Clock of a log with several: that of the recorder, of the sender, or in the header of messages
+    #[arg(long, value_name = "WHICH", default_value = "log")]
+    pub(crate) clock: ClockName,
     /// Form of the response
     #[arg(long, value_name = "FORM", default_value = "auto", value_parser = forms)]
     pub(crate) model: Choice<ResponseKind>,

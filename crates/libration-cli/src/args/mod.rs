@@ -52,7 +52,7 @@ pub(crate) use rollout::{RolloutArgs, VerifyArgs};
 pub(crate) use simulate::SimulateArgs;
 pub(crate) use system::{StepArgs, SystemArgs};
 pub(crate) use timing::CostArgs;
-pub(crate) use topic::{TimeUnitName, TopicArgs};
+pub(crate) use topic::{ClockName, TimeUnitName, TopicArgs};
 
 /// Predict and measure the stability of simulations and control loops.
 #[derive(Debug, Parser)]

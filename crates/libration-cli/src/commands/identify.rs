@@ -117,7 +117,7 @@ fn request(args: &IdentifyArgs) -> Result<Request, Failure> {
 fn recording(args: &IdentifyArgs) -> Result<(Recording, Vec<String>), Failure> {
     let path = args.log.display();
     let time_unit = args.time_unit.map(TimeUnitName::unit);
-    let options = ReadOptions { time: args.time.clone(), time_unit, ..ReadOptions::default() };
+    let options = ReadOptions { time: args.time.clone(), time_unit, clock: args.clock.choice() };
     let log = Log::open(&args.log, &options)
         .map_err(|error| Failure::usage(format!("cannot read `{path}`: {error}")))?;
     let warnings = log_warnings::warn(&args.log, &log.warnings());
