@@ -131,3 +131,26 @@ write(
     rows,
 )
 write("iron.db3", 4, "iron", [("/load", "my_msgs/msg/Load")], [(1, times(i)[0], load(i, times(i)[1])) for i in range(5)])
+
+
+def write_small(name, messages, rows):
+    """A bag with one topic and this table of messages."""
+    path = FOLDER / name
+    path.unlink(missing_ok=True)
+    bag = sqlite3.connect(path)
+    bag.execute("PRAGMA page_size = 512")
+    bag.execute("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT)")
+    bag.execute("INSERT INTO topics(name, type, serialization_format) VALUES ('/load', 'std_msgs/msg/Float64', 'cdr')")
+    bag.execute(messages)
+    bag.executemany("INSERT INTO messages(id, topic_id, timestamp, data) VALUES (?, ?, ?, ?)", rows)
+    bag.commit()
+    bag.close()
+
+
+small = [(i + 1, 1, START + 10_000_000 * i, Cdr().number("d", i / 2).data()) for i in range(3)]
+usual = "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data BLOB)"
+write_small("empty.db3", usual, [])
+write_small("without_rowid.db3", usual + " WITHOUT ROWID", small)
+write_small("text_stamps.db3", usual.replace("timestamp INTEGER", "timestamp TEXT"), small)
+commented = usual.replace("topic_id", "-- the id, of (a topic\n topic_id").replace("timestamp INTEGER", "/* a, b */ timestamp INTEGER DEFAULT (1 + 2)")
+write_small("commented.db3", commented, small)

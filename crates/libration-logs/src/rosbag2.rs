@@ -72,6 +72,12 @@ impl MessageStream for Rosbag2 {
                 "the SQLite database has no tables `topics` and `messages`; expected those of a ROS 2 bag{note}"
             )));
         };
+        if let Some(table) = [topics, messages].into_iter().find(|table| table.is_without_rowid) {
+            return Err(LogError::Damaged(format!(
+                "the table `{}` is WITHOUT ROWID, which is not supported; expected a table as `ros2 bag record` creates it",
+                table.name
+            )));
+        }
         let definitions = match find("message_definitions") {
             Some(table) => definitions(&mut database, table, &mut damage)?,
             None => Definitions::new(),
@@ -91,7 +97,7 @@ impl MessageStream for Rosbag2 {
         damage.add(found);
         let [topic, timestamp, data] = columns(messages, ["topic_id", "timestamp", "data"])?;
         let mut compressed = 0_usize;
-        let mut incomplete = 0_usize;
+        let [mut incomplete, mut textual, mut complete] = [0_usize; 3];
         let found = match stopped {
             true => Damage::default(),
             false => database.visit(messages.root, &mut |_, record| {
@@ -99,9 +105,16 @@ impl MessageStream for Rosbag2 {
                 let (Some(id), Some(log), Some(Value::Blob(data))) =
                     (integer(topic), integer(timestamp), record.value(data))
                 else {
-                    incomplete += 1;
+                    let is_other = |column| {
+                        matches!(record.value(column), Some(Value::Text(_) | Value::Float(_)))
+                    };
+                    match is_other(topic) || is_other(timestamp) {
+                        true => textual += 1,
+                        false => incomplete += 1,
+                    }
                     return true;
                 };
+                complete += 1;
                 compressed += usize::from(data.starts_with(&ZSTD));
                 let channel = channels.get(&id).copied().unwrap_or(u32::MAX);
                 stopped = !visit(Event::Message(Message { channel, log, publish: log, data }));
@@ -112,6 +125,16 @@ impl MessageStream for Rosbag2 {
             return Ok(Vec::new());
         }
         damage.add(found);
+        if textual > complete {
+            return Err(LogError::Damaged(format!(
+                "the column `timestamp` or `topic_id` of {textual} messages has text or decimals, which is not supported; expected whole numbers, the time in ns"
+            )));
+        }
+        if textual > 0 {
+            notes.push(format!(
+                "{textual} messages have text or decimals as `timestamp` or `topic_id`: ignored"
+            ));
+        }
         if database.is_truncated() {
             notes.push("the end of the file is missing: read up to there".to_owned());
         }
@@ -127,7 +150,7 @@ impl MessageStream for Rosbag2 {
                 "{compressed} messages are compressed with zstd: only their log times are read"
             ));
         }
-        if definitions.is_empty() {
+        if definitions.is_empty() && complete > 0 {
             notes.push(
                 "the file has no definitions of messages: only fields of common types are read"
                     .to_owned(),

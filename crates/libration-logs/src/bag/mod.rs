@@ -90,8 +90,8 @@ impl<S: MessageStream> Bag<S> {
             return Err(LogError::TooLarge { what: "number of channels", value, limit });
         }
         if messages == 0 {
-            let why = notes.first().cloned().unwrap_or_else(|| "it has no messages".to_owned());
-            return Err(LogError::Damaged(why));
+            let why = std::iter::once("it has no messages".to_owned()).chain(notes);
+            return Err(LogError::Damaged(why.collect::<Vec<_>>().join("; ")));
         }
         if backward > 0 {
             notes.push(format!("{backward} of {messages} messages are logged out of order"));
