@@ -5,6 +5,7 @@
 
 mod arrow_schema;
 mod bag;
+mod bag_directory;
 pub mod clock;
 mod column;
 mod column_builder;

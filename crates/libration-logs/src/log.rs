@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::bag::Bag;
+use crate::bag_directory::{file_of_bag, is_metadata};
 use crate::column::Gap;
 use crate::cyclictest::{self, Output};
 use crate::error::LogError;
@@ -27,15 +28,16 @@ pub struct Log {
 const PREFIX: u64 = 4096;
 
 impl Log {
-    /// Opens a file.
+    /// Opens a file, or the only file of a directory that `ros2 bag record` wrote.
     ///
     /// # Errors
-    /// If the file cannot be read, has an unknown format or is damaged from its beginning on, or if it has no such column of time.
+    /// If the file cannot be read, has an unknown format or is damaged from its beginning on, or if it has no such clock or column of
+    /// time; or if a directory has several bags or none.
     pub fn open(path: &Path, options: &ReadOptions) -> Result<Log, LogError> {
-        if path.is_dir() {
-            return Err(LogError::Damaged("it is a directory; expected a file".to_owned()));
+        match path.is_dir() {
+            true => Self::read(Input::of(&file_of_bag(path)?)?, options),
+            false => Self::read(Input::of(path)?, options),
         }
-        Self::read(Input::of(path)?, options)
     }
 
     /// Opens a file that is in memory.
@@ -61,13 +63,26 @@ impl Log {
             bytes if bytes.starts_with(rosbag::MAGIC) => Box::new(Bag::open(Rosbag::new(input))?),
             bytes if bytes.starts_with(rosbag2::MAGIC) => Box::new(Bag::open(Rosbag2::new(input))?),
             bytes => match text_prefix(bytes) {
+                Some(text) if is_metadata(&text) => {
+                    return Err(LogError::Damaged(
+                        "it is the metadata of a ROS 2 bag; expected the directory of the bag, or its .db3 or .mcap file".to_owned(),
+                    ));
+                }
                 Some(text) => Box::new(match Output::recognise(&text) {
-                    Some(output) => cyclictest::open(&input, output)?,
+                    Some(output) => {
+                        let table = cyclictest::open(&input, output)?;
+                        options.ensure_no_time(&table.format())?;
+                        table
+                    }
                     None => delimited_text::open(&input, options)?,
                 }),
                 None => return Err(LogError::UnknownFormat { expected: FORMATS }),
             },
         };
+        match source.is_bag() {
+            true => options.ensure_no_time(&source.format())?,
+            false => options.ensure_log_clock(&source.format())?,
+        }
         Ok(Log { source, clock: options.clock })
     }
 
@@ -126,6 +141,11 @@ impl Log {
     /// Whether the file has messages on topics, whose order may differ from that of their stamps.
     pub fn is_bag(&self) -> bool {
         self.source.is_bag()
+    }
+
+    /// Whether a signal is the column of time of a table.
+    pub fn is_time(&self, name: &str) -> bool {
+        self.source.is_time(name)
     }
 
     /// The first line of a text without a finite number in the column of time.

@@ -26,6 +26,10 @@ pub(crate) trait Source: Send {
     fn time_gap(&self) -> Option<&Gap> {
         None
     }
+    /// Whether a signal is the column of time.
+    fn is_time(&self, _name: &str) -> bool {
+        false
+    }
     /// The name of the column of time.
     fn time_name(&self) -> Option<String> {
         None

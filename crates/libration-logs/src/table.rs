@@ -203,6 +203,10 @@ impl Source for Table {
         self.columns[self.time].gap.as_ref()
     }
 
+    fn is_time(&self, name: &str) -> bool {
+        position(&self.columns, name) == Some(self.time)
+    }
+
     fn time_name(&self) -> Option<String> {
         Some(self.columns[self.time].name.clone())
     }

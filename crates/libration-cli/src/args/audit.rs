@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::number;
+use super::{TimeUnitName, number};
 
 /// Arguments of `audit`.
 #[derive(Args, Debug)]
@@ -19,6 +19,9 @@ pub(crate) struct AuditArgs {
     /// Column of the time [default: t, time or a similar name; else the first column]
     #[arg(long, value_name = "COLUMN")]
     pub(crate) time: Option<String>,
+    /// Unit of the column of time, which is converted to s [default: of the file or the name, else by the size of the numbers]
+    #[arg(long, value_name = "UNIT")]
+    pub(crate) time_unit: Option<TimeUnitName>,
     /// Time step of each file in s [default: a column `dt`; else the spacing of the samples]
     #[arg(long, value_name = "SECONDS", value_delimiter = ',', value_parser = number::time_step, allow_hyphen_values = true)]
     pub(crate) dt: Vec<f64>,

@@ -1,7 +1,11 @@
 //! Options of logs with several topics and clocks.
 
+use std::path::Path;
+
 use clap::{Args, ValueEnum};
 use libration_logs::{ClockChoice, ReadOptions, StampOptions, TimeUnit};
+
+use crate::error::Failure;
 
 /// The topic and the clock of the time stamps of a file.
 #[derive(Args, Clone, Debug)]
@@ -24,6 +28,16 @@ impl TopicArgs {
     /// Returns the choice of time stamps.
     pub(crate) fn options(&self) -> StampOptions {
         StampOptions { topic: self.topic.clone(), read: self.read_options() }
+    }
+
+    /// Fails for options of a log without the file of `flag`.
+    pub(crate) fn ensure_file(&self, flag: &str, file: Option<&Path>) -> Result<(), Failure> {
+        match (&self.words(None)[..], file) {
+            ([option, value, ..], None) => Err(Failure::usage(format!(
+                "{option} is `{value}` without a log; help: add {flag} FILE"
+            ))),
+            _ => Ok(()),
+        }
     }
 
     /// Returns how to read the log.

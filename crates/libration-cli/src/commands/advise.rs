@@ -22,10 +22,7 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
     if args.print_config {
         return Ok(terminal::print(advise::DEFAULT)?);
     }
-    if let ([option, value, ..], None) = (&args.topic.words(None)[..], &args.jitter_file) {
-        let words = format!("{option} is `{value}` without a log; help: add --jitter-file FILE");
-        return Err(Failure::usage(words));
-    }
+    args.topic.ensure_file("--jitter-file", args.jitter_file.as_deref())?;
     if let Some((request, warnings)) = super::advise_linear::load_request(args)? {
         return super::advise_linear::run(args, request, warnings, quiet);
     }

@@ -10,7 +10,7 @@ use super::advise::command_line;
 use super::audit_text::describe;
 use super::log_warnings;
 use super::result_file::ResultFile;
-use crate::args::AuditArgs;
+use crate::args::{AuditArgs, TimeUnitName};
 use crate::error::Failure;
 use crate::terminal;
 
@@ -54,8 +54,15 @@ fn read(
     path: &Path,
     dt: Option<f64>,
 ) -> Result<(EnergyTrace, Vec<String>), LogError> {
-    let options = ReadOptions { time: args.time.clone(), ..ReadOptions::default() };
+    let time_unit = args.time_unit.map(TimeUnitName::unit);
+    let options = ReadOptions { time: args.time.clone(), time_unit, ..ReadOptions::default() };
     let log = Log::open(path, &options)?;
+    if log.is_time(&args.energy) {
+        return Err(LogError::Damaged(format!(
+            "--energy is `{}`, the column of time; expected a column of energies; help: choose another column of time with --time",
+            args.energy
+        )));
+    }
     let energies = log.series(&args.energy)?;
     let has_steps = log.signals().iter().any(|signal| signal.name == TIME_STEP);
     let dt = match dt {

@@ -17,6 +17,7 @@ use crate::{interrupt, terminal};
 
 /// Measures the jitter of a loop, or reads time stamps, and prints statistics.
 pub(crate) fn run(args: &MeasureJitterArgs, quiet: bool) -> Result<(), Failure> {
+    args.topic.ensure_file("--from", args.from.as_deref())?;
     if let Some(path) = &args.from {
         let stamps = time_stamps::read(path, "--from", &args.topic.options(), |stamps| {
             // Time stamps that a replay rejects are rejected here, too.

@@ -29,6 +29,7 @@ const BUFFER: usize = 1 << 18;
 
 /// Simulates a trajectory and writes its rows.
 pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
+    args.topic.ensure_file("--time-stamps", args.time_stamps.as_deref())?;
     let format = format(args)?;
     let read = |path: &Path, change: &dyn Fn(&mut RequestFile)| {
         let request = linear_file(path, change)?;

@@ -66,3 +66,46 @@ fn time_stamps_in_another_unit_than_the_period_are_an_error_of_the_file() {
     );
     libration(&[&words[..], &["--time-unit", "ms"]].concat()).success();
 }
+
+#[test]
+fn options_that_a_log_does_not_take_are_errors() {
+    let bag = super::logs::sample("humble.db3");
+    let folder = tempfile::tempdir().unwrap();
+    let table = whole_milliseconds(folder.path());
+    let identify = |log, more: &[&'static str]| {
+        let words = ["identify", log, "--command", "cmd", "--response", "q"];
+        [&words[..], more].concat()
+    };
+    let simulate = ["simulate", "--system", "oscillator", "--integrator", "velocity-verlet"];
+    let steps = ["--dt", "0.01", "--steps", "3", "--time", "t"];
+    let of_bag = "expected no --time; help: --topic and --clock";
+    for (words, wanted) in [
+        (vec!["clock", &bag, "--time", "t"], of_bag),
+        (vec!["clock", &bag, "--time-unit", "ms"], "--time-unit is given"),
+        (identify(&bag, &["--time", "t"]), of_bag),
+        (vec!["measure-jitter", "--from", &bag, "--time", "t"], of_bag),
+        (vec!["clock", &table, "--clock", "header"], "--clock is header"),
+        (
+            vec!["measure-jitter", "--time", "t"],
+            "--time is `t` without a log; help: add --from FILE",
+        ),
+        ([&simulate[..], &steps].concat(), "without a log; help: add --time-stamps FILE"),
+        (vec!["audit", &table, &table, "--energy", "t"], "--energy is `t`, the column of time"),
+    ] {
+        libration(&words).code(2).stderr(predicate::str::contains(wanted));
+    }
+}
+
+#[test]
+fn identify_reads_each_clock_of_a_bag() {
+    let bag = super::logs::sample("humble.db3");
+    let identify = |clock: &str| {
+        let signals = ["--command", "/joint_states.position[0]", "--response", "/load.newtons"];
+        libration(&[&["identify", &bag, "--clock", clock][..], &signals].concat()).code(2)
+    };
+    identify("publish").stderr(predicate::str::contains(
+        "(--command): topic `/joint_states` has no publish times",
+    ));
+    // The header of the command is read; the response has none.
+    identify("header").stderr(predicate::str::contains("(--response)"));
+}

@@ -7,7 +7,7 @@ use predicates::prelude::*;
 use super::advise::{ADVISE, json, libration};
 
 /// A log that the packages `mcap` and `mcap-ros2-support` wrote.
-fn sample(name: &str) -> String {
+pub(crate) fn sample(name: &str) -> String {
     format!("{}/../libration-logs/tests/data/{name}", env!("CARGO_MANIFEST_DIR"))
 }
 

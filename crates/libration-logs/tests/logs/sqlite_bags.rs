@@ -81,3 +81,36 @@ fn a_truncated_database_is_read_as_far_as_it_goes_and_others_are_no_bags() {
     let error = read(other).err().unwrap().to_string();
     assert!(error.contains("expected those of a ROS 2 bag"), "{error}");
 }
+
+#[test]
+fn errors_have_the_reason() {
+    let error =
+        |name: &str| Log::open(&path(name), &ReadOptions::default()).err().unwrap().to_string();
+    assert_eq!(error("empty.db3"), "it has no messages");
+    let text = error("without_rowid.db3");
+    assert!(text.contains("`messages` is WITHOUT ROWID, which is not supported"), "{text}");
+    let text = error("text_stamps.db3");
+    assert!(text.contains("3 messages has text or decimals, which is not supported"), "{text}");
+    let log = open("commented.db3", ClockChoice::Log);
+    assert_eq!(log.stamps("/load").unwrap(), [0.0, 0.01, 0.02]);
+    assert_eq!(log.series("/load.data").unwrap().values, [0.0, 0.5, 1.0]);
+}
+
+#[test]
+fn a_directory_is_read_if_it_has_one_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let open = || Log::open(folder.path(), &ReadOptions::default());
+    let error = || open().err().unwrap().to_string();
+    assert!(error().contains("the directory is empty"));
+    let metadata = folder.path().join("metadata.yaml");
+    fs::write(&metadata, "rosbag2_bagfile_information:\n  version: 5\n").unwrap();
+    assert!(
+        error().contains("no .db3 or .mcap file; expected a ROS 2 bag; it has `metadata.yaml`")
+    );
+    let text = Log::open(&metadata, &ReadOptions::default()).err().unwrap().to_string();
+    assert!(text.contains("expected the directory of the bag"), "{text}");
+    fs::copy(path("humble.db3"), folder.path().join("run_0.db3")).unwrap();
+    assert_eq!(open().unwrap().topics().len(), 4);
+    fs::copy(path("zstd.mcap"), folder.path().join("run_1.mcap")).unwrap();
+    assert!(error().contains("2 files of bags; expected one of them: `run_0.db3`, `run_1.mcap`"));
+}
