@@ -75,7 +75,8 @@ fn read(input: impl BufRead) -> Result<Text, LogError> {
     let mut text = rows.into_columns();
     if lines.latin_1 > 0 {
         let count = lines.latin_1;
-        text.notes.push(format!("lines that are not UTF-8 are read as Latin-1: {count}"));
+        text.notes
+            .push(format!("lines that are not UTF-8 are read as Latin-1 or Windows-1252: {count}"));
     }
     Ok(text)
 }

@@ -1,4 +1,4 @@
-//! Encodings of a text: UTF-8, Latin-1, and UTF-16 with a byte order mark.
+//! Encodings of a text: UTF-8, Latin-1 or Windows-1252, and UTF-16 with a byte order mark.
 
 use std::io::{self, BufRead, BufReader, Read};
 
@@ -44,12 +44,22 @@ pub(crate) fn text_prefix(prefix: &[u8]) -> Option<String> {
     (!text.is_empty() && !text.contains(is_control)).then_some(text)
 }
 
-/// Mostly ASCII, with some letters and signs of Latin-1.
+/// Mostly ASCII, with some letters and signs of Latin-1 or Windows-1252.
 fn latin_1(bytes: &[u8]) -> Option<String> {
     let other = bytes.iter().filter(|byte| !byte.is_ascii()).count();
-    let is_letters = !bytes.iter().any(|byte| (0x80..0xa0).contains(byte));
-    (is_letters && other <= bytes.len() / 4)
-        .then(|| bytes.iter().copied().map(char::from).collect())
+    let text: String = bytes.iter().copied().map(windows_1252).collect();
+    (other <= bytes.len() / 4 && !text.contains(char::REPLACEMENT_CHARACTER)).then_some(text)
+}
+
+/// The characters of the bytes 0x80 to 0x9f in Windows-1252; Latin-1 has controls there, which no text has.
+const CONTROLS: &str = "€\u{fffd}‚ƒ„…†‡ˆ‰Š‹Œ\u{fffd}Ž\u{fffd}\u{fffd}‘’“”•–—˜™š›œ\u{fffd}žŸ";
+
+/// The character of a byte in Windows-1252, which has those of Latin-1; the replacement character of a byte that it does not have.
+pub(crate) fn windows_1252(byte: u8) -> char {
+    match byte {
+        0x80..0xa0 => CONTROLS.chars().nth(usize::from(byte - 0x80)).unwrap_or_default(),
+        byte => char::from(byte),
+    }
 }
 
 /// Converts UTF-16 to UTF-8. Halves of characters become replacement characters.
@@ -125,7 +135,12 @@ mod tests {
     #[test]
     fn latin_1_is_text_and_other_bytes_are_not() {
         assert_eq!(text_prefix(b"t [\xb5s],x\n0,1\n").unwrap(), "t [µs],x\n0,1\n");
-        for bytes in [&b"t,\x93x\x94\n0,1\n"[..], &[0xd0; 40], b"t\0,\0x\0\n\0", b""] {
+        assert_eq!(text_prefix(b"t,\x93x\x94 \x80\n0,1\n").unwrap(), "t,“x” €\n0,1\n");
+        assert_eq!(
+            [windows_1252(0x9f), windows_1252(0xe4), windows_1252(0x81)],
+            ['Ÿ', 'ä', '\u{fffd}']
+        );
+        for bytes in [&b"t,\x81x\x9d\n0,1\n"[..], &[0xd0; 40], b"t\0,\0x\0\n\0", b""] {
             assert_eq!(text_prefix(bytes), None);
         }
     }

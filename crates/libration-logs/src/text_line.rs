@@ -3,6 +3,7 @@
 use std::io::BufRead;
 
 use crate::error::LogError;
+use crate::text_encoding::windows_1252;
 
 /// Largest line in bytes.
 const LONGEST_LINE: u64 = 1 << 20;
@@ -13,7 +14,7 @@ pub(crate) struct TextLines<R> {
     bytes: Vec<u8>,
     /// The number of the line, from 1.
     pub(crate) number: usize,
-    /// Number of lines in Latin-1.
+    /// Number of lines in Latin-1 or Windows-1252.
     pub(crate) latin_1: usize,
 }
 
@@ -51,7 +52,7 @@ impl<R: BufRead> TextLines<R> {
             Ok(text) => line.push_str(text),
             Err(_) => {
                 self.latin_1 += 1;
-                line.extend(self.bytes.iter().copied().map(char::from));
+                line.extend(self.bytes.iter().copied().map(windows_1252));
             }
         }
         self.number += 1;
