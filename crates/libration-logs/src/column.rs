@@ -135,6 +135,26 @@ impl Column {
         }
     }
 
+    /// The distance of neighbouring numbers of floating point at the largest value, as a time in s; 0 of whole numbers.
+    pub(crate) fn resolution(&self) -> f64 {
+        let spacing = |largest: f64| largest.next_up() - largest;
+        match &self.values {
+            Values::Whole(_) => 0.0,
+            Values::Floats(x) => {
+                let finite = x.iter().filter(|x| x.is_finite());
+                spacing(finite.fold(0.0, |most: f64, x| most.max(x.abs()))) / self.unit_of_time().0
+            }
+            // The shortest text of an `f64` since 1970 has at most seven decimals.
+            Values::Nanoseconds(x) => {
+                let there = || x.iter().filter(|&&x| x != MISSING);
+                match there().all(|x| x % 100 == 0) {
+                    true => spacing(there().copied().max().unwrap_or(0) as f64 / 1e9),
+                    false => 0.0,
+                }
+            }
+        }
+    }
+
     /// The number of units of time per second, of the file, of the name, else by the size of the values; and whether it is a guess.
     pub(crate) fn unit_of_time(&self) -> (f64, bool) {
         if let Some(known) =

@@ -143,6 +143,11 @@ impl Log {
         self.source.is_bag()
     }
 
+    /// The distance of neighbouring numbers of floating point at the stamps of a topic, in s; 0 if the stamps are whole numbers.
+    pub fn resolution(&self, topic: &str) -> f64 {
+        self.source.resolution(topic)
+    }
+
     /// Whether a signal is the column of time of a table.
     pub fn is_time(&self, name: &str) -> bool {
         self.source.is_time(name)

@@ -30,6 +30,10 @@ pub(crate) trait Source: Send {
     fn is_time(&self, _name: &str) -> bool {
         false
     }
+    /// The distance of neighbouring numbers of floating point at the stamps of a topic, in s; 0 of whole numbers.
+    fn resolution(&self, _topic: &str) -> f64 {
+        0.0
+    }
     /// The name of the column of time.
     fn time_name(&self) -> Option<String> {
         None

@@ -203,6 +203,10 @@ impl Source for Table {
         self.columns[self.time].gap.as_ref()
     }
 
+    fn resolution(&self, topic: &str) -> f64 {
+        position(&self.columns, topic).map_or(0.0, |index| self.columns[index].resolution())
+    }
+
     fn is_time(&self, name: &str) -> bool {
         position(&self.columns, name) == Some(self.time)
     }
@@ -222,6 +226,12 @@ impl Source for Table {
     fn warnings(&self, keeps_seconds: bool) -> Vec<String> {
         let keeps_unit = keeps_seconds && self.columns[self.time].unit_of_time().0 == 1.0;
         let mut warnings = if keeps_unit { Vec::new() } else { self.guessed_unit() };
+        let time = &self.columns[self.time];
+        let (rows, without) = (time.rows(), time.rows() - time.count());
+        if without > 0 {
+            warnings
+                .push(format!("{without} of {rows} rows have no time in `{}`: ignored", time.name));
+        }
         warnings.extend(self.notes.iter().cloned());
         warnings
     }

@@ -23,6 +23,8 @@ pub struct TimeStamps {
     pub seconds: Vec<f64>,
     /// The notes about the file that may change a result.
     pub warnings: Vec<String>,
+    /// The distance of neighbouring numbers of floating point, in s; 0 if they are whole numbers in the file.
+    pub resolution: f64,
     /// Whether they belong to the messages of a bag.
     pub is_of_bag: bool,
 }
@@ -60,5 +62,6 @@ pub fn read_stamps_and_warnings(path: &Path, options: &StampOptions) -> Result<T
         seconds.sort_unstable_by(f64::total_cmp);
     }
     Recorded::steps_between(&seconds).map_err(|error| words(&error))?;
-    Ok(TimeStamps { seconds, warnings: log.warnings(), is_of_bag: log.is_bag() })
+    let resolution = log.resolution(&topic);
+    Ok(TimeStamps { seconds, warnings: log.warnings(), resolution, is_of_bag: log.is_bag() })
 }

@@ -7,8 +7,8 @@ use libration_report::record::{Cell, Table};
 use libration_report::report;
 
 use super::clock_report::ClockReport;
-use super::clock_text::{CUT, drift_words, law_words, matching_words, verdict_words};
-use super::measure_jitter::{listed, time};
+use super::clock_text::{CUT, doubt_words, drift_words, law_words, matching_words, verdict_words};
+use super::measure_jitter::{jitter_words, listed, time};
 
 /// Returns the report as an HTML page.
 pub(super) fn page(found: &ClockReport) -> String {
@@ -95,7 +95,7 @@ fn topic_clock(page: &mut Page, clock: &TopicClock) {
     line("messages", clock.messages.to_string());
     line("intervals", listed(&statistics.lengths));
     line("mean interval", time(statistics.mean));
-    line("jitter, relative rms", format!("{:.3e}", statistics.jitter_rms));
+    line("jitter, relative rms", jitter_words(statistics));
     line("gaps above 1.5 periods", statistics.gaps.to_string());
     line("repeated stamps", statistics.repeats.to_string());
     line("stamps that go back", clock.backward.to_string());
@@ -152,6 +152,9 @@ fn of_latency(page: &mut Page, latency: &Latency) {
     }
     if latency.is_cut {
         page.note(format!("Warning: {CUT}."));
+    }
+    if let Some(doubt) = latency.doubt {
+        page.note(format!("Warning: {}.", doubt_words(doubt)));
     }
     let (mut x, mut y) = (Vec::new(), Vec::new());
     for (i, &(from, count)) in latency.histogram.iter().enumerate() {

@@ -2,7 +2,9 @@
 
 use std::fmt::Write as _;
 
-use libration_logs::clock::{Drift, Latency, Law, LawFit, Matching, PhaseLag, TopicClock, Verdict};
+use libration_logs::clock::{
+    Doubt, Drift, Latency, Law, LawFit, Matching, PhaseLag, TopicClock, Verdict,
+};
 
 use super::clock_effect::Effect;
 use super::clock_report::ClockReport;
@@ -80,10 +82,12 @@ fn line(text: &mut String, name: &str, value: impl std::fmt::Display) {
 }
 
 fn topic_clock(clock: &TopicClock, text: &mut String) {
-    let head = format!(
-        "\n{}, {} clock: {} messages, {:.4} Hz",
-        clock.topic, clock.clock, clock.messages, clock.rate
-    );
+    let count = match clock.without_clock {
+        0 => clock.messages.to_string(),
+        without => format!("{} of {}", clock.messages - without, clock.messages),
+    };
+    let head =
+        format!("\n{}, {} clock: {count} messages, {:.4} Hz", clock.topic, clock.clock, clock.rate);
     *text += &measure_jitter::describe(&head, &clock.statistics);
     if clock.without_clock > 0 {
         line(text, "without this clock", format!("{} messages", clock.without_clock));
@@ -175,6 +179,18 @@ pub(super) fn law_words(law: &Law) -> String {
     }
 }
 
+/// The doubt about latencies in words.
+pub(super) fn doubt_words(doubt: Doubt) -> &'static str {
+    match doubt {
+        Doubt::CopiedStamps => {
+            "all latencies are 0: the stamps of one topic are copied to the other; help: choose another --clock or topic"
+        }
+        Doubt::ClocksApart => {
+            "latencies are longer than the record: the clocks of both topics are apart, as those of two machines; help: --clock log"
+        }
+    }
+}
+
 /// How messages are matched, in words.
 pub(super) fn matching_words(latency: &Latency) -> String {
     let how = match latency.matching {
@@ -205,6 +221,9 @@ fn latency(found: &Latency, text: &mut String) {
     }
     if found.is_cut {
         line(text, "warning", CUT);
+    }
+    if let Some(doubt) = found.doubt {
+        line(text, "warning", doubt_words(doubt));
     }
     law(&found.law, "latencies", text);
     let most = found.histogram.iter().map(|bin| bin.1).max().unwrap_or(1).max(1);

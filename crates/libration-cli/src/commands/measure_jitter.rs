@@ -21,9 +21,9 @@ pub(crate) fn run(args: &MeasureJitterArgs, quiet: bool) -> Result<(), Failure> 
     if let Some(path) = &args.from {
         let stamps = time_stamps::read(path, "--from", &args.topic.options(), |stamps| {
             // Time stamps that a replay rejects are rejected here, too.
-            Recorded::steps_between(&stamps).map(|_| stamps)
+            Recorded::steps_between(&stamps.seconds).map(|_| stamps)
         })?;
-        let statistics = Statistics::of(&stamps, None);
+        let statistics = Statistics::of(&stamps.seconds, None).with_resolution(stamps.resolution);
         return match args.json {
             true => print_json(&json!(statistics)),
             false => Ok(terminal::print(&describe(&path.display().to_string(), &statistics))?),
@@ -130,15 +130,7 @@ pub(super) fn describe(head: &str, statistics: &Statistics) -> String {
         "mean interval",
         format!("{}, nominal {}", time(statistics.mean), time(statistics.period)),
     );
-    let rms = statistics.jitter_rms;
-    // `--jitter` has independent intervals.
-    let is_independent = statistics.correlation.first().is_none_or(|first| first.abs() < 0.1);
-    let words = if is_independent {
-        format!("{rms:.3e}, as in --jitter gaussian:{rms:.3}")
-    } else {
-        format!("{rms:.3e}; intervals are correlated: replay the record (--jitter-file)")
-    };
-    line("jitter, relative rms", words);
+    line("jitter, relative rms", jitter_words(statistics));
     if statistics.gaps > 0 && statistics.heavy_tailed() {
         line("", "a few long gaps dominate the rms; help: replay the time stamps instead".into());
     }
@@ -177,6 +169,21 @@ pub(super) fn describe(head: &str, statistics: &Statistics) -> String {
         }
     }
     text
+}
+
+/// The rms of the intervals in words.
+pub(super) fn jitter_words(statistics: &Statistics) -> String {
+    let rms = statistics.jitter_rms;
+    // `--jitter` has independent intervals.
+    let is_independent = statistics.correlation.first().is_none_or(|first| first.abs() < 0.1);
+    match statistics.equal_up_to {
+        Some(resolution) => format!(
+            "{rms:.3e}: intervals are equal up to the resolution of the time stamps, {}",
+            time(resolution)
+        ),
+        None if is_independent => format!("{rms:.3e}, as in --jitter gaussian:{rms:.3}"),
+        None => format!("{rms:.3e}; intervals are correlated: replay the record (--jitter-file)"),
+    }
 }
 
 /// Returns the likely cause of the first correlation.

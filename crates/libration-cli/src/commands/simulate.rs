@@ -177,7 +177,7 @@ pub(super) fn linear_file(
 /// The steps between the time stamps of a file, in multiples of `dt` seconds.
 fn recorded(path: &Path, args: &SimulateArgs, dt: f64) -> Result<Vec<f64>, Failure> {
     time_stamps::read(path, "--time-stamps", &args.topic.options(), |stamps| {
-        Recorded::steps_in(&stamps, dt)
+        Recorded::steps_in(&stamps.seconds, dt)
     })
 }
 

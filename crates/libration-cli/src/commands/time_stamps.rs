@@ -16,11 +16,11 @@ pub(super) fn read<T>(
     path: &Path,
     flag: &str,
     options: &StampOptions,
-    make: impl FnOnce(Vec<f64>) -> Result<T, RecordedError>,
+    make: impl FnOnce(TimeStamps) -> Result<T, RecordedError>,
 ) -> Result<T, Failure> {
     let stamps = load(path, flag, options)?;
     log_warnings::warn(path, &stamps.warnings);
-    make(stamps.seconds).map_err(|error| wrong(path, flag, &error.to_string()))
+    make(stamps).map_err(|error| wrong(path, flag, &error.to_string()))
 }
 
 /// Reads the time stamps of the file of `--jitter-file`, whose mean interval over the period lies in `range`, and converts them. The
@@ -33,7 +33,7 @@ pub(super) fn read_for_period<T>(
     make: impl FnOnce(&[f64]) -> Result<T, RecordedError>,
 ) -> Result<(T, Vec<String>), Failure> {
     const FLAG: &str = "--jitter-file";
-    let TimeStamps { seconds, warnings, is_of_bag } = load(path, FLAG, options)?;
+    let TimeStamps { seconds, warnings, is_of_bag, .. } = load(path, FLAG, options)?;
     let fails = |why: &str| wrong(path, FLAG, why);
     let span = seconds.last().zip(seconds.first()).map_or(0.0, |(last, first)| last - first);
     let mean = span / seconds.len().saturating_sub(1).max(1) as f64;

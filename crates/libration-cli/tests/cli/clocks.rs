@@ -91,3 +91,28 @@ fn clocks_that_are_none_are_refused() {
         predicate::str::contains("repeated time stamps   1").and(predicate::str::contains("gaps")),
     );
 }
+
+#[test]
+fn the_rounding_of_stamps_is_no_jitter() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("even.csv");
+    let rows: Vec<String> = (0..1000).map(|n| (f64::from(n) / 3.0).to_string()).collect();
+    fs::write(&file, format!("t\n{}\n", rows.join("\n"))).unwrap();
+    let path = file.to_str().unwrap();
+    let is_even = || {
+        predicate::str::contains("intervals are equal up to the resolution")
+            .and(predicate::str::contains("spectrum").not())
+            .and(predicate::str::contains("correlation").not())
+    };
+    for words in [["clock", path].to_vec(), ["measure-jitter", "--from", path].to_vec()] {
+        libration(&words).success().stdout(is_even());
+    }
+    let found = json(&["clock", path]);
+    assert_eq!(found["clock"]["law"]["verdict"], "constant");
+    // Rows without a time are counted.
+    fs::write(&file, format!("t,x\n{}\n,2\n", rows.join(",1\n") + ",1")).unwrap();
+    libration(&["clock", path]).success().stdout(
+        predicate::str::contains("1 of 1001 rows have no time in `t`")
+            .and(predicate::str::contains("1000 of 1001 messages")),
+    );
+}

@@ -19,6 +19,16 @@ pub enum Matching {
     NearestPreceding,
 }
 
+/// Why latencies may not be those of a cause.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Doubt {
+    /// All are 0: stamps of one topic are copied to the other.
+    CopiedStamps,
+    /// All are longer than the record of the earlier topic: the clocks of both are apart.
+    ClocksApart,
+}
+
 /// The latency from the messages of one topic to those of another.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Latency {
@@ -42,6 +52,8 @@ pub struct Latency {
     pub visible_up_to: Option<f64>,
     /// Whether the latencies reach this interval or are nearly uniform over it, so that the true ones may be longer.
     pub is_cut: bool,
+    /// Why the latencies may not be those of a cause.
+    pub doubt: Option<Doubt>,
     /// The mean in s.
     pub mean: f64,
     /// The standard deviation in s.
@@ -128,6 +140,7 @@ impl Latency {
             unanswered,
             negative,
             visible_up_to,
+            doubt: doubt(&sorted, &earlier),
             is_cut: visible_up_to.is_some_and(|interval| is_cut(&sorted, interval)),
             mean,
             deviation: square.sqrt(),
@@ -144,6 +157,20 @@ impl Latency {
     pub fn quantile(&self, part: f64) -> f64 {
         self.quantiles.iter().find(|q| q.part == part).map_or(self.mean, |q| q.value)
     }
+}
+
+/// Intervals beyond which latencies are doubted.
+const MOST_INTERVALS: f64 = 100.0;
+
+fn doubt(sorted: &[f64], earlier: &[Option<i64>]) -> Option<Doubt> {
+    let (first, last) = (*sorted.first()?, *sorted.last()?);
+    if first == 0.0 && last == 0.0 {
+        return Some(Doubt::CopiedStamps);
+    }
+    let stamps = || earlier.iter().flatten().copied();
+    let span = seconds(stamps().min()?, stamps().max()?);
+    let is_apart = first > span && first > MOST_INTERVALS * median_interval(earlier)?;
+    is_apart.then_some(Doubt::ClocksApart)
 }
 
 /// The median interval between sorted stamps, in s.
@@ -197,6 +224,19 @@ mod tests {
         let found = Latency::between(&log, "start", "end", ClockChoice::Log).unwrap();
         assert_eq!((found.matching, found.count, found.mean), (Matching::Row, 1, 0.0004));
         assert_eq!((found.unmatched, found.unanswered), (1, 1));
+    }
+
+    #[test]
+    fn copied_stamps_and_clocks_that_are_apart_are_doubted() {
+        let of = |late: i64| {
+            let row = |n: i64| format!("{},{}\n", n * 10_000_000, n * 10_000_000 + late);
+            let text = "start_ns,end_ns\n".to_owned() + &(0..200).map(row).collect::<String>();
+            let log = Log::from_bytes(text.into(), &Default::default()).unwrap();
+            Latency::between(&log, "start_ns", "end_ns", ClockChoice::Log).unwrap().doubt
+        };
+        assert_eq!(of(0), Some(Doubt::CopiedStamps));
+        assert_eq!(of(1_000_000), None);
+        assert_eq!(of(3_600_000_000_000), Some(Doubt::ClocksApart));
     }
 
     #[test]

@@ -57,6 +57,11 @@ const CLOSE: f64 = 0.02;
 const FEWEST: usize = 32;
 
 impl LawFit {
+    /// That of values that are equal.
+    pub(crate) fn constant() -> Self {
+        LawFit { verdict: Verdict::Constant, fits: Vec::new() }
+    }
+
     /// Fits all laws to values in any order.
     ///
     /// The parameters of the tested law are fitted to every second value, and its distance is that of the others: a test on the values
@@ -77,7 +82,7 @@ impl LawFit {
         let fitted = sorted(&mut values.iter().copied().step_by(2));
         let tested = sorted(&mut values.iter().copied().skip(1).step_by(2));
         if all[0] == all[all.len() - 1] {
-            return LawFit { verdict: Verdict::Constant, fits: Vec::new() };
+            return LawFit::constant();
         }
         let fit = |kind: LawKind| {
             let law = kind.fit(&all)?;

@@ -12,7 +12,7 @@ mod topic_clock;
 mod two_values;
 
 pub use drift::Drift;
-pub use latency::{Latency, Matching};
+pub use latency::{Doubt, Latency, Matching};
 pub use law::{Law, LawKind};
 pub use law_fit::{Fit, LawFit, Verdict};
 pub use phase::{PhaseLag, phase_lags, rate_of_phase};

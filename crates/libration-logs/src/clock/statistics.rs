@@ -13,6 +13,8 @@ pub struct Statistics {
     pub period: f64,
     /// The mean interval, in s.
     pub mean: f64,
+    /// The resolution of the time stamps in s, if all intervals are equal up to it; then there is no correlation and no spectrum.
+    pub equal_up_to: Option<f64>,
     /// The rms of the deviations from the mean, over the mean: the rms of a law of jitter.
     pub jitter_rms: f64,
     /// Quantiles of the intervals, in s.
@@ -81,6 +83,7 @@ impl Statistics {
             intervals: count,
             period,
             mean,
+            equal_up_to: None,
             jitter_rms: variance.sqrt(),
             gaps: lengths.iter().filter(|&&length| length > 1.5 * period).count(),
             repeats: lengths.iter().filter(|&&length| length == 0.0).count(),
@@ -92,7 +95,27 @@ impl Statistics {
     }
 }
 
+/// Units of the last place by which the longest and the shortest of equal intervals differ.
+const ROUNDING: f64 = 4.0;
+/// The unit of stamps in files, in s, with a margin for the rounding of a difference.
+const NANOSECOND: f64 = 1.001e-9;
+/// Largest resolution over the mean interval at which intervals are called equal.
+const FINE: f64 = 0.01;
+
 impl Statistics {
+    /// The statistics of stamps with this distance of neighbouring numbers of floating point, in s: the correlation and the spectrum
+    /// of intervals that are equal up to rounding would be those of the rounding.
+    pub fn with_resolution(self, spacing: f64) -> Self {
+        let resolution = NANOSECOND + ROUNDING * spacing;
+        let ends = self.lengths.first().zip(self.lengths.last());
+        let is_even = ends.is_some_and(|(first, last)| last.value - first.value <= resolution);
+        if self.intervals < 2 || !is_even || resolution > FINE * self.mean {
+            return self;
+        }
+        let (correlation, spectrum) = (Vec::new(), None);
+        Statistics { equal_up_to: Some(resolution), correlation, spectrum, ..self }
+    }
+
     /// Whether 98 % of the intervals lie within 2.33 rms: half the width of a Gaussian law.
     pub fn heavy_tailed(&self) -> bool {
         let at = |part: f64| self.lengths.iter().find(|q| q.part == part).map(|q| q.value);
@@ -154,6 +177,23 @@ mod tests {
         let at = |part: f64| found.lengths.iter().find(|q| q.part == part).unwrap().value;
         assert_eq!([at(0.0), at(0.5), at(1.0)], [0.0, 1.0, 3.0]);
         assert_eq!(found.lateness, None);
+    }
+
+    #[test]
+    fn intervals_that_rounding_makes_unequal_are_equal() {
+        let even = |period: f64, start: f64| -> Statistics {
+            let stamps: Vec<f64> = (0..1000).map(|n| start + period * f64::from(n)).collect();
+            let last: f64 = stamps[999];
+            Statistics::of(&stamps, None).with_resolution(last.next_up() - last)
+        };
+        for found in [even(0.01, 0.0), even(1.0 / 3.0, 0.0), even(0.003, 1.7e9)] {
+            assert!(found.equal_up_to.is_some() && found.correlation.is_empty(), "{found:?}");
+            assert_eq!(found.spectrum, None);
+        }
+        // Rounding to a tenth of the interval may hide anything.
+        assert_eq!(even(1e-5, 1.7e9).equal_up_to, None);
+        let late: Vec<f64> = (0..1000).map(|n| f64::from(n) + 1e-7 * f64::from(n % 2)).collect();
+        assert_eq!(Statistics::of(&late, None).with_resolution(1e-13).equal_up_to, None);
     }
 
     #[test]

@@ -59,7 +59,8 @@ impl TopicClock {
             .windows(2)
             .map(|pair| (i128::from(pair[1]) - i128::from(pair[0])) as f64 / 1e9)
             .collect();
-        let statistics = Statistics::of(&seconds, None);
+        let statistics = Statistics::of(&seconds, None).with_resolution(log.resolution(topic));
+        let is_even = statistics.equal_up_to.is_some();
         if statistics.mean <= 0.0 {
             return Err(LogError::Damaged(format!("all time stamps of `{topic}` are equal")));
         }
@@ -82,8 +83,11 @@ impl TopicClock {
             backward,
             largest_step_back,
             rate: 1.0 / statistics.mean,
-            law: LawFit::of(&intervals),
-            lateness: lateness(&seconds, &intervals).map(|late| LawFit::of(&late)),
+            law: if is_even { LawFit::constant() } else { LawFit::of(&intervals) },
+            lateness: match is_even {
+                true => None,
+                false => lateness(&seconds, &intervals).map(|late| LawFit::of(&late)),
+            },
             statistics,
             log_against_header,
         })
