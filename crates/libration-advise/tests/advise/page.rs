@@ -57,9 +57,9 @@ fn linear_advice(text: &str) -> LinearAdvice {
 
 /// A page from the heading to the next one.
 fn section<'a>(page: &'a str, heading: &str) -> &'a str {
-    let rest = page.split(&format!("<h3>{heading}</h3>")).nth(1);
+    let rest = page.split(&format!("\">{heading}</h3>")).nth(1);
     rest.unwrap_or_else(|| panic!("no {heading}"))
-        .split("<h3>")
+        .split("<h3 ")
         .next()
         .unwrap()
         .split("</main>")
