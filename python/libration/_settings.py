@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import numbers
+import warnings
 from typing import Any, Container, Iterable, Sequence
 
 from ._native import _systems
@@ -14,6 +15,9 @@ AUTORESET = ("NextStep", "SameStep", "Disabled")
 
 MOST_SUBSTEPS = 1000
 """Largest number of substeps in the search for whole latencies."""
+
+MANY_SUBSTEPS = 20
+"""Substeps above which a warning says what they cost."""
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
@@ -200,6 +204,8 @@ def native(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
         if given.pop(name) is not None:
             raise TypeError(f"{name} belongs to environments of a System, not to {preset.name!r}")
     system = {name: parameters[name] for name in of_system if name in parameters}
+    if len(alone := {"m", "k"} & set(system)) == 1:
+        raise TypeError(f"{alone.pop()} is given alone, but m and k must be given together")
     if not {"m", "k"} & set(system):
         system = {**preset.parameters, **system}
     system = {name: number(name, value, "finite") for name, value in system.items()}
@@ -224,9 +230,23 @@ def native(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
     return settings
 
 
+def warn_of(substeps: int, dt: float, late: dict[str, tuple[float, float]]) -> None:
+    """Warn of latencies that need many steps of the integrator, with those nearby that need few."""
+    step = dt / MANY_SUBSTEPS
+    near = {name: sorted({round(x / step) * step for x in ends}) for name, ends in late.items() if _steps(ends, dt) is None}
+    told = "; ".join(f"{name} of {' to '.join(f'{x:.6g}' for x in values)} s" for name, values in near.items())
+    warnings.warn(
+        f"each step takes {substeps} substeps, so that all latencies are whole steps of {dt / substeps:.6g} s; multiples of dt = {dt:.6g} s need "
+        f"one, multiples of {step:.6g} s at most {MANY_SUBSTEPS}: {told}",
+        stacklevel=2,
+    )
+
+
 def refuse_others(given: Iterable[str], taken: Container[str], known: Iterable[str]) -> None:
     """Raise a TypeError for the first keyword that is not taken."""
     for name in given:
+        if name == "render_mode":
+            raise TypeError("unexpected keyword argument 'render_mode': it belongs to VectorEnv and to gymnasium.make, which draw")
         # An option here belongs to another class and has no effect.
         if name not in taken:
             raise TypeError(f"unexpected keyword argument {name!r}: {nearest(name, known)}")
@@ -245,9 +265,13 @@ def common(given: dict[str, Any]) -> dict[str, Any]:
         for name in ("observation_delay", "action_delay")
     }
     late = {name: ends(name, value, least=0.0) for name, value in stated.items()}
+    asked = substeps
     substeps, late_steps = delays(dt, substeps, late)
+    if asked is None and substeps > MANY_SUBSTEPS:
+        warn_of(substeps, dt, late)
     limit = given["max_episode_steps"]
-    unlimited = isinstance(limit, numbers.Real) and limit == math.inf
+    # -1 is Gymnasium's word for no limit.
+    unlimited = isinstance(limit, numbers.Real) and limit in (math.inf, -1)
     limit = None if unlimited else count("max_episode_steps", limit, 1, 2**32 - 1)
     integrator, dtype = given["integrator"], given["dtype"]
     if not isinstance(integrator, str):

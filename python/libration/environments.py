@@ -33,7 +33,8 @@ class Environments(_native.Batch):
     num_envs:
         Number of environments.
     max_episode_steps:
-        Number of actions after which an episode is truncated; ``math.inf`` for no limit (default: that of the environment).
+        Number of actions after which an episode is truncated; ``math.inf`` or -1 for no limit (default: that of the
+        environment).
     autoreset_mode:
         Reset after an episode: ``"NextStep"``, ``"SameStep"`` or ``"Disabled"``, as in Gymnasium.
     integrator:
@@ -68,7 +69,8 @@ class Environments(_native.Batch):
     threads:
         Number of threads (0: one per core). The results are independent of it.
     copy:
-        Whether each step returns arrays that later steps do not overwrite. Otherwise the steps fill ``buffers`` arrays in turn.
+        Whether each step returns arrays that later steps do not overwrite. Otherwise the steps fill ``buffers`` arrays in turn
+        (default: 2).
     **parameters:
         Parameters of the system (``omega2``, or ``m`` and ``k``; ``alpha``, ``beta``) and of the task (``position_cost``, ``velocity_cost``,
         ``effort_cost``, ``bound``).
@@ -112,7 +114,7 @@ class Environments(_native.Batch):
         dtype: Any = "float32",
         threads: int = 1,
         copy: bool = True,
-        buffers: int = 2,
+        buffers: int | None = None,
         **parameters: Any,
     ) -> None:
         if not isinstance(name, EquationSystem) and name not in PRESETS:
@@ -146,6 +148,10 @@ class Environments(_native.Batch):
             "copy": copy,
             "buffers": buffers,
         }
+        if not isinstance(copy, (bool, np.bool_)):
+            raise TypeError(f"copy must be True or False, not {type(copy).__name__}")
+        if copy and buffers is not None:
+            raise TypeError("buffers is given, but it belongs to copy=False")
         self._arguments = (name, {**given, **parameters})
         self._settings: Mapping[str, Any]
         if isinstance(name, EquationSystem):
@@ -156,7 +162,7 @@ class Environments(_native.Batch):
             self._settings = native(self.preset, {**given, "parameters": parameters})
         self._seeder: np.random.Generator | None = None
         self.num_envs = self._settings["num_envs"]
-        kept = 0 if copy else count("buffers", buffers, 1, 1_000_000)
+        kept = 0 if copy else count("buffers", 2 if buffers is None else buffers, 1, 1_000_000)
         self._set_up(self._settings, kept)
 
     def reset(
@@ -301,6 +307,22 @@ class Environments(_native.Batch):
     def states(self) -> np.ndarray:
         """True positions and velocities, ``(num_envs, 2)``, without noise and latency; of a system by equations its states."""
         return self._states()
+
+    @property
+    def substeps(self) -> int:
+        """Steps of the integrator between two actions."""
+        return self._settings["substeps"]
+
+    def close(self) -> None:
+        """Release memory and threads; ``reset`` and ``step`` then fail."""
+        self._close()
+
+    def __repr__(self) -> str:
+        settings = self._settings
+        return (
+            f"{type(self).__name__}({self.preset.name!r}, num_envs={self.num_envs}, dt={settings['dt'] * self.substeps:g}, "
+            f"substeps={self.substeps}, integrator={settings['integrator']!r}, dtype={settings['dtype']!r})"
+        )
 
     def __reduce__(self) -> Any:
         return _again, (type(self), self._arguments, self._state(), self._seeder, self._extras())

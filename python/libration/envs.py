@@ -33,9 +33,11 @@ NAMESPACE = "libration"
 METADATA: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 30}
 
 
-def _metadata(name: str | EquationSystem) -> dict[str, Any]:
-    """Return what is known of an environment; a system by equations has no picture."""
-    return {"render_modes": []} if isinstance(name, EquationSystem) else METADATA
+def _metadata(name: str | EquationSystem, settings: Any) -> dict[str, Any]:
+    """Return what is known of an environment, with pictures in real time; a system by equations has none."""
+    if isinstance(name, EquationSystem):
+        return {"render_modes": []}
+    return {**METADATA, "render_fps": max(1, round(1.0 / (settings["dt"] * settings["substeps"])))}
 
 
 def _spaces(preset: Preset | EquationPreset, settings: dict[str, Any]) -> tuple[Box, Box]:
@@ -78,7 +80,7 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
         self.render_mode = _render_mode(name, render_mode)
         super().__init__(name, num_envs, **given)
         self.metadata = {
-            **_metadata(name),
+            **_metadata(name, self._settings),
             "autoreset_mode": AutoresetMode(self._settings["autoreset"]),
         }
         spaces = _spaces(self.preset, dict(self._settings))
@@ -94,6 +96,9 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
         seeds = self._seeds(seed)
         if isinstance(seed, (int, np.integer)):
             gymnasium.vector.VectorEnv.reset(self, seed=int(seed))
+        elif seed is not None:
+            # Gymnasium's word for a seed that no number tells.
+            self._np_random_seed = -1
         return self._begin(seeds, options)
 
     def render(self) -> tuple[np.ndarray, ...] | None:
@@ -118,6 +123,9 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
     def _construct(cls, name: str | EquationSystem, given: dict[str, Any]) -> Environments:
         return cls(name, **given) if cls in (VectorEnv, SystemVectorEnv) else cls(**given)
 
+    def close(self, **kwargs: Any) -> None:
+        gymnasium.vector.VectorEnv.close(self, **kwargs)
+
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.preset.name}, num_envs={self.num_envs})"
 
@@ -137,10 +145,10 @@ class Env(gymnasium.Env):
             if unknown in given:
                 raise TypeError(f"unexpected keyword argument {unknown!r}: it belongs to vector environments")
         self.render_mode = _render_mode(name, render_mode)
-        self.metadata = _metadata(name)
         self._all = Environments(
             name, max_episode_steps=np.inf, autoreset_mode="Disabled", **given
         )
+        self.metadata = _metadata(name, self._all._settings)
         self._all._reset_needed, self._all._closed_error = ResetNeeded, ClosedEnvironmentError
         spaces = _spaces(self._all.preset, dict(self._all._settings))
         self.observation_space, self.action_space = spaces

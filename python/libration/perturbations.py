@@ -19,11 +19,18 @@ class Steps:
     number: float
 
 
+def _check_rms(rms: float) -> None:
+    number("rms", rms, "finite and at least 0", lambda x: 0 <= x < math.inf)
+
+
 @dataclass(frozen=True)
 class Gaussian:
     """Normal distribution of steps or clock rates, with a relative standard deviation. A plain number is equivalent."""
 
     rms: float
+
+    def __post_init__(self) -> None:
+        _check_rms(self.rms)
 
 
 @dataclass(frozen=True)
@@ -31,6 +38,9 @@ class Uniform:
     """Uniform distribution of steps or clock rates, with a relative standard deviation."""
 
     rms: float
+
+    def __post_init__(self) -> None:
+        _check_rms(self.rms)
 
 
 @dataclass(frozen=True)

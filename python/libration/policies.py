@@ -14,6 +14,9 @@ __all__ = ["Constant", "Linear", "MLP", "Policy", "Random"]
 
 
 def _finite(name: str, values: ArrayLike) -> np.ndarray:
+    if hasattr(values, "detach"):
+        # Parameters of PyTorch have a gradient, which NumPy refuses.
+        values = values.detach().cpu()
     array = np.asarray(values)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} has dtype {array.dtype}, but it must be real numbers")
