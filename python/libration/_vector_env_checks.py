@@ -250,7 +250,8 @@ def rows_do_not_depend_on_their_number(subject: Subject) -> Iterator[Found]:
 
 def _only(subject: Subject, env: Any, actions: Any, index: int) -> Any:
     row = copy.deepcopy(rows(subject.first, "action", actions)[index])
-    return concatenate(env.single_action_space, [row], create_empty_array(env.single_action_space, n=1, fn=np.zeros))
+    out: Any = create_empty_array(env.single_action_space, n=1, fn=np.zeros)
+    return concatenate(env.single_action_space, [row], out)
 
 
 def lists_of_seeds(subject: Subject) -> Iterator[Found]:

@@ -59,7 +59,7 @@ def same_step(subject: Subject) -> Iterator[Found]:
     if "final_obs" not in step.infos:
         return
     mask = step.infos.get("_final_obs")
-    if not np.array_equal(mask, step.ended):
+    if mask is None or not np.array_equal(mask, step.ended):
         yield f"infos['_final_obs'] is {mask}, but {step.ended} have ended", _code(subject, "print(infos)")
     final = step.infos["final_obs"][i]
     if not subject.first.single_observation_space.contains(final):

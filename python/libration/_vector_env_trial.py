@@ -205,5 +205,5 @@ def replaced(env: VectorEnv, actions: Any, index: int, other: Any) -> Any:
     """Return actions of which one is that of ``other``."""
     mixed = [copy.deepcopy(row) for row in rows(env, "action", actions)]
     mixed[index] = copy.deepcopy(rows(env, "action", other)[index])
-    out = create_empty_array(env.single_action_space, n=env.num_envs, fn=np.zeros)
+    out: Any = create_empty_array(env.single_action_space, n=env.num_envs, fn=np.zeros)
     return concatenate(env.single_action_space, mixed, out)
