@@ -233,7 +233,7 @@ def native(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
 def warn_of(substeps: int, dt: float, late: dict[str, tuple[float, float]]) -> None:
     """Warn of latencies that need many steps of the integrator, with those nearby that need few."""
     step = dt / MANY_SUBSTEPS
-    near = {name: sorted({round(x / step) * step for x in ends}) for name, ends in late.items() if _steps(ends, dt) is None}
+    near = {name: sorted({round(x / step) * step for x in pair}) for name, pair in late.items() if _steps(pair, dt) is None}
     told = "; ".join(f"{name} of {' to '.join(f'{x:.6g}' for x in values)} s" for name, values in near.items())
     warnings.warn(
         f"each step takes {substeps} substeps, so that all latencies are whole steps of {dt / substeps:.6g} s; multiples of dt = {dt:.6g} s need "

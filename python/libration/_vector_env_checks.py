@@ -147,7 +147,7 @@ def same(count: int) -> list[tuple[int, int]]:
 def seeds_repeat(subject: Subject) -> Iterator[Found]:
     trial = subject.trial
     env = subject.env()
-    # Right behind the end of an episode, where a reset by itself may be due.
+    # Directly after the end of an episode, when an autoreset may be due.
     again = subject.play(env, (step.actions for step in trial.steps), beyond=0)
     for name in ("a second environment with the same seed", "the same environment after another reset with the seed"):
         found = difference(subject, trial, again, same(subject.num_envs), len(again.steps), until_end=False)
@@ -182,6 +182,7 @@ def results_stay(subject: Subject) -> Iterator[Found]:
         for name, value in zip(("observations", "rewards", "terminations", "truncations"), result):
             kept.append((f"{name} of step {number}", value, copy.deepcopy(value)))
         kept.append((f"infos of step {number}", result[4], copy.deepcopy(result[4])))
+        subject.begin_ended(env, np.logical_or(result[2], result[3]))
     told: set[str] = set()
     for name, value, copied in kept:
         kind = name.split(" ")[0]

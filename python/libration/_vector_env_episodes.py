@@ -101,19 +101,9 @@ def partial_resets(subject: Subject) -> Iterator[Found]:
             yield f"a reset of sub-environment 0 changes the next step of {i}: {found}", code
 
 
-def ends_are_reached(subject: Subject) -> Iterator[Found]:
-    """Whether an ended sub-environment begins again: no second end in the step behind a reset."""
-    time, i = _end(subject)
-    steps = subject.trial.steps
-    for step in steps[time + 1 : time + 2]:
-        if step.terminations[i] and subject.mode is not AutoresetMode.SAME_STEP:
-            yield f"sub-environment {i} is still terminated one step after its episode ended", _code(subject, "print(terminations)")
-
-
 #: Name, whether Gymnasium promises it, and the check.
 EPISODES: tuple[tuple[str, bool, Callable[[Subject], Iterator[Found]]], ...] = (
     ("autoreset in the next step", True, next_step),
     ("autoreset in the same step", True, same_step),
     ("partial resets", True, partial_resets),
-    ("a new episode", True, ends_are_reached),
 )

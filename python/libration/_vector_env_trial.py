@@ -150,7 +150,7 @@ class Subject:
             yield space.sample() if self.sample is None else self.sample(env, random)
 
     def play(self, env: VectorEnv, actions: Iterator[Any], seed: Any = None, beyond: int = 2) -> Trial:
-        """Reset, then step until ``beyond`` steps behind the first end of an episode. Where nothing resets by itself, ended ones are reset."""
+        """Reset, then step until ``beyond`` steps after the first end of an episode."""
         observations, infos = env.reset(seed=self.seed if seed is None else seed)
         trial, left = Trial(copy.deepcopy(observations), copy.deepcopy(infos)), None
         for chosen in actions:
@@ -163,9 +163,13 @@ class Subject:
                 if left == 0:
                     break
                 left -= 1
-            if self.mode is AutoresetMode.DISABLED and step.ended.any():
-                env.reset(options={"reset_mask": np.array(step.ended)})
+            self.begin_ended(env, step.ended)
         return trial
+
+    def begin_ended(self, env: VectorEnv, ended: np.ndarray) -> None:
+        """Reset the sub-environments that ended, in the mode ``DISABLED``; the other modes do so themselves."""
+        if self.mode is AutoresetMode.DISABLED and ended.any():
+            env.reset(options={"reset_mask": np.array(ended)})
 
 
 def leaves(value: Any, path: str = "observations") -> Iterator[tuple[str, np.ndarray]]:

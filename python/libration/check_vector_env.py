@@ -78,7 +78,7 @@ def check_vector_env(
     Returns
     -------
     VectorEnvReport
-        ``print`` shows each breach with three lines that repeat it.
+        ``print`` shows each breach with at most three lines of code that show where it is.
 
     Raises
     ------

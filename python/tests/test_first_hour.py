@@ -52,7 +52,7 @@ def test_many_substeps_are_told_with_latencies_that_need_few():
     named = float(str(told[0].message).rsplit("action_delay of ", 1)[1].split(" ")[0])
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        # What the warning names needs few, and what is asked for is no surprise.
+        # The latency that the warning names needs at most 20 substeps; substeps that are given need no warning.
         assert libration.Environments("Oscillator", 2, dt=0.05, action_delay=named).substeps <= 20
         assert libration.Environments("Oscillator", 2, dt=0.05, action_delay=0.0333, substeps=500).substeps == 500
         assert libration.Environments("Oscillator", 2, dt=0.05, action_delay=0.1).substeps == 1
