@@ -24,6 +24,7 @@ impl ArrivalSearch<'_> {
     /// The standard errors that the coordinates would have if each arrival were observed.
     fn floors(&self, fit: &ArrivalFit) -> Vec<f64> {
         let free = self.model.free_shape();
+        // Each change of the command tells of one arrival at most.
         let changes =
             self.recording.commands.windows(2).filter(|pair| pair[0] != pair[1]).count().max(1)
                 as f64;
@@ -53,7 +54,12 @@ impl ArrivalSearch<'_> {
         let law = &fit.model;
         match fit.law {
             ArrivalLaw::Certain => {}
-            ArrivalLaw::Jitter => floors[free + 3] = law.jitter / (2.0 * changes).sqrt(),
+            ArrivalLaw::Jitter => {
+                floors[free + 3] = law.jitter / (2.0 * changes).sqrt();
+                if self.model.known[0].is_none() {
+                    floors[0] = floors[0].max(law.jitter / changes.sqrt());
+                }
+            }
             ArrivalLaw::Loss => floors[free + 3] = of_share(law.loss),
             ArrivalLaw::TwoDelays => floors[free + 4] = of_share(law.second.1),
         }

@@ -13,21 +13,9 @@ pub(crate) fn arrival_parameters(
     fit: &ArrivalFit,
     model: &Model,
     covariance: Option<&Matrix>,
-    changes: usize,
 ) -> Vec<Estimated> {
-    // Each change of the command tells of one arrival at most: no law of arrivals is known better than from as many arrivals themselves.
-    let root = (changes.max(1) as f64).sqrt();
-    let share_error = |share: f64| (share * (1.0 - share)).sqrt() / root;
-    let least = |i: usize| match fit.law {
-        ArrivalLaw::Jitter if i == 0 && model.known[0].is_none() => fit.model.jitter / root,
-        ArrivalLaw::Jitter if i + 1 == fit.coordinates.len() => {
-            fit.model.jitter / (2.0_f64.sqrt() * root)
-        }
-        _ => 0.0,
-    };
     let error = |i: usize| {
-        let error = covariance.map(|covariance| covariance[(i, i)].sqrt())?;
-        error.is_finite().then(|| error.max(least(i)))
+        covariance.map(|covariance| covariance[(i, i)].sqrt()).filter(|error| error.is_finite())
     };
     let quantile = normal_quantile(0.5 + 0.5 * LEVEL);
     let around = |row: Estimated, error: Option<f64>, least: f64| Estimated {
@@ -60,8 +48,7 @@ pub(crate) fn arrival_parameters(
     // The coordinate is the logit.
     let share = |key: &str, name: &str, value: f64| {
         let at = |offset: f64| 1.0 / (1.0 + (-(fit.coordinates[last] + offset)).exp());
-        let logit_error = share_error(value) / (value * (1.0 - value)).max(f64::MIN_POSITIVE);
-        let width = error(last).map(|error| quantile * error.max(logit_error));
+        let width = error(last).map(|error| quantile * error);
         Estimated {
             standard_error: width.map(|width| width / quantile * value * (1.0 - value)),
             interval: width.map(|width| Interval { low: at(-width), high: Some(at(width)) }),

@@ -53,8 +53,7 @@ pub fn identify(
     let (parameters, residuals, correlation, bootstrap) = match &search {
         Some((fit, search)) => {
             let covariance = search.covariance(fit);
-            let changes = recording.commands.windows(2).filter(|pair| pair[0] != pair[1]).count();
-            let parameters = arrival_parameters(fit, &estimate.model, covariance.as_ref(), changes);
+            let parameters = arrival_parameters(fit, &estimate.model, covariance.as_ref());
             let tests = ResidualTests::new(&search.scores(fit), 0, window.first, recording);
             (parameters, tests, None, Vec::new())
         }

@@ -187,3 +187,22 @@ impl UnitPlant {
         UnitPlant { a, b, c, d: 0.0 }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pendulum_upside_down_is_unstable_over_a_time_in_which_it_falls_and_one_that_hangs_never() {
+        let response = |stiffness: f64| {
+            let rates = [[0.0, 1.0], [stiffness, 0.0]];
+            let a = Matrix::from_fn(2, 2, |i, j| rates[i][j]);
+            let plant = KnownPlant { a, b: vec![0.0, 1.0], c: vec![1.0, 0.0], d: 0.0 };
+            ResponseKind::Plant(Box::new(plant))
+        };
+        // It falls at the rate 3/s: by e^10 within 3.33 s.
+        assert!(response(9.0).is_unstable(3.4) && !response(9.0).is_unstable(3.3));
+        assert!(!response(-9.0).is_unstable(1e6));
+        assert!(!ResponseKind::IntegratedLag.is_unstable(1e6));
+    }
+}
