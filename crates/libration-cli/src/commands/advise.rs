@@ -14,7 +14,7 @@ use crate::error::Failure;
 use crate::progress::Reporter;
 use crate::{interrupt, terminal};
 
-/// Mean intervals of time stamps over the period.
+/// Mean intervals of time stamps over the period. Others are those of another loop, or in another unit: units differ by 1000.
 const INTERVALS: RangeInclusive<f64> = 0.5..=2.0;
 
 /// Computes the limits of a loop or a simulation and prints them.

@@ -13,7 +13,8 @@ use super::{config_file, time_stamps};
 use crate::args::AdviseArgs;
 use crate::error::Failure;
 
-/// Mean intervals of time stamps over the period.
+/// Mean intervals of time stamps over the period: a hundredth still tells units from each other, which differ by 1000, and the largest is just
+/// below a skew of 8, the limit of the analysis.
 const INTERVALS: RangeInclusive<f64> = 0.01..=8.9;
 
 /// Returns the request of the file or of the options, if it is about a linear plant, and the warnings about the log.
