@@ -27,6 +27,8 @@ pub struct Definitions {
     pub parts: Vec<(String, String)>,
     /// Parameters with their values.
     pub parameters: Vec<(String, f64)>,
+    /// Parameters without a value: inputs of the programs, after `inputs`.
+    pub varied: Vec<String>,
     /// Inputs, such as the force of a controller.
     pub inputs: Vec<String>,
     /// The energy.
@@ -34,13 +36,21 @@ pub struct Definitions {
 }
 
 impl Definitions {
+    /// Makes a parameter an input of the programs, the last so far. Returns whether there is such a parameter.
+    pub fn vary(&mut self, name: &str) -> bool {
+        let place = self.parameters.iter().position(|(own, _)| own == name);
+        self.varied.extend(place.map(|place| self.parameters.remove(place).0));
+        place.is_some()
+    }
+
     /// Checks names and numbers, but no expression.
     pub(crate) fn check(&self) -> Result<(), EquationError> {
         let degrees = self.coordinates.len() + self.rates.len();
         if degrees == 0 || degrees > MAX_DEGREES {
             return Err(fault("coordinates", EquationErrorKind::Degrees(degrees)));
         }
-        let others = self.parts.len() + self.parameters.len() + self.inputs.len();
+        let parameters = self.parameters.len() + self.varied.len();
+        let others = self.parts.len() + parameters + self.inputs.len();
         if others > MAX_DEFINITIONS {
             return Err(fault("let", EquationErrorKind::Definitions(others)));
         }
@@ -93,8 +103,9 @@ impl Definitions {
         let inputs = self.inputs.iter().map(|name| ("inputs".into(), name.as_str()));
         let parameters =
             self.parameters.iter().map(|(name, _)| (format!("parameters.{name}"), name.as_str()));
+        let varied = self.varied.iter().map(|name| (format!("parameters.{name}"), name.as_str()));
         let parts = self.parts.iter().map(|(name, _)| (format!("let.{name}"), name.as_str()));
-        coordinates.chain(rates).chain(inputs).chain(parameters).chain(parts)
+        coordinates.chain(rates).chain(inputs).chain(parameters).chain(varied).chain(parts)
     }
 
     /// The parsed expressions of parts, accelerations, rates and the energy.

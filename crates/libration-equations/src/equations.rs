@@ -34,7 +34,7 @@ impl Equations {
     /// # Errors
     /// [`EquationError`]: the first definition that is wrong.
     pub fn new(definitions: &Definitions) -> Result<Self, EquationError> {
-        let Definitions { coordinates, rates, parts, parameters, inputs, .. } = definitions;
+        let Definitions { coordinates, rates, parts, parameters, varied, inputs, .. } = definitions;
         definitions.check()?;
         let expressions = definitions.parse()?;
         let is_time = |(name, primes): (&str, usize)| name == "t" && primes == 0;
@@ -48,12 +48,13 @@ impl Equations {
         let mut builder = ProgramBuilder::default();
         let (positions, velocities) =
             (builder.inputs(degrees.len()), builder.inputs(degrees.len()));
-        let commands = builder.inputs(inputs.len());
+        let (commands, drawn) = (builder.inputs(inputs.len()), builder.inputs(varied.len()));
         let time = degrees.iter().position(|degree| *degree == Degree::Time).map(|i| positions[i]);
         let mut resolver = Resolver::new(builder);
         define_parameters(&mut resolver, parameters);
         define_states(&mut resolver, &degrees, (&positions, &velocities), str::to_owned);
         define_values(&mut resolver, inputs, &commands);
+        define_values(&mut resolver, varied, &drawn);
         if let Some(time) = time {
             resolver.define("t", 0, time);
         }
@@ -81,7 +82,8 @@ impl Equations {
         let builder = resolver.builder;
         let energy = energy.map(|energy| builder.clone().finish(&[energy]));
         let accelerations = builder.finish(&outputs);
-        let dynamics = Dynamics::new(degrees.len(), inputs.len(), accelerations, energy);
+        let dynamics =
+            Dynamics::new(degrees.len(), inputs.len() + varied.len(), accelerations, energy);
         Ok(Equations { degrees, inputs: inputs.clone(), dynamics })
     }
 
@@ -90,7 +92,7 @@ impl Equations {
         &self.degrees
     }
 
-    /// The names of the inputs.
+    /// The names of the inputs, of which the [dynamics](Equations::dynamics) have one more for each parameter that varies.
     pub fn inputs(&self) -> &[String] {
         &self.inputs
     }

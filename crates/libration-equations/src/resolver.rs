@@ -40,6 +40,11 @@ impl Resolver {
         self.meanings.insert((name.into(), primes), Meaning::Value(value));
     }
 
+    /// Whether a name has a meaning.
+    pub(crate) fn defines(&self, name: &str) -> bool {
+        self.meanings.contains_key(&(name.to_owned(), 0))
+    }
+
     /// Gives a name the value of an expression.
     pub(crate) fn define_expression(&mut self, own: NamedExpression<'_>) {
         let NamedExpression { name, primes, key, expression } = own;

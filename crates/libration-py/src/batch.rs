@@ -168,6 +168,77 @@ impl Batch {
         with_batch!(batch, environments => states(slf.py(), &**environments, episodes.len, places))
     }
 
+    /// Puts environments `which` at the rows of `states`. Returns the observations.
+    fn _set_states<'py>(
+        slf: &Bound<'py, Self>,
+        states: Vec<Vec<f64>>,
+        which: Vec<usize>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut guard = slf.get().inner.lock(slf.py())?;
+        let Inner { batch, episodes, places, .. } = open(slf, &mut guard)?;
+        fn put<T: Number>(
+            environments: &mut dyn AnyEnvironments<T>,
+            places: &[usize],
+            rows: impl Iterator<Item = (usize, Vec<f64>)>,
+        ) -> Result<(), EnvironmentError> {
+            for (n, row) in rows {
+                let mut state = environments.state(n).unwrap_or_default();
+                places.iter().zip(row).for_each(|(&place, x)| state[place] = T::from_f64(x));
+                environments.set_state(n, &state)?;
+            }
+            Ok(())
+        }
+        with_batch!(batch, environments => {
+            let rows = which.into_iter().zip(states);
+            put(&mut **environments, places, rows).map_err(Raised::raised)?;
+            step::observe(slf.py(), &mut **environments, episodes)
+        })
+    }
+
+    /// Puts environments `which` at starts in ranges of the numbers of a state. Returns the observations.
+    fn _start_within<'py>(
+        slf: &Bound<'py, Self>,
+        ranges: Vec<[f64; 2]>,
+        which: Vec<usize>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut guard = slf.get().inner.lock(slf.py())?;
+        let Inner { batch, episodes, places, .. } = open(slf, &mut guard)?;
+        with_batch!(batch, environments => {
+            for n in which {
+                let Some((mut state, episode)) = environments.state(n).zip(environments.episode(n))
+                else {
+                    continue;
+                };
+                let mut all = vec![[0.0; 2]; state.len()];
+                places.iter().zip(&ranges).for_each(|(&place, &range)| all[place] = range);
+                let drawn = episode.start_within(&all);
+                places.iter().for_each(|&place| state[place] = drawn[place]);
+                environments.set_state(n, &state).map_err(Raised::raised)?;
+            }
+            step::observe(slf.py(), &mut **environments, episodes)
+        })
+    }
+
+    /// Returns what is drawn of each episode, `(num_envs, n)`: parameters that vary, largest commands unless all are constants, latencies of
+    /// observations and actions in steps of the integrator, and error scales of clock and sensor.
+    fn _episode_numbers<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        fn numbers<'py, T: Number>(
+            py: Python<'py>,
+            environments: &dyn AnyEnvironments<T>,
+        ) -> PyResult<Bound<'py, PyAny>> {
+            let rows: Vec<Vec<T>> =
+                (0..environments.len()).filter_map(|n| environments.episode_numbers(n)).collect();
+            let width = rows.first().map_or(0, Vec::len);
+            let all: Bound<'py, Array<T, 2>> = allocate(py, [rows.len(), width])?;
+            let to = view_mut(&all).iter_mut();
+            to.zip(rows.iter().flatten()).for_each(|(to, &x)| *to = x);
+            Ok(all.into_any())
+        }
+        let mut guard = slf.get().inner.lock(slf.py())?;
+        let Inner { batch, .. } = open(slf, &mut guard)?;
+        with_batch!(batch, environments => numbers(slf.py(), &**environments))
+    }
+
     /// Returns the state, for environments with the same settings.
     fn _state<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyBytes>, bool, Vec<u8>)> {
         let mut guard = slf.get().inner.lock(slf.py())?;

@@ -23,6 +23,14 @@ pub(crate) fn equations((text, file, set): &EquationText) -> PyResult<EquationSy
     EquationSystem::parse(text, file, set).map_err(located)
 }
 
+/// The system with parameters that vary.
+pub(crate) fn varied(
+    (text, file, set): &EquationText,
+    varied: &[String],
+) -> PyResult<EquationSystem> {
+    EquationSystem::parse_varied(text, file, set, varied).map_err(located)
+}
+
 /// The task of a text with a table `[task]`.
 pub(crate) fn task(text: &str, system: &EquationSystem) -> PyResult<EquationTask> {
     EquationTask::parse(text, "task", system).map_err(located)

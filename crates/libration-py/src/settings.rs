@@ -2,7 +2,9 @@
 
 use libration::ensemble::Execution;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
-use libration::rl::{Autoreset, Delays, ProgramEnvironment};
+use libration::rl::{
+    Autoreset, Delays, Distribution, EpisodeNumber, ErrorScale, ProgramEnvironment,
+};
 use libration_env::environments::{
     AnyEnvironmentSettings, EnvironmentSettings, EquationEnvironment, Noise, SingleDofSystem, Task,
 };
@@ -29,6 +31,8 @@ pub(crate) struct Settings {
     action_delay: [u32; 2],
     jitter: (String, f64),
     skew: (String, f64),
+    /// Commands of discrete actions; empty for commands of any value.
+    pub(crate) levels: Vec<f64>,
     subject: Subject,
 }
 
@@ -58,8 +62,29 @@ struct CatalogueSubject {
 struct EquationSubject {
     equations: EquationText,
     task: Option<String>,
-    saturation: Vec<f64>,
+    /// Parameters that vary.
+    varied: Vec<(String, NumberRequest)>,
+    saturation: Vec<NumberRequest>,
     noise: Vec<(String, f64)>,
+    /// Ranges of the factors of errors of the clock and of noise.
+    error_scale: [[f64; 2]; 2],
+}
+
+/// The kind of a number of an episode, and its numbers.
+type NumberRequest = (String, Vec<f64>);
+
+fn episode_number((kind, numbers): &NumberRequest) -> PyResult<EpisodeNumber> {
+    Ok(match (kind.as_str(), numbers.as_slice()) {
+        ("constant", &[value]) => EpisodeNumber::Constant(value),
+        ("uniform", &[low, high]) => EpisodeNumber::Drawn(Distribution::Uniform(low, high)),
+        ("log-uniform", &[low, high]) => EpisodeNumber::Drawn(Distribution::LogUniform(low, high)),
+        ("gaussian", &[mean, std]) => EpisodeNumber::Drawn(Distribution::Normal(mean, std)),
+        ("each", all) => EpisodeNumber::PerEnvironment(all.into()),
+        _ => {
+            let known = ["constant", "uniform", "log-uniform", "gaussian", "each"];
+            return Err(unknown("distribution", kind, known));
+        }
+    })
 }
 
 impl Settings {
@@ -148,8 +173,11 @@ impl Settings {
         })
     }
     fn by_equations(&self, subject: &EquationSubject) -> PyResult<EquationEnvironment> {
-        let EquationSubject { equations: source, task, saturation, noise } = subject;
-        let system = equations::equations(source)?;
+        let EquationSubject { equations: source, task, varied, saturation, noise, error_scale } =
+            subject;
+        let names: Vec<String> = varied.iter().map(|(name, _)| name.clone()).collect();
+        let system = equations::varied(source, &names)?;
+        let [clock, sensor] = *error_scale;
         let task = match task {
             Some(text) => equations::task(text, &system)?,
             None => system.task.clone().ok_or_else(|| {
@@ -165,7 +193,13 @@ impl Settings {
             limit: self.limit,
             autoreset: self.autoreset()?,
             delays: self.delays(),
-            saturation: saturation.clone(),
+            saturation: saturation.iter().map(episode_number).collect::<PyResult<_>>()?,
+            levels: task.levels.clone(),
+            parameters: varied
+                .iter()
+                .map(|(_, number)| episode_number(number))
+                .collect::<PyResult<_>>()?,
+            error_scale: ErrorScale { clock, sensor },
             skew: law("skew", &self.skew.0, self.skew.1)?,
             jitter: law("jitter", &self.jitter.0, self.jitter.1)?,
             noise: noise.collect::<PyResult<_>>()?,

@@ -31,6 +31,8 @@ pub(crate) struct EpisodeStates {
     shared: bool,
     /// Steps of the integrator for an action.
     pub(crate) substeps: usize,
+    /// Commands of discrete actions; empty for commands of any value.
+    levels: Vec<f64>,
 }
 
 /// Arrays that a step fills: what is seen, paid, over and cut off.
@@ -64,6 +66,7 @@ impl EpisodeStates {
             turn: 0,
             shared: buffers > 0,
             substeps: settings.substeps as usize,
+            levels: settings.levels.clone(),
         })
     }
 
@@ -159,10 +162,16 @@ pub(crate) fn take<'py, T: Number>(
 ) -> PyResult<Step<'py>> {
     let made;
     let shape = [episodes.len, environments.sizes()[1]];
-    let actions: &[T] = match contiguous_actions(given, shape) {
+    let is_discrete = !episodes.levels.is_empty();
+    let actions: &[T] = match contiguous_actions(given, shape).filter(|_| !is_discrete) {
         Some(actions) => actions,
         None => {
-            made = helper(py, &ACTIONS, "actions")?.call1((given, shape, T::NUMPY))?;
+            made = if is_discrete {
+                let levels = episodes.levels.clone();
+                helper(py, &CHOICES, "choices")?.call1((given, shape[0], levels, T::NUMPY))?
+            } else {
+                helper(py, &ACTIONS, "actions")?.call1((given, shape, T::NUMPY))?
+            };
             let error = || PyTypeError::new_err("actions are no array");
             contiguous_actions(&made, shape).ok_or_else(error)?
         }
@@ -231,6 +240,7 @@ fn step_infos<'py, T: Number>(
 }
 
 static ACTIONS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+static CHOICES: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
 static INFOS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
 
 /// A function of Python's for what is rare.

@@ -53,14 +53,19 @@ pub struct SummaryTask {
     pub terminated: Vec<String>,
     /// The range of each state at the start, by name.
     pub start: BTreeMap<String, [f64; 2]>,
+    /// What takes the place of states after a step of the integrator, by name.
+    pub project: BTreeMap<String, String>,
+    /// The commands of discrete actions; empty for commands of any value.
+    pub actions: Vec<f64>,
 }
 
 impl SummaryTask {
     fn new(system: &EquationSystem, task: &EquationTask) -> Self {
-        let TaskDefinitions { observe, reward, terminated } = task.definitions.clone();
+        let TaskDefinitions { observe, reward, terminated, project } = task.definitions.clone();
         let range = |state: &NamedState| (state.name.clone(), task.start[state.place]);
         let start = system.states.iter().map(range).collect();
-        SummaryTask { observe, reward, terminated, start }
+        let project = project.into_iter().collect();
+        SummaryTask { observe, reward, terminated, start, project, actions: task.levels.clone() }
     }
 }
 

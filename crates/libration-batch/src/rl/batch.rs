@@ -15,6 +15,7 @@ use super::start::Episode;
 use super::{
     Autoreset, Environment, EnvironmentError, Sensor, Start, Task, Variation, World, block,
 };
+use crate::ensemble::kernel::at;
 use crate::ensemble::{Assign, EnsembleError, Execution, InsufficientMemory};
 
 /// A batch of environments that are stepped together.
@@ -184,6 +185,32 @@ where
     /// The state of environment `n`; none if `n` is out of range.
     pub fn state(&self, n: usize) -> Option<State<T, D>> {
         (n < self.len).then(|| self.blocks[n / LANES].state(n % LANES))
+    }
+
+    /// The address of the episode of environment `n`; none if `n` is out of range.
+    pub fn episode(&self, n: usize) -> Option<Episode> {
+        (n < self.len).then(|| self.blocks[n / LANES].episode(n % LANES))
+    }
+
+    /// Latencies of observations and of actions in steps of the integrator, and the error scales of the clock and of the sensor, of the
+    /// episode of environment `n`; none if `n` is out of range.
+    pub fn perturbations(&self, n: usize) -> Option<([u32; 2], [T; 2])> {
+        let block = (n < self.len).then(|| &self.blocks[n / LANES])?;
+        Some((block.delays.map(|row| row[n % LANES]), at(&block.error_scale, n % LANES)))
+    }
+
+    /// Puts environment `n` at a state. Its episode goes on from there; what it observes and what acts on it before latencies are over
+    /// is that of a beginning.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Shape`] if there is no such environment.
+    pub fn set_state(&mut self, n: usize, state: State<T, D>) -> Result<(), EnvironmentError> {
+        EnvironmentError::shape("environments", self.len, self.len.max(n.saturating_add(1)))?;
+        let (b, l) = (n / LANES, n % LANES);
+        self.blocks[b].put_state(l, state);
+        let past = &mut self.past[b * self.history.len()..][..self.history.len()];
+        self.history.begin(past, l, state.coordinates());
+        Ok(())
     }
 
     /// Begins a new episode in every environment whose flag is `true`.

@@ -108,8 +108,7 @@ pub(super) fn begin<T: Float, E: World<T, O, D>, const O: usize, const D: usize>
 ) {
     let parts = world.parts();
     let state: State<T, D> = parts.start.draw(episode);
-    put(&mut block.q, l, state.q);
-    put(&mut block.v, l, state.v);
+    block.put_state(l, state);
     let begin = StartAddress::new(episode.seed, episode.environment, episode.number);
     ClockMemory::<T, E, O, D>::set_lane(&mut block.clock, l, parts.clock.start(begin));
     Numbers::<T, E, O, D>::set_lane(&mut block.numbers, l, parts.variation.draw(episode));
@@ -128,6 +127,12 @@ impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {
     #[inline(always)]
     pub(super) fn state(&self, l: usize) -> State<T, D> {
         State { q: at(&self.q, l), v: at(&self.v, l) }
+    }
+
+    /// Puts lane `l` at a state.
+    pub(super) fn put_state(&mut self, l: usize, state: State<T, D>) {
+        put(&mut self.q, l, state.q);
+        put(&mut self.v, l, state.v);
     }
 
     /// The episode of lane `l`.
@@ -192,9 +197,7 @@ impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {
 
     /// Restores the state of lane `l`. The memory of its clock advances; the next episode resets it.
     pub(super) fn hold(&mut self, as_it_was: &Self, l: usize) {
-        let State { q, v } = as_it_was.state(l);
-        put(&mut self.q, l, q);
-        put(&mut self.v, l, v);
+        self.put_state(l, as_it_was.state(l));
         (self.paid[l], self.banked[l]) = (as_it_was.paid[l], as_it_was.banked[l]);
         // Its time stands as well.
         self.began[l] = as_it_was.began[l] + 1;

@@ -64,6 +64,16 @@ impl Distribution {
         }
     }
 
+    /// The smallest number; minus infinity where there is none.
+    pub(super) fn least(&self) -> f64 {
+        match *self {
+            Distribution::Uniform(low, _) | Distribution::LogUniform(low, _) => low,
+            Distribution::Normal(mean, 0.0) => mean,
+            Distribution::Normal(..) => f64::NEG_INFINITY,
+            Distribution::Either(_, [a, b]) => a.min(b),
+        }
+    }
+
     /// The `i`-th number of an episode.
     pub(super) fn draw(&self, episode: Episode, purpose: Purpose, i: usize) -> f64 {
         let address = episode.address(purpose, i);

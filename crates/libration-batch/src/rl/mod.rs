@@ -21,6 +21,8 @@ mod deviation;
 mod distribution;
 mod environment;
 mod episode_end;
+#[cfg(not(test))]
+mod episode_number;
 mod episode_reset;
 mod episode_streams;
 mod error;
@@ -52,6 +54,8 @@ pub use delays::Delays;
 pub use distribution::Distribution;
 pub use environment::{Autoreset, Environment, Parts, World};
 pub use episode_end::EpisodeEnd;
+#[cfg(not(test))]
+pub use episode_number::EpisodeNumber;
 pub use error::EnvironmentError;
 pub use error_scale::ErrorScale;
 pub use estimates::{Discounts, Estimates};

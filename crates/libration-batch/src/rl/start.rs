@@ -40,6 +40,11 @@ impl Episode {
         Address { seed, trajectory, step, purpose }
     }
 
+    /// Its start uniform in these ranges of positions, then of velocities.
+    pub fn start_within<T: Float>(self, ranges: &[[f64; 2]]) -> Vec<T> {
+        uniform::start(self, ranges).collect()
+    }
+
     /// Fails to compile if an episode has fewer than `draws` addresses.
     pub(super) const fn assert_draws(draws: usize) {
         assert!(draws as u64 <= DRAWS, "more numbers than an episode has addresses");
@@ -135,6 +140,16 @@ pub(super) mod uniform {
     ) -> [f64; N] {
         const { Episode::assert_draws(N) };
         from_fn(|i| episode.address(purpose, first + i).uniform()[0])
+    }
+
+    /// A start of an episode: a number in each range.
+    pub(in crate::rl) fn start<T: Float>(
+        episode: Episode,
+        ranges: &[[f64; 2]],
+    ) -> impl Iterator<Item = T> {
+        ranges.iter().enumerate().map(move |(i, &[low, high])| {
+            at((low, high), episode.address(Purpose::Start, i).uniform()[0])
+        })
     }
 
     /// The number at this share of the range.

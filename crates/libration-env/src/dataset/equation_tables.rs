@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use libration::Method;
-use libration::rl::ProgramEnvironment;
+use libration::rl::{EpisodeNumber, ProgramEnvironment};
 use libration_settings::equations::{EquationSystem, EquationTask};
 use libration_settings::{Fault, Number, SettingsError};
 
@@ -75,6 +75,11 @@ pub(super) fn equation_environment(
     let ideal = ProgramEnvironment::new(dynamics, task.programs.clone(), method, dt);
     let most = table.max_action.clone().unwrap_or(Numbers::One(Number(f64::INFINITY)));
     let saturation = each("system.equations.max_action", most, inputs, |x| x > 0.0, "above 0")?;
-    let definition = ProgramEnvironment { start: task.start.clone(), saturation, ..ideal };
+    let definition = ProgramEnvironment {
+        start: task.start.clone(),
+        saturation: saturation.into_iter().map(EpisodeNumber::from).collect(),
+        levels: task.levels.clone(),
+        ..ideal
+    };
     Ok(EquationEnvironment { system, text, parameters, task, definition })
 }

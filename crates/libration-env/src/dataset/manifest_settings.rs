@@ -1,8 +1,10 @@
 //! Settings in manifests.
 
+use std::collections::BTreeMap;
+
 use libration::equations::TaskDefinitions;
-use libration::rl::ProgramEnvironment;
 use libration::rl::task::{Regulate, Track};
+use libration::rl::{EpisodeNumber, ProgramEnvironment};
 use serde_json::{Map, Value, json};
 
 use super::DataFormat;
@@ -154,15 +156,23 @@ fn by_equations(settings: &EquationEnvironment) -> Vec<(&'static str, Value)> {
         .iter()
         .map(|state| (state.name.clone(), json!(task.start[state.place])))
         .collect();
-    let TaskDefinitions { observe, reward, terminated } = &task.definitions;
+    let TaskDefinitions { observe, reward, terminated, project } = &task.definitions;
+    let saturation: Vec<f64> =
+        definition.saturation.iter().filter_map(EpisodeNumber::as_constant).collect();
     let equations = json!({
         "text": text,
         "parameters": parameters,
-        "max_action": one_or_each(&definition.saturation),
+        "max_action": one_or_each(&saturation),
     });
-    let expressions = json!({
+    let mut expressions = json!({
         "observe": observe, "reward": reward, "terminated": terminated, "start": start,
     });
+    if !project.is_empty() {
+        expressions["project"] = json!(project.iter().cloned().collect::<BTreeMap<_, _>>());
+    }
+    if !task.levels.is_empty() {
+        expressions["actions"] = json!(task.levels);
+    }
     vec![
         ("system", json!({ "equations": equations })),
         ("task", json!({ "expressions": expressions })),

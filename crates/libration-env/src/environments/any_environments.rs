@@ -6,10 +6,10 @@ use bytemuck::Pod;
 use libration::checkpoint::{Checkpoint, CheckpointError};
 use libration::ensemble::{BatchFloat, Execution};
 use libration::rl::{
-    EnvironmentError, Environments, EpisodeEnds, Plan, ProgramEnvironments, ProgramPolicy,
+    EnvironmentError, Environments, Episode, EpisodeEnds, Plan, ProgramEnvironments, ProgramPolicy,
     ProgramRollout, Rollout, StepBuffers, World,
 };
-use libration::{Elementary, Float};
+use libration::{Elementary, Float, State};
 
 use super::AnyRollout;
 use super::policy::SizedPolicy;
@@ -87,6 +87,19 @@ pub trait AnyEnvironments<T>: Send + Sync {
     /// Positions, then velocities, of environment `n`, if it exists.
     fn state(&self, n: usize) -> Option<Vec<T>>;
 
+    /// Puts environment `n` at positions, then velocities, from which its episode goes on.
+    ///
+    /// # Errors
+    /// See [`Environments::set_state`].
+    fn set_state(&mut self, n: usize, state: &[T]) -> Result<(), EnvironmentError>;
+
+    /// The address of the episode of environment `n`, if it exists.
+    fn episode(&self, n: usize) -> Option<Episode>;
+
+    /// What is drawn of the episode of environment `n`, if it exists: parameters that vary, largest commands unless all are constants,
+    /// latencies of observations and actions in steps, and error scales of clock and sensor.
+    fn episode_numbers(&self, n: usize) -> Option<Vec<T>>;
+
     /// The complete state as bytes.
     fn to_bytes(&self) -> Vec<u8>;
 
@@ -124,6 +137,10 @@ macro_rules! environments {
             self.seed(seeds)
         }
 
+        fn episode(&self, n: usize) -> Option<Episode> {
+            self.episode(n)
+        }
+
         fn execute(&mut self, execution: Execution) {
             self.execute(execution);
         }
@@ -136,6 +153,13 @@ macro_rules! environments {
             Checkpoint::restore(self, state)
         }
     };
+}
+
+/// Numbers of an episode, latencies and error scales, one after the other.
+fn flat<T: Float>(mut numbers: Vec<T>, (delays, scales): ([u32; 2], [T; 2])) -> Vec<T> {
+    numbers.extend(delays.map(|steps| T::from_f64(steps.into())));
+    numbers.extend(scales);
+    numbers
 }
 
 /// The rollout with its type.
@@ -184,6 +208,18 @@ where
     fn state(&self, n: usize) -> Option<Vec<T>> {
         self.state(n).map(|state| state.coordinates().collect())
     }
+
+    fn set_state(&mut self, n: usize, state: &[T]) -> Result<(), EnvironmentError> {
+        let &[q, v] = state else {
+            let (name, found) = ("numbers of a state", state.len());
+            return Err(EnvironmentError::Shape { name, found, wanted: 2 });
+        };
+        self.set_state(n, State { q: [q], v: [v] })
+    }
+
+    fn episode_numbers(&self, n: usize) -> Option<Vec<T>> {
+        self.perturbations(n).map(|all| flat(Vec::new(), all))
+    }
 }
 
 impl<T: BatchFloat> AnyEnvironments<T> for ProgramEnvironments<T> {
@@ -191,7 +227,7 @@ impl<T: BatchFloat> AnyEnvironments<T> for ProgramEnvironments<T> {
 
     fn sizes(&self) -> [usize; 2] {
         let definition = self.definition();
-        [definition.observations(), definition.dynamics.inputs()]
+        [definition.observations(), definition.actions()]
     }
 
     fn new_rollout(&self, plan: Plan) -> Result<Box<dyn AnyRollout<T>>, EnvironmentError> {
@@ -218,5 +254,13 @@ impl<T: BatchFloat> AnyEnvironments<T> for ProgramEnvironments<T> {
 
     fn state(&self, n: usize) -> Option<Vec<T>> {
         self.state(n)
+    }
+
+    fn set_state(&mut self, n: usize, state: &[T]) -> Result<(), EnvironmentError> {
+        self.set_state(n, state)
+    }
+
+    fn episode_numbers(&self, n: usize) -> Option<Vec<T>> {
+        self.numbers(n).zip(self.perturbations(n)).map(|(numbers, all)| flat(numbers, all))
     }
 }

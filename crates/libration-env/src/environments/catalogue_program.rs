@@ -31,7 +31,7 @@ impl EnvironmentSettings {
             limit: self.limit,
             autoreset: self.autoreset,
             delays: self.delays,
-            saturation: vec![self.saturation],
+            saturation: vec![self.saturation.into()],
             skew: self.noise.skew,
             jitter: self.noise.jitter,
             noise,
@@ -49,7 +49,7 @@ impl NamedTask {
                 definitions: TaskDefinitions {
                     observe: ["-cos(q)", "-sin(q)", "q'"].map(str::to_owned).into(),
                     reward: "-cos(before(q)) - 1 - velocity*before(q')^2 - effort*u^2".to_owned(),
-                    terminated: Vec::new(),
+                    ..TaskDefinitions::default()
                 },
             },
             Task::Track(Track { reference, regulate }) => {
@@ -83,6 +83,7 @@ impl NamedTask {
             observe: observe.collect(),
             reward: format!("-(position*{q}^2 + velocity*{v}^2 + effort*u^2)"),
             terminated,
+            ..TaskDefinitions::default()
         };
         NamedTask { parameters, definitions }
     }

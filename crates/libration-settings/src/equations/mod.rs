@@ -66,20 +66,40 @@ impl EquationSystem {
     /// # Errors
     /// The first key or expression that is wrong.
     pub fn parse(text: &str, file: &str, set: &[(String, f64)]) -> Result<Self, SettingsError> {
+        EquationSystem::parse_varied(text, file, set, &[])
+    }
+
+    /// Reads a system of which these parameters are inputs of its programs, after all others.
+    ///
+    /// # Errors
+    /// As for [`parse`](Self::parse).
+    pub fn parse_varied(
+        text: &str,
+        file: &str,
+        set: &[(String, f64)],
+        varied: &[String],
+    ) -> Result<Self, SettingsError> {
         let document = Document::parse(text, file)?;
         let File { system, task } =
             toml::from_str(text).map_err(|error| document.explain(&error))?;
         let (mut definitions, units) = system.definitions();
+        let unknown = |name: &str, definitions: &Definitions| {
+            let known = definitions.parameters.iter().map(|(name, _)| name.as_str());
+            let help = suggestions::suggest("parameters", name, known);
+            let message = format!("unknown parameter `{name}` (--set)");
+            let span = system.key_place("parameters");
+            SettingsError::new(file, text, span, message, Some(help))
+        };
         for (name, value) in set {
-            let parameters = &mut definitions.parameters;
-            let Some((_, own)) = parameters.iter_mut().find(|(own, _)| own == name) else {
-                let known = parameters.iter().map(|(name, _)| name.as_str());
-                let help = suggestions::suggest("parameters", name, known);
-                let message = format!("unknown parameter `{name}` (--set)");
-                let span = system.key_place("parameters");
-                return Err(SettingsError::new(file, text, span, message, Some(help)));
-            };
-            *own = *value;
+            match definitions.parameters.iter_mut().find(|(own, _)| own == name) {
+                Some((_, own)) => *own = *value,
+                None => return Err(unknown(name, &definitions)),
+            }
+        }
+        for name in varied {
+            if !definitions.vary(name) {
+                return Err(unknown(name, &definitions));
+            }
         }
         let equations = Equations::new(&definitions).map_err(|error| {
             let span = system.place(&error, text).unwrap_or_else(|| system.key_place(&error.key));

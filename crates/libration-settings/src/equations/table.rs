@@ -81,6 +81,7 @@ impl Table {
             rates: texts(&self.rate),
             parts: texts(&self.parts),
             parameters,
+            varied: Vec::new(),
             inputs: names(&self.inputs),
             energy: self.energy.as_ref().map(|text| text.get_ref().clone()),
         };

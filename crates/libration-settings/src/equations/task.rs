@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use libration::equations::{EquationError, TaskDefinitions, TaskPrograms};
+use libration::equations::{EquationError, EquationErrorKind, TaskDefinitions, TaskPrograms};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use toml::Spanned;
@@ -23,6 +23,8 @@ pub struct EquationTask {
     pub units: Vec<String>,
     /// The range of each position, then of each velocity, from which an episode starts.
     pub start: Vec<[f64; 2]>,
+    /// The commands of discrete actions, in ascending order; empty for commands of any value.
+    pub levels: Vec<f64>,
 }
 
 /// A file with a task.
@@ -43,6 +45,9 @@ pub(super) struct TaskTable {
     terminated: Vec<Spanned<String>>,
     #[serde(default)]
     start: BTreeMap<Spanned<String>, Spanned<Start>>,
+    #[serde(default)]
+    project: BTreeMap<Spanned<String>, Spanned<String>>,
+    actions: Option<Spanned<Vec<Number>>>,
 }
 
 /// A number, or the ends of a range.
@@ -73,10 +78,16 @@ impl TaskTable {
             all.iter().map(|text| text.get_ref().clone()).collect()
         };
         let states = || system.states.iter().map(|state| state.name.clone()).collect();
+        let mut project: Vec<_> = self.project.iter().collect();
+        project.sort_by_key(|(name, _)| name.span().start);
+        let pair = |(name, text): (&Spanned<String>, &Spanned<String>)| {
+            (name.get_ref().clone(), text.get_ref().clone())
+        };
         let definitions = TaskDefinitions {
             observe: self.observe.as_deref().map_or_else(states, texts),
             reward: self.reward.get_ref().clone(),
             terminated: texts(&self.terminated),
+            project: project.into_iter().map(pair).collect(),
         };
         if definitions.observe.is_empty() {
             let span = self.reward.span();
@@ -92,28 +103,50 @@ impl TaskTable {
         Ok(EquationTask {
             units: definitions.observe.iter().map(unit).collect(),
             start: self.start(system)?,
+            levels: self.levels(system)?,
             definitions,
             programs,
         })
+    }
+
+    /// The commands of discrete actions.
+    fn levels(&self, system: &EquationSystem) -> Result<Vec<f64>, Wrong> {
+        let Some(actions) = &self.actions else { return Ok(Vec::new()) };
+        let levels: Vec<f64> = actions.get_ref().iter().map(|x| x.0).collect();
+        let inputs = system.equations.inputs().len();
+        let message = if inputs != 1 {
+            format!("`actions` are commands of one input, but the system has {inputs}")
+        } else if levels.len() < 2 {
+            format!("`actions` has {} commands; expected at least two", levels.len())
+        } else if levels.iter().any(|level| !level.is_finite())
+            || !levels.is_sorted_by(|a, b| a < b)
+        {
+            format!("`actions` is {levels:?}; expected finite numbers in ascending order")
+        } else {
+            return Ok(levels);
+        };
+        Err((actions.span(), message, None))
     }
 
     /// The place in the file of an error of an expression.
     fn place(&self, error: &EquationError, text: &str) -> Range<usize> {
         let mut keys = error.key.split('.').skip(1);
         let (key, index) = (keys.next(), keys.next().and_then(|index| index.parse().ok()));
+        if let (Some("project"), Some((_, name))) = (key, error.key.rsplit_once("project.")) {
+            let entry = self.project.iter().find(|(known, _)| known.get_ref() == name);
+            let unknown = matches!(error.kind, EquationErrorKind::UnknownName { .. });
+            return match entry {
+                Some((key, _)) if unknown && error.span.is_none() => key.span(),
+                Some((_, text_of)) => inside(text_of, error, text),
+                None => self.reward.span(),
+            };
+        }
         let texts = match key {
             Some("observe") => self.observe.as_deref().unwrap_or_default(),
             Some("terminated") => &self.terminated[..],
             _ => std::slice::from_ref(&self.reward),
         };
-        let Some(value) = texts.get(index.unwrap_or(0)) else { return self.reward.span() };
-        let inside = error.span.clone().and_then(|inside| {
-            // An escape is longer in the file than in the expression.
-            let begin =
-                value.span().start + text.get(value.span())?.find(value.get_ref().as_str())?;
-            Some(begin + inside.start..begin + inside.end)
-        });
-        inside.unwrap_or_else(|| value.span())
+        texts.get(index.unwrap_or(0)).map_or(self.reward.span(), |value| inside(value, error, text))
     }
 
     /// The ranges of positions and velocities; those that are not given start where the system does.
@@ -145,4 +178,14 @@ impl TaskTable {
         }
         Ok(ranges)
     }
+}
+
+/// The place in the file of an error within an expression.
+fn inside(value: &Spanned<String>, error: &EquationError, text: &str) -> Range<usize> {
+    let place = error.span.clone().and_then(|inside| {
+        // An escape is longer in the file than in the expression.
+        let begin = value.span().start + text.get(value.span())?.find(value.get_ref().as_str())?;
+        Some(begin + inside.start..begin + inside.end)
+    });
+    place.unwrap_or_else(|| value.span())
 }

@@ -16,7 +16,7 @@ use crate::ensemble::{BatchFloat, Execution, InsufficientMemory};
 use crate::rl::block_size::LANES;
 use crate::rl::history::History;
 use crate::rl::rollout_slice::{first_of, rows_of};
-use crate::rl::{EnvironmentError, StepBuffers};
+use crate::rl::{EnvironmentError, Episode, StepBuffers};
 
 /// A batch of [`ProgramEnvironment`]s that are stepped together: [`Environments`](crate::rl::Environments) with any number of states,
 /// inputs and observations.
@@ -27,6 +27,8 @@ pub struct ProgramEnvironments<T: Float> {
     pub(super) episodes: Episodes<T>,
     /// Positions, then velocities, of each block.
     pub(super) states: Vec<Row<T>>,
+    /// The numbers of the episodes of each block.
+    numbers: Vec<Row<T>>,
     pub(super) history: History,
     pub(super) past: Vec<T>,
 }
@@ -45,19 +47,22 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
         seed: u64,
         execution: Execution,
     ) -> Result<Self, EnvironmentError> {
-        definition.check::<T>()?;
+        definition.check::<T>(len)?;
         let world = definition.world();
         let episodes = Episodes::shard(world, first, len, seed, execution)?;
-        let ProgramEnvironment { delays, substeps, ref dynamics, .. } = definition;
-        let sizes = [definition.coordinates(), dynamics.inputs()];
+        let ProgramEnvironment { delays, substeps, .. } = definition;
+        let sizes = [definition.coordinates(), definition.actions()];
         let history = History::new(delays, substeps, sizes);
         let blocks = len.div_ceil(LANES);
-        let rows = blocks.saturating_mul(sizes[0]);
-        let numbers = rows.saturating_mul(LANES) + blocks.saturating_mul(history.len());
+        let [rows, drawn] =
+            [sizes[0], definition.numbers().count()].map(|each| blocks.saturating_mul(each));
+        let numbers = rows.saturating_add(drawn).saturating_mul(LANES);
+        let numbers = numbers.saturating_add(blocks.saturating_mul(history.len()));
         InsufficientMemory::check(numbers as u128 * size_of::<T>() as u128)?;
         let mut all = ProgramEnvironments {
             programs: Programs::new(&definition),
             states: vec![[T::zero(); LANES]; rows],
+            numbers: vec![[T::zero(); LANES]; drawn],
             past: vec![T::zero(); blocks * history.len()],
             definition,
             episodes,
@@ -133,13 +138,58 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
 
     /// Puts environment `n` at the start of its episode.
     fn place(&mut self, n: usize) {
+        self.draw_numbers(n);
+        let episode = self.episodes.blocks[n / LANES].episode(n % LANES);
+        self.put(n, episode.start_within(&self.definition.start).into_iter());
+    }
+
+    /// Puts environment `n` at positions and velocities `state`. Its episode goes on from there; what it observes and what acts on it
+    /// before latencies are over is that of a beginning.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Shape`] if there is no such environment, or for a wrong number of coordinates.
+    pub fn set_state(&mut self, n: usize, state: &[T]) -> Result<(), EnvironmentError> {
+        EnvironmentError::shape("environments", self.len(), self.len().max(n.saturating_add(1)))?;
+        EnvironmentError::shape("numbers of a state", state.len(), self.definition.coordinates())?;
+        self.put(n, state.iter().copied());
+        Ok(())
+    }
+
+    fn put(&mut self, n: usize, state: impl Iterator<Item = T>) {
         let (b, l) = (n / LANES, n % LANES);
         let ProgramEnvironments { definition, episodes, history, states, past, .. } = self;
-        let episode = episodes.blocks[b].episode(l);
         let beginning = Beginning { definition, world: &episodes.world, history: *history };
         let rows = definition.coordinates();
         let past = &mut past[b * history.len()..][..history.len()];
-        beginning.place(&mut states[b * rows..][..rows], past, l, episode);
+        beginning.place(&mut states[b * rows..][..rows], past, l, state);
+    }
+
+    /// Draws the numbers of the episode of environment `n`.
+    pub(super) fn draw_numbers(&mut self, n: usize) {
+        let (b, l) = (n / LANES, n % LANES);
+        let ProgramEnvironments { definition, episodes, history, numbers, .. } = self;
+        let beginning = Beginning { definition, world: &episodes.world, history: *history };
+        let count = definition.numbers().count();
+        let episode = episodes.blocks[b].episode(l);
+        beginning.draw(&mut numbers[b * count..][..count], [n, l], episode);
+    }
+
+    /// The parameters that vary of the episode of environment `n`, then its largest commands unless all of them are constants; none if
+    /// `n` is out of range.
+    pub fn numbers(&self, n: usize) -> Option<Vec<T>> {
+        let count = self.definition.numbers().count();
+        let block = (n < self.len()).then(|| &self.numbers[n / LANES * count..][..count])?;
+        Some(block.iter().map(|row| row[n % LANES]).collect())
+    }
+
+    /// See [`Environments::perturbations`](crate::rl::Environments::perturbations).
+    pub fn perturbations(&self, n: usize) -> Option<([u32; 2], [T; 2])> {
+        self.episodes.perturbations(n)
+    }
+
+    /// The address of the episode of environment `n`; none if `n` is out of range.
+    pub fn episode(&self, n: usize) -> Option<Episode> {
+        self.episodes.episode(n)
     }
 
     /// Writes the observations before the next action: `[n, i]`.
@@ -181,7 +231,7 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
         let [observations, actions] = rollout.sizes();
         let wanted = self.definition.observations();
         EnvironmentError::shape("observed numbers of the rollout", observations, wanted)?;
-        let wanted = self.definition.dynamics.inputs();
+        let wanted = self.definition.actions();
         EnvironmentError::shape("actions of the rollout", actions, wanted)?;
         self.episodes.expect_rows(&plan, &rows, rollout.sizes())?;
         self.ready(policy, plan.horizon)?;
@@ -214,7 +264,7 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
     }
 
     fn ready(&self, policy: ProgramPolicy<'_, T>, horizon: usize) -> Result<(), EnvironmentError> {
-        let sizes = [self.definition.observations(), self.definition.dynamics.inputs()];
+        let sizes = [self.definition.observations(), self.definition.actions()];
         policy.check(sizes, [self.len(), horizon])
     }
 
@@ -228,9 +278,11 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
     ) -> EpisodeEnds<T> {
         let len = self.len();
         let steps = to.reward.nrows() as u64;
-        let ProgramEnvironments { definition, programs, episodes, states, history, past } = self;
+        let ProgramEnvironments { definition, programs, episodes, states, numbers, history, past } =
+            self;
         let definition = &*definition;
         let (coordinates, observations) = (definition.coordinates(), definition.observations());
+        let drawn = definition.numbers().count();
         let Episodes { world, blocks, draws: [times, looks, acts], step, .. } = episodes;
         let substeps = u64::from(definition.substeps);
         let words = if definition.is_even() { 0 } else { Clock::<T>::words(&world.clock) };
@@ -245,6 +297,7 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
         let threads = episodes.execution.threads_for(work.saturating_mul(each));
         let size = len.div_ceil(threads).next_multiple_of(LANES).max(LANES);
         let mut rest = (&mut blocks[..], &mut states[..], &mut past[..], [times, looks, acts]);
+        let mut numbers = &mut numbers[..];
         let mut shares = Vec::with_capacity(threads);
         for first in (0..len).step_by(size) {
             let len = size.min(len - first);
@@ -256,6 +309,7 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
                 len,
                 blocks: first_of(&mut rest.0, count),
                 states: first_of(&mut rest.1, count * coordinates),
+                numbers: first_of(&mut numbers, count * drawn),
                 past: first_of(&mut rest.2, count * history.len()),
                 words: rest.3.each_mut().map(|words| first_of(words, count)),
                 to: head,

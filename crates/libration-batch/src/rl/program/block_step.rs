@@ -16,7 +16,7 @@ use crate::rl::block_size::LANES;
 use crate::rl::deviation::scale_deviation;
 use crate::rl::episode_streams::begin_epochs;
 use crate::rl::history::History;
-use crate::rl::{ProgramEnvironment, StepIndex};
+use crate::rl::{EpisodeNumber, ProgramEnvironment, StepIndex};
 
 /// A row of a block.
 pub(super) type Row<T> = [T; LANES];
@@ -30,10 +30,13 @@ pub(super) struct BlockStep<'s, T> {
     dt: T,
     /// The time from action to action, in seconds.
     span: f64,
-    saturation: Vec<T>,
+    /// The largest commands, where they are constants.
+    saturation: Option<Vec<T>>,
+    levels: Vec<T>,
     /// Whether observation and verdict depend on time.
     is_timed: [bool; 2],
     step: ProgramRows<'s, T>,
+    projection: Option<ProgramRows<'s, T>>,
     observation: ProgramRows<'s, T>,
     verdict: ProgramRows<'s, T>,
     pub(super) seen: Vec<Row<T>>,
@@ -45,6 +48,8 @@ pub(super) struct BlockStep<'s, T> {
     held: Vec<Row<T>>,
     /// Positions and velocities at other times than now.
     other: Vec<Row<T>>,
+    /// Positions and velocities before a step of the integrator, for its projection.
+    previous: Vec<Row<T>>,
     lengths: Row<T>,
     times: Row<T>,
     judged: [Row<T>; 2],
@@ -55,6 +60,8 @@ pub(super) struct BlockState<'a, T: Float> {
     pub(super) episodes: &'a mut EpisodeBlock<T>,
     /// Positions, then velocities.
     pub(super) states: &'a mut [Row<T>],
+    /// The [numbers](ProgramEnvironment::numbers) of the episodes.
+    pub(super) numbers: &'a mut [Row<T>],
     pub(super) past: &'a mut [T],
 }
 
@@ -70,7 +77,11 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
         let rows = |count: usize| vec![zeros; count];
         let lanes = environments.min(LANES);
         let dt = T::from_f64(definition.dt);
-        let inputs = definition.dynamics.inputs();
+        let (actions, coordinates) = (definition.actions(), definition.coordinates());
+        let saturation = definition.saturation.iter().map(EpisodeNumber::as_constant);
+        let saturation: Option<Vec<f64>> = saturation.collect();
+        let rounded = |all: &[f64]| all.iter().map(|&x| T::from_f64(x)).collect();
+        let projection = programs.projection.as_ref();
         BlockStep {
             definition,
             history,
@@ -78,19 +89,22 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
             instructions,
             dt,
             span: definition.dt * f64::from(definition.substeps),
-            saturation: definition.saturation.iter().map(|&most| T::from_f64(most)).collect(),
+            saturation: saturation.as_deref().map(rounded),
+            levels: rounded(&definition.levels),
             is_timed: programs.is_timed(),
             step: programs.step.rows(lanes, dt),
+            projection: projection.map(|program| program.rows(lanes, dt)),
             observation: programs.observation.rows(lanes, T::zero()),
             verdict: programs.verdict.rows(lanes, T::zero()),
             seen: rows(definition.observations()),
-            actions: rows(inputs),
+            actions: rows(actions),
             log_probabilities: zeros,
             rewards: zeros,
             overs: [0; LANES],
-            commands: rows(inputs),
-            held: rows(inputs),
-            other: rows(definition.coordinates()),
+            commands: rows(actions),
+            held: rows(actions),
+            other: rows(coordinates),
+            previous: rows(projection.map_or(0, |_| coordinates)),
             lengths: [dt; LANES],
             times: zeros,
             judged: [zeros; 2],
@@ -123,8 +137,9 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
         if self.is_timed[0] {
             set_times(&mut self.times, now, &block.episodes.began, self.span);
         }
-        let times = &self.times;
-        let input = |i: usize| states.get(i).unwrap_or(times);
+        let parameters = &block.numbers[..self.definition.parameters.len()];
+        let rows = [&states[..], parameters];
+        let input = |i: usize| row_of(rows, i).unwrap_or(&self.times);
         self.observation.run(input, &mut self.seen, self.instructions);
         if !noisy {
             return;
@@ -169,7 +184,7 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
         words: &mut Streams<LANES>,
     ) -> bool {
         let substeps = self.substeps();
-        self.saturate();
+        self.saturate(block.numbers);
         self.other.copy_from_slice(block.states);
         if self.history.delays_actions() {
             self.history.act(block.past, now, &self.commands);
@@ -186,9 +201,9 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
             if !self.definition.is_even() {
                 self.draw_lengths([now, substeps, substep], block.episodes, words);
             }
-            self.integrate(block.states);
+            self.integrate(block.states, block.numbers);
         }
-        self.judge(now, block.states, &block.episodes.began);
+        self.judge(now, block);
         self.settle(block.states);
         for (paid, &reward) in block.episodes.paid.iter_mut().zip(&self.rewards) {
             *paid = *paid + reward;
@@ -196,13 +211,28 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
         self.overs[..count].iter().fold(0, |all, over| all | over) != 0
     }
 
-    /// The commands of the actions after saturation. NaN stays NaN.
-    fn saturate(&mut self) {
-        for ((to, from), &most) in self.commands.iter_mut().zip(&self.actions).zip(&self.saturation)
-        {
-            for (to, &x) in to.iter_mut().zip(from) {
+    /// The commands of the actions after saturation, on their levels. NaN of an action [loses](BlockStep::settle) the environment.
+    fn saturate(&mut self, numbers: &[Row<T>]) {
+        let drawn = &numbers[self.definition.parameters.len()..];
+        for (i, (to, from)) in self.commands.iter_mut().zip(&self.actions).enumerate() {
+            let within = |x: T, most: T| {
                 let low = if x < -most { -most } else { x };
-                *to = if low > most { most } else { low };
+                if low > most { most } else { low }
+            };
+            match &self.saturation {
+                Some(all) => to.iter_mut().zip(from).for_each(|(to, &x)| *to = within(x, all[i])),
+                None => {
+                    let pairs = from.iter().zip(&drawn[i]);
+                    to.iter_mut().zip(pairs).for_each(|(to, (&x, &most))| *to = within(x, most));
+                }
+            }
+            if let Some((&least, others)) = self.levels.split_first() {
+                for x in to.iter_mut() {
+                    let nearest = |best: T, &level: &T| {
+                        if level - *x <= *x - best { level } else { best }
+                    };
+                    *x = others.iter().fold(least, nearest);
+                }
             }
         }
     }
@@ -228,30 +258,32 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
         }
     }
 
-    /// A step of the integrator.
-    fn integrate(&mut self, states: &mut [Row<T>]) {
+    /// A step of the integrator, and its projection.
+    fn integrate(&mut self, states: &mut [Row<T>], numbers: &[Row<T>]) {
         let held = if self.history.delays_actions() { &self.held } else { &self.commands };
+        let parameters = &numbers[..self.definition.parameters.len()];
         let lengths = &self.lengths;
-        let rest = |i: usize| held.get(i).unwrap_or(lengths);
+        let inputs = [&held[..], parameters];
+        let rest = |i: usize| row_of(inputs, i).unwrap_or(lengths);
+        let Some(projection) = &mut self.projection else {
+            return self.step.run_in_place(states, rest, self.instructions);
+        };
+        self.previous.copy_from_slice(states);
         self.step.run_in_place(states, rest, self.instructions);
+        let count = held.len() + parameters.len() + 1;
+        let previous = &self.previous;
+        let rest = |i: usize| if i < count { rest(i) } else { &previous[i - count] };
+        projection.run_in_place(states, rest, self.instructions);
     }
 
     /// Computes rewards and terminations of the step from [`other`](BlockStep::other) to these states.
-    fn judge(&mut self, now: u64, states: &[Row<T>], began: &[u64; LANES]) {
+    fn judge(&mut self, now: u64, block: &BlockState<'_, T>) {
         if self.is_timed[1] {
-            set_times(&mut self.times, now + 1, began, self.span);
+            set_times(&mut self.times, now + 1, &block.episodes.began, self.span);
         }
-        let (other, commands, times) = (&self.other, &self.commands, &self.times);
-        let rows = [&other[..], commands, states];
-        let input = |mut i: usize| {
-            for rows in rows {
-                if let Some(row) = rows.get(i) {
-                    return row;
-                }
-                i -= rows.len();
-            }
-            times
-        };
+        let parameters = &block.numbers[..self.definition.parameters.len()];
+        let rows = [&self.other[..], &self.commands, parameters, &*block.states];
+        let input = |i: usize| row_of(rows, i).unwrap_or(&self.times);
         self.verdict.run(input, &mut self.judged, self.instructions);
     }
 
@@ -269,6 +301,17 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
             self.rewards[l] = if lost { T::zero() } else { rewards[l] };
         }
     }
+}
+
+/// Row `i` of these one after the other; none behind the last.
+fn row_of<T, const N: usize>(all: [&[Row<T>]; N], mut i: usize) -> Option<&Row<T>> {
+    for rows in all {
+        if let Some(row) = rows.get(i) {
+            return Some(row);
+        }
+        i -= rows.len();
+    }
+    None
 }
 
 /// Sets the times since the episodes began, in seconds of an ideal clock.

@@ -36,6 +36,7 @@ impl<T: BatchFloat> Checkpoint for ProgramEnvironments<T> {
         self.episodes.restore(episodes)?;
         from.fill(self.states.as_flattened_mut());
         from.fill(&mut self.past);
+        (0..self.len()).for_each(|n| self.draw_numbers(n));
         Ok(())
     }
 }

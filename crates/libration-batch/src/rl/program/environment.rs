@@ -9,7 +9,7 @@ use libration_equations::{Dynamics, TaskPrograms};
 use super::episodes::{NoStart, NoSystem, NoTask};
 use crate::ensemble::All;
 use crate::rl::start::uniform;
-use crate::rl::{Autoreset, Delays, Environment, EnvironmentError, ErrorScale};
+use crate::rl::{Autoreset, Delays, Environment, EnvironmentError, EpisodeNumber, ErrorScale};
 
 /// Environments of a system and a task by their programs. The actions are the inputs of the system.
 ///
@@ -67,7 +67,12 @@ pub struct ProgramEnvironment {
     /// The latencies of observations and actions.
     pub delays: Delays,
     /// The largest command of each input, of either sign; the reward uses the saturated command. Infinite for no limit.
-    pub saturation: Vec<f64>,
+    pub saturation: Vec<EpisodeNumber>,
+    /// The values that a command can have, in ascending order: each becomes the nearest one, of two as near the larger. Empty for
+    /// commands of any value.
+    pub levels: Vec<f64>,
+    /// The parameters of the system that vary: its last inputs, which are no actions.
+    pub parameters: Vec<EpisodeNumber>,
     /// The law of `δ` in `Δt·(1 + δ)`, drawn per episode.
     pub skew: Jitter,
     /// The law of `ε` in `Δt·(1 + ε)`, drawn per step of the integrator.
@@ -93,7 +98,9 @@ impl ProgramEnvironment {
         let none = Jitter::Gaussian(0.0);
         ProgramEnvironment {
             start: vec![[0.0; 2]; 2 * dynamics.degrees()],
-            saturation: vec![f64::INFINITY; dynamics.inputs()],
+            saturation: vec![f64::INFINITY.into(); dynamics.inputs()],
+            levels: Vec::new(),
+            parameters: Vec::new(),
             dynamics,
             task,
             method,
@@ -119,6 +126,18 @@ impl ProgramEnvironment {
         2 * self.dynamics.degrees()
     }
 
+    /// The number of actions: inputs that are not parameters.
+    pub fn actions(&self) -> usize {
+        self.dynamics.inputs().saturating_sub(self.parameters.len())
+    }
+
+    /// What each episode has numbers for: parameters, then the largest commands unless all of them are constants.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = &EpisodeNumber> {
+        let varies = self.saturation.iter().any(|most| most.as_constant().is_none());
+        let saturation = if varies { &self.saturation[..] } else { &[] };
+        self.parameters.iter().chain(saturation)
+    }
+
     /// Whether each step is `Δt` long.
     pub(super) fn is_even(&self) -> bool {
         self.skew.rms() == 0.0 && self.jitter.rms() == 0.0
@@ -140,14 +159,16 @@ impl ProgramEnvironment {
         world
     }
 
-    /// Checks what the [world](ProgramEnvironment::world) does not have.
-    pub(super) fn check<T: Float>(&self) -> Result<(), EnvironmentError> {
-        let (degrees, inputs) = (self.dynamics.degrees(), self.dynamics.inputs());
+    /// Checks what the [world](ProgramEnvironment::world) does not have, for so many environments.
+    pub(super) fn check<T: Float>(&self, len: usize) -> Result<(), EnvironmentError> {
+        let degrees = self.dynamics.degrees();
+        let (inputs, parameters) = (self.dynamics.inputs(), self.parameters.len());
         let allowed = degrees.min(Self::MAX_DEGREES);
         EnvironmentError::shape("degrees of freedom of an environment", degrees, allowed)?;
-        EnvironmentError::shape("inputs of the system", inputs, inputs.max(1))?;
+        EnvironmentError::shape("inputs of the system", inputs, inputs.max(parameters + 1))?;
+        let actions = inputs - parameters;
         EnvironmentError::shape("ranges of the start", self.start.len(), 2 * degrees)?;
-        EnvironmentError::shape("largest commands", self.saturation.len(), inputs)?;
+        EnvironmentError::shape("largest commands", self.saturation.len(), actions)?;
         if !self.noise.is_empty() {
             EnvironmentError::shape("laws of noise", self.noise.len(), self.observations())?;
         }
@@ -155,20 +176,58 @@ impl ProgramEnvironment {
             program.inputs_in_use().max().map_or(0, |input| input + 1)
         };
         for (name, found, wanted) in [
-            ("inputs of the observation", most(&self.task.observation), 2 * degrees + 1),
+            (
+                "inputs of the observation",
+                most(&self.task.observation),
+                2 * degrees + parameters + 1,
+            ),
             ("inputs of the verdict", most(&self.task.verdict), 4 * degrees + inputs + 1),
+            (
+                "inputs of the projection",
+                self.task.projection.as_ref().map_or(0, most),
+                4 * degrees + inputs + 1,
+            ),
         ] {
             EnvironmentError::shape(name, found, found.min(wanted))?;
         }
         EnvironmentError::shape("outputs of the verdict", self.task.verdict.outputs().len(), 2)?;
+        if let Some(projection) = &self.task.projection {
+            let outputs = projection.outputs().len();
+            EnvironmentError::shape("outputs of the projection", outputs, 2 * degrees)?;
+        }
         for end in self.start.iter().flatten() {
             ensure_finite::<T>("end of the start", *end)?;
         }
         uniform::check("range of the start", self.start.iter().map(|[low, high]| (*low, *high)))?;
         let indexed = |index: usize| move |error| ControlError { index: Some(index), ..error };
-        for (index, &most) in self.saturation.iter().enumerate() {
-            ensure("saturation", most, "above 0", |most| T::from_f64(most) > T::zero())
+        let numbers = self.numbers().count();
+        EnvironmentError::shape(
+            "numbers of an episode",
+            numbers,
+            numbers.min(EpisodeNumber::MOST),
+        )?;
+        for count in self.numbers().filter_map(EpisodeNumber::environments) {
+            EnvironmentError::shape("numbers of the environments", count, len)?;
+        }
+        for (index, parameter) in self.parameters.iter().enumerate() {
+            parameter.check::<T>(index)?;
+        }
+        for (index, most) in self.saturation.iter().enumerate() {
+            let least = most.least();
+            ensure("saturation", least, "above 0", |most| T::from_f64(most) > T::zero())
                 .map_err(indexed(index))?;
+            if most.as_constant().is_none() {
+                most.check::<T>(index)?;
+            }
+        }
+        for (index, &level) in self.levels.iter().enumerate() {
+            ensure_finite::<T>("level of a command", level).map_err(indexed(index))?;
+        }
+        let falls = |pair: &[f64]| T::from_f64(pair[0]) >= T::from_f64(pair[1]);
+        if let Some(i) = self.levels.windows(2).position(falls) {
+            let (name, value) = ("level of a command", self.levels[i + 1]);
+            let allowed = "above the level before it in the float type";
+            return Err(ControlError { name, index: Some(i + 1), value, allowed }.into());
         }
         for (index, law) in self.noise.iter().enumerate() {
             ensure_not_negative::<T>("the rms of the noise of observation", law.rms())

@@ -20,6 +20,7 @@ pub(super) struct Share<'a, T: Float> {
     pub(super) len: usize,
     pub(super) blocks: &'a mut [EpisodeBlock<T>],
     pub(super) states: &'a mut [Row<T>],
+    pub(super) numbers: &'a mut [Row<T>],
     pub(super) past: &'a mut [T],
     /// The words for clocks, sensors and actions; none where nothing is drawn.
     pub(super) words: [&'a mut [Streams<LANES>]; 3],
@@ -49,8 +50,9 @@ struct Site<'w> {
 
 impl<T: BatchFloat> Horizon<'_, T> {
     pub(super) fn run(&self, work: &mut BlockStep<'_, T>, share: Share<'_, T>) -> EpisodeEnds<T> {
-        let Share { first, len, blocks, states, past, words: [times, looks, acts], .. } = share;
-        let Share { mut to, next, .. } = share;
+        let Share { first, len, blocks, states, numbers, past, .. } = share;
+        let Share { words: [times, looks, acts], mut to, next, .. } = share;
+        let numbers_len = work.definition.numbers().count();
         let coordinates = work.definition.coordinates();
         let observations = work.definition.observations();
         let steps = to.reward.nrows();
@@ -65,6 +67,7 @@ impl<T: BatchFloat> Horizon<'_, T> {
             let mut block = BlockState {
                 episodes,
                 states: &mut states[b * coordinates..][..coordinates],
+                numbers: &mut numbers[b * numbers_len..][..numbers_len],
                 past: &mut past[b * past_len..][..past_len],
             };
             let [no_times, no_looks, no_acts] = &mut none;
@@ -173,7 +176,7 @@ impl<T: BatchFloat> Horizon<'_, T> {
                     let steps = step * substeps..(step + 1) * substeps;
                     work.history.hold(block.past, l, steps, state);
                 } else {
-                    self.beginning.begin(block, l, next, step + 1);
+                    self.beginning.begin(block, [environment + l, l], next, step + 1);
                 }
                 continue;
             }
@@ -193,7 +196,9 @@ impl<T: BatchFloat> Horizon<'_, T> {
             };
             ends.push(end, last.iter().map(|row| row[l]));
             match autoreset {
-                Autoreset::SameStep => self.beginning.begin(block, l, next, step + 1),
+                Autoreset::SameStep => {
+                    self.beginning.begin(block, [environment + l, l], next, step + 1)
+                }
                 Autoreset::NextStep | Autoreset::Disabled => block.episodes.ended[l] = flags,
             }
         }

@@ -1,6 +1,5 @@
 //! The state of environments: blocks, and the programs that step them.
 
-use libration_core::random::Purpose;
 use libration_core::{Float, with_method};
 use libration_equations::StepProgram;
 
@@ -16,6 +15,7 @@ use crate::rl::{Delays, Episode, block};
 #[derive(Debug)]
 pub(super) struct Programs {
     pub(super) step: RowProgram,
+    pub(super) projection: Option<RowProgram>,
     pub(super) observation: RowProgram,
     pub(super) verdict: RowProgram,
 }
@@ -27,9 +27,12 @@ impl Programs {
         let (coordinates, inputs) = (definition.coordinates(), dynamics.inputs());
         let dt = coordinates + inputs;
         let uniform = definition.is_even().then_some(dt);
+        let observed = coordinates + definition.parameters.len() + 1;
+        let projection = task.projection.as_ref();
         Programs {
             step: RowProgram::new(step.program(), dt + 1, uniform),
-            observation: RowProgram::new(&task.observation, coordinates + 1, None),
+            projection: projection.map(|all| RowProgram::new(all, dt + 1 + coordinates, uniform)),
+            observation: RowProgram::new(&task.observation, observed, None),
             verdict: RowProgram::new(&task.verdict, 2 * coordinates + inputs + 1, None),
         }
     }
@@ -41,7 +44,8 @@ impl Programs {
 
     /// The length of an action in shortest steps of an ensemble.
     pub(super) fn shortest_steps(&self, substeps: u32) -> u64 {
-        let steps = self.step.shortest_steps().saturating_mul(substeps.into());
+        let projection = self.projection.as_ref().map_or(0, RowProgram::shortest_steps);
+        let steps = (self.step.shortest_steps() + projection).saturating_mul(substeps.into());
         steps + self.observation.shortest_steps() + self.verdict.shortest_steps()
     }
 }
@@ -55,30 +59,41 @@ pub(super) struct Beginning<'a> {
 }
 
 impl Beginning<'_> {
-    /// Begins an episode in lane `l` of a block, with the step `now`.
+    /// Begins an episode of environment `n` in lane `l` of its block, with the step `now`.
     pub(super) fn begin<T: Float>(
         &self,
         block: &mut BlockState<'_, T>,
-        l: usize,
+        [n, l]: [usize; 2],
         episode: Episode,
         now: u64,
     ) {
         block::begin(block.episodes, no_history(), &mut [], self.world, l, episode, now);
-        self.place(block.states, block.past, l, episode);
+        self.draw(block.numbers, [n, l], episode);
+        let start = uniform::start(episode, &self.definition.start);
+        self.place(block.states, block.past, l, start);
     }
 
-    /// Puts lane `l` at the start of an episode.
+    /// Draws the numbers of an episode of environment `n` in lane `l` of its block.
+    pub(super) fn draw<T: Float>(
+        &self,
+        numbers: &mut [Row<T>],
+        [n, l]: [usize; 2],
+        episode: Episode,
+    ) {
+        for (i, (row, number)) in numbers.iter_mut().zip(self.definition.numbers()).enumerate() {
+            row[l] = T::from_f64(number.of(episode, i, n));
+        }
+    }
+
+    /// Puts lane `l` at a state that nothing was before.
     pub(super) fn place<T: Float>(
         &self,
         states: &mut [Row<T>],
         past: &mut [T],
         l: usize,
-        episode: Episode,
+        state: impl Iterator<Item = T>,
     ) {
-        for (i, (row, &[low, high])) in states.iter_mut().zip(&self.definition.start).enumerate() {
-            let share = episode.address(Purpose::Start, i).uniform()[0];
-            row[l] = uniform::at((low, high), share);
-        }
+        states.iter_mut().zip(state).for_each(|(row, x)| row[l] = x);
         self.history.begin(past, l, states.iter().map(|row| row[l]));
     }
 }

@@ -153,6 +153,7 @@ impl Case {
             observe: self.observe.iter().copied().map(text).collect(),
             reward: self.reward.into(),
             terminated: self.terminated.iter().copied().map(text).collect(),
+            ..TaskDefinitions::default()
         };
         let task = TaskPrograms::new(&task, &definitions, &equations).unwrap();
         let compiled = self.settings(setting);
@@ -163,7 +164,7 @@ impl Case {
             autoreset: compiled.autoreset,
             delays: compiled.delays,
             substeps: compiled.substeps,
-            saturation: vec![compiled.saturation],
+            saturation: vec![compiled.saturation.into()],
             jitter: noise.jitter,
             skew: noise.skew,
             noise: vec![noise.observation; self.observe.len()],
