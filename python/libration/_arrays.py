@@ -42,6 +42,28 @@ def actions(given: Any, shape: Sequence[int], dtype: str) -> np.ndarray:
         return array.astype(dtype, order="C")
 
 
+def choices(given: Any, num_envs: int, levels: list[float], dtype: str) -> np.ndarray:
+    """Return the commands of discrete actions ``(num_envs,)``; action ``i`` is the command ``levels[i]``.
+
+    Raises
+    ------
+    TypeError
+        If they are not integers.
+    ValueError
+        If their shape is wrong, or one is no action.
+    """
+    array = np.from_dlpack(given) if not isinstance(given, np.ndarray) and hasattr(given, "__dlpack__") else np.asarray(given)
+    if array.dtype.kind not in "iu":
+        raise TypeError(f"actions have dtype {array.dtype}, but they must be integers from 0 to {len(levels) - 1}")
+    if array.shape != (num_envs,) and not (num_envs == 1 and array.shape == ()):
+        raise ValueError(f"actions have shape {array.shape}, but it must be ({num_envs},)")
+    array = array.reshape(num_envs)
+    if array.min() < 0 or array.max() >= len(levels):
+        n = int(np.argmax((array < 0) | (array >= len(levels))))
+        raise ValueError(f"actions[{n}] is {array[n]}, but it must be 0 to {len(levels) - 1}")
+    return np.array(levels, dtype).take(array)
+
+
 def infos(
     num_envs: int,
     same_step: bool,

@@ -81,6 +81,8 @@ def ends(name: str, value: Any, least: float = -math.inf) -> tuple[float, float]
     """Return the ends of a range; a number has two equal ends."""
     if getattr(value, "shape", ()) != ():
         value = value.tolist()
+    # A uniform distribution between two ends.
+    value = getattr(value, "ends", None) or value
     pair = value if is_several(value) else (value, value)
     if len(pair) != 2:
         raise ValueError(f"{name} has {len(pair)} numbers, but it must have one or two")
@@ -95,9 +97,11 @@ def law(name: str, value: Any) -> tuple[str, float]:
     """Return a distribution and its standard deviation."""
     if value is None:
         return "gaussian", 0.0
-    if hasattr(value, "rms"):
+    if hasattr(value, "std") and not hasattr(value, "shape"):
         # A distribution of :mod:`libration.perturbations`.
-        value = (type(value).__name__.lower(), value.rms)
+        if value.std is None or getattr(value, "mean", 0.0) != 0.0:
+            raise ValueError(f"{name} is {value!r}, but it must be a distribution around zero, like {type(value).__name__}(0.05)")
+        value = (type(value).__name__.lower(), value.std)
     if is_several(value):
         if len(value) != 2 or not isinstance(value[0], str):
             raise ValueError(f"{name} is {value!r}, but it must be like ('gaussian', 0.05)")
@@ -173,14 +177,17 @@ OPTIONS = (
     "reward",
     "terminated",
     "start",
+    "project",
+    "actions",
     "dtype",
     "threads",
     "copy",
     "buffers",
+    "parameter_infos",
     "render_mode",
 )
 
-TASK_OPTIONS = ("observe", "reward", "terminated", "start")
+TASK_OPTIONS = ("observe", "reward", "terminated", "start", "project", "actions")
 """Options of environments of systems by equations."""
 
 CATALOGUE = {name: tuple(entry[0] for entry in all) for name, _, _, _, all in _systems()}
@@ -289,4 +296,7 @@ def common(given: dict[str, Any]) -> dict[str, Any]:
         "action_delay": late_steps["action_delay"],
         "jitter": law("jitter", given["jitter"]),
         "skew": law("skew", given["skew"]),
+        "levels": [],
+        "parameter_infos": given["parameter_infos"],
+        "ranges": {name: ranges for name, ranges in late.items() if ranges[0] != ranges[1]},
     }

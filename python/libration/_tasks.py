@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Any, Mapping, Sequence
 
-from ._settings import OPTIONS, TASK_OPTIONS, common, ends, is_several, law, number, refuse_others
+from ._episode_numbers import each, episode_number, largest_commands, scaled_law
+from ._settings import OPTIONS, TASK_OPTIONS, common, count, ends, is_several, law, number, refuse_others
 from ._toml import text_of
 from .equations import EquationSystem
 
@@ -22,6 +23,8 @@ class EquationPreset:
     """Expressions of the observed numbers."""
     actions: tuple[str, ...]
     """Names of the inputs."""
+    levels: tuple[float, ...] = ()
+    """Commands of discrete actions."""
 
     @property
     def limits(self) -> tuple[float, ...]:
@@ -46,7 +49,8 @@ def native_equations(
         For the first invalid keyword; the message has its name, its value and the allowed values.
     """
     given = dict(given)
-    refuse_others(given.pop("parameters"), (), SMALLEST_OPTIONS)
+    parameters = given.pop("parameters")
+    refuse_others(parameters, system.parameters, [*SMALLEST_OPTIONS, *system.parameters])
     for name in ("start_position", "start_velocity"):
         if given[name] is not None:
             raise TypeError(f"{name} belongs to environments of the catalogue; help: start={{{system.states[0]!r}: (-1, 1)}}")
@@ -59,27 +63,36 @@ def native_equations(
     text = None
     if any(value is not None for value in task.values()):
         text = _task(system, task, own)
-    seen = own["observe"] if own else list(system.states)
+    seen, levels = (own["observe"], own["actions"]) if own else (list(system.states), [])
     seen = list(task["observe"]) if task["observe"] is not None else seen
+    levels = [float(x) for x in task["actions"]] if task["actions"] is not None else levels
     given["max_episode_steps"] = math.inf if given["max_episode_steps"] is None else given["max_episode_steps"]
-    most, inputs = given["max_action"], system.inputs
-    most = math.inf if most is None else most
+    num_envs = count("num_envs", given["num_envs"], 1, 2**40)
+    numbers = {name: episode_number(name, value, num_envs) for name, value in parameters.items()}
+    varied = {name: number for name, number in numbers.items() if number[0] != "constant"}
+    constants = {name: values[0] for name, (_, values) in numbers.items() if name not in varied}
+    given["jitter"], clock = scaled_law("jitter", given["jitter"])
+    given["observation_noise"], sensor = scaled_law("observation_noise", given["observation_noise"])
     settings = common(given)
-    above = lambda x: x > 0  # noqa: E731
+    if clock[0] != clock[1] and settings["skew"][1] > 0:
+        raise ValueError(f"skew is {given['skew']!r}, but it must be 0 where each episode draws its jitter")
+    if levels and given["max_action"] not in (None, math.inf):
+        raise TypeError("max_action is given, but discrete actions have commands of their own")
+    settings["levels"] = levels
     settings["subject"] = {
-        "equations": system._text,
+        "equations": (system.replace(**constants) if constants else system)._text,
         "task": text,
-        "saturation": [
-            number("max_action", x, "greater than 0", above) for x in _each("max_action", most, len(inputs))
-        ],
+        "varied": list(varied.items()),
+        "saturation": largest_commands(given["max_action"], len(system.inputs), num_envs),
         "noise": [law("observation_noise", x) for x in _each_law(given["observation_noise"], len(seen))],
+        "error_scale": [clock, sensor],
     }
-    return EquationPreset(system.name, tuple(seen), inputs), settings
+    return EquationPreset(system.name, tuple(seen), system.inputs, tuple(levels)), settings
 
 
 def _task(system: EquationSystem, task: Mapping[str, Any], own: Mapping[str, Any] | None) -> str:
     """Return the table of a task, with what the file of the system says in place of what is not given."""
-    own = own or {"observe": list(system.states), "reward": None, "terminated": [], "start": {}}
+    own = own or {"observe": list(system.states), "reward": None, "terminated": [], "start": {}, "project": {}, "actions": []}
     table = {name: own[name] if value is None else value for name, value in task.items()}
     if table["reward"] is None:
         raise TypeError("reward is required: an expression, as in reward='-x^2 - 0.01*u^2'")
@@ -89,27 +102,23 @@ def _task(system: EquationSystem, task: Mapping[str, Any], own: Mapping[str, Any
         texts = table[name]
         if isinstance(texts, str) or not is_several(texts) or not all(isinstance(x, str) for x in texts):
             raise TypeError(f"{name} is {texts!r}, but it must be a list of expressions")
-    if not isinstance(table["start"], Mapping):
-        raise TypeError(f"start must be a dictionary, not {type(table['start']).__name__}")
+    for name in ("start", "project"):
+        if not isinstance(table[name], Mapping):
+            raise TypeError(f"{name} must be a dictionary, not {type(table[name]).__name__}")
+    for name, text in table["project"].items():
+        if not isinstance(text, str):
+            raise TypeError(f"project of {name} must be an expression, not {type(text).__name__}")
+    if not is_several(table["actions"]) and not hasattr(table["actions"], "tolist"):
+        raise TypeError(f"actions is {table['actions']!r}, but it must be a list of commands")
+    table["actions"] = [number("actions", x, "finite") for x in table["actions"]] or None
     # The file's ranges hold for what is not given.
     starts = {**own["start"], **table["start"]}
     table["start"] = {name: ends(f"start of {name}", value) for name, value in starts.items()}
     return text_of("task", {"task": table})
 
 
-def _each(name: str, value: Any, count: int) -> Sequence[Any]:
-    """Return a value for each of ``count``."""
-    if getattr(value, "shape", ()) != ():
-        value = value.tolist()
-    if not is_several(value):
-        return [value] * count
-    if len(value) != count:
-        raise ValueError(f"{name} has {len(value)} numbers, but it must have one or {count}")
-    return value
-
-
-def _each_law(value: Any, count: int) -> Sequence[Any]:
+def _each_law(value: Any, length: int) -> Sequence[Any]:
     """Return a law for each observed number."""
     if is_several(value) and value and not isinstance(value[0], str):
-        return _each("observation_noise", value, count)
-    return [value] * count
+        return each("observation_noise", value, length)
+    return [value] * length

@@ -13,6 +13,7 @@ from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
 from ._arrays import actions as read
+from ._episode_numbers import largest
 from .envs import VectorEnv
 from .equations import EquationSystem
 
@@ -78,7 +79,10 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
         for space in ("action_space", "observation_space"):
             setattr(self, space, getattr(self.inner, space))
             setattr(self, f"single_{space}", getattr(self.inner, f"single_{space}"))
-        self._most = np.array(self.inner._settings["subject"]["saturation"])
+        saturation = self.inner._settings["subject"]["saturation"]
+        if not isinstance(saturation, float) and any(kind != "constant" for kind, _ in saturation):
+            raise ValueError(f"max_action is {given['max_action']!r}, but it must be a number or one for each input")
+        self._most = np.array(largest(saturation))
         self._ended = np.zeros(self.num_envs, bool)
         self._turn = threading.RLock()
 

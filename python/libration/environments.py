@@ -9,9 +9,11 @@ import numpy as np
 
 from . import _native
 from ._keywords import check_keywords
+from ._preset_equations import has_varied, native_varied
 from ._presets import PRESETS, Preset
 from ._settings import AUTORESET, count, native, nearest
 from ._tasks import EquationPreset, native_equations
+from ._episode_states import episode_numbers, refuse_options, rows_of, start_of
 from .equations import EquationSystem
 from .policies import Policy
 from .rollout import Rollout
@@ -66,14 +68,24 @@ class Environments(_native.Batch):
         Start of an episode of a system by equations: a number or a pair ``(low, high)`` for each state by its name.
     dtype:
         Float type of all operations: ``"float32"`` or ``"float64"``.
+    project:
+        States by name, and the expressions that replace them after each step of the integrator, such as hard stops: they have ``before(x)``
+        and the length ``dt`` of the step.
+    actions:
+        Commands of discrete actions, in ascending order: the action ``i`` is the command ``actions[i]``. A policy of the engine gives a
+        command, of which the nearest one is taken.
     threads:
         Number of threads (0: one per core). The results are independent of it.
     copy:
         Whether each step returns arrays that later steps do not overwrite. Otherwise the steps fill ``buffers`` arrays in turn
         (default: 2).
+    parameter_infos:
+        Whether ``infos`` of ``reset`` and ``step`` have :attr:`parameters`.
     **parameters:
         Parameters of the system (``omega2``, or ``m`` and ``k``; ``alpha``, ``beta``) and of the task (``position_cost``, ``velocity_cost``,
-        ``effort_cost``, ``bound``).
+        ``effort_cost``, ``bound``); of a system by equations all of its parameters. A number; ``Uniform(low, high)``, ``LogUniform(low,
+        high)`` or ``Gaussian(std, mean)``, from which each episode draws; or an array ``(num_envs,)``. ``max_action`` takes the same, and
+        ``jitter`` and ``observation_noise`` take ``Uniform(low, high)`` for the standard deviation of an episode.
 
     Raises
     ------
@@ -111,10 +123,13 @@ class Environments(_native.Batch):
         reward: str | None = None,
         terminated: Sequence[str] | None = None,
         start: Mapping[str, Any] | None = None,
+        project: Mapping[str, str] | None = None,
+        actions: Sequence[float] | None = None,
         dtype: Any = "float32",
         threads: int = 1,
         copy: bool = True,
         buffers: int | None = None,
+        parameter_infos: bool = False,
         **parameters: Any,
     ) -> None:
         if not isinstance(name, EquationSystem) and name not in PRESETS:
@@ -143,10 +158,13 @@ class Environments(_native.Batch):
             "reward": reward,
             "terminated": terminated,
             "start": start,
+            "project": project,
+            "actions": actions,
             "dtype": _name_of(dtype),
             "threads": threads,
             "copy": copy,
             "buffers": buffers,
+            "parameter_infos": parameter_infos,
         }
         if not isinstance(copy, (bool, np.bool_)):
             raise TypeError(f"copy must be True or False, not {type(copy).__name__}")
@@ -158,12 +176,17 @@ class Environments(_native.Batch):
             found = native_equations(name, {**given, "parameters": parameters})
             self.preset, self._settings = found
         else:
-            self.preset = PRESETS[name]
-            self._settings = native(self.preset, {**given, "parameters": parameters})
+            self.preset, stated = PRESETS[name], {**given, "parameters": parameters}
+            self._settings = (native_varied if has_varied(stated) else native)(self.preset, stated)
         self._seeder: np.random.Generator | None = None
         self.num_envs = self._settings["num_envs"]
         kept = 0 if copy else count("buffers", 2 if buffers is None else buffers, 1, 1_000_000)
         self._set_up(self._settings, kept)
+        if not isinstance(parameter_infos, (bool, np.bool_)):
+            raise TypeError(f"parameter_infos must be True or False, not {type(parameter_infos).__name__}")
+        if parameter_infos:
+            # Those who do not ask for them step without a function of Python.
+            setattr(self, "step", self._step_with_parameters)
 
     def reset(
         self,
@@ -180,30 +203,34 @@ class Environments(_native.Batch):
             seed begins its first episode under that seed, independently of all others. Without a seed it begins its next
             episode, or its first one under a seed of the operating system.
         options:
-            ``{"reset_mask": array}``: a ``bool`` array ``(num_envs,)`` that selects the environments to reset, at least one.
+            ``reset_mask``: a ``bool`` array ``(num_envs,)`` that selects the environments to reset, at least one.
+            ``state``: the states to start from, as for :meth:`set_state`. ``low`` and ``high``: ends of the ranges from which starts are
+            drawn in place of the usual ones, numbers for all states, ``(n,)``, or dictionaries by name.
 
         Returns
         -------
         observations:
             Observations of all environments, ``(num_envs, n)``.
         infos:
-            An empty dictionary.
+            ``parameters`` under ``parameter_infos``, else an empty dictionary.
 
         Raises
         ------
         TypeError
             For seeds that are not integers, or a mask that is not a ``bool`` array.
         ValueError
-            For seeds or a mask with a wrong length, a negative seed, or a mask without ``True``.
+            For seeds or a mask with a wrong length, a negative seed, a mask without ``True``, or other options.
         """
         return self._begin(self._seeds(seed), options)
 
     def _begin(
         self, seeds: list[int | None], options: dict[str, Any] | None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        mask = None
-        if options is not None and "reset_mask" in options:
-            mask = self._mask(options["reset_mask"])
+        options = {} if options is None else options
+        refuse_options(options)
+        mask = self._mask(options["reset_mask"]) if "reset_mask" in options else None
+        given = start_of(options, self._state_names(), self.num_envs)
+        which = np.arange(self.num_envs) if mask is None else np.flatnonzero(mask)
         if self._seeder is None:
             self._seeder = np.random.default_rng()
             fresh = self._seeder.integers(2**63, size=self.num_envs, dtype=np.uint64).tolist()
@@ -213,7 +240,63 @@ class Environments(_native.Batch):
                 for n, (old, new) in enumerate(zip(seeds, fresh))
             ]
             mask = None
-        return self._reset(seeds, mask), {}
+        observations = self._reset(seeds, mask)
+        if given is not None and "state" in options:
+            observations = self._set_states(given[which].tolist(), which.tolist())
+        elif given is not None:
+            observations = self._start_within(given.T.tolist(), which.tolist())
+        infos = self._parameter_infos() if self._settings["parameter_infos"] else {}
+        return observations, infos
+
+    def set_state(self, states: Any, mask: np.ndarray | None = None) -> np.ndarray:
+        """Put environments at states, from which their episodes go on, and return the observations.
+
+        What an environment observes, and what acts on it, before its latencies are over is that of a beginning.
+
+        Parameters
+        ----------
+        states:
+            Numbers of the states, ``(num_envs, n)`` or ``(n,)`` for all, in the order of :attr:`states`; or a dictionary with all states by
+            name.
+        mask:
+            A ``bool`` array ``(num_envs,)`` that selects the environments to change (default: all).
+
+        Raises
+        ------
+        TypeError, ValueError
+            For states or a mask with a wrong shape or type, or numbers that are not finite. Without a ``reset``, Gymnasium's
+            ``ResetNeeded``.
+        """
+        which = np.arange(self.num_envs) if mask is None else np.flatnonzero(self._mask(mask))
+        if self._seeder is None:
+            raise self._reset_needed("set_state was called before reset; expected reset first")
+        given = rows_of("states", states, self._state_names(), self.num_envs)
+        return self._set_states(given[which].tolist(), which.tolist())
+
+    def _state_names(self) -> tuple[str, ...]:
+        name = self._arguments[0]
+        return name.states if isinstance(name, EquationSystem) else ("position", "velocity")
+
+    @property
+    def parameters(self) -> dict[str, np.ndarray]:
+        """Numbers of the current episodes that differ between episodes or environments, by name, ``(num_envs,)`` each.
+
+        These are parameters, ``max_action`` (with several inputs ``max_action_u``), ``action_delay`` and ``observation_delay`` in s, and the
+        standard deviations ``jitter`` and ``observation_noise``.
+        """
+        return episode_numbers(self._settings, self.preset.actions, self._episode_numbers())
+
+    def _parameter_infos(self) -> dict[str, Any]:
+        """Return the numbers of the episodes as Gymnasium's vector environments give dictionaries of single ones."""
+        all_of_them = np.ones(self.num_envs, dtype=np.bool_)
+        table: dict[str, Any] = {}
+        for name, values in self.parameters.items():
+            table |= {name: values, f"_{name}": all_of_them.copy()}
+        return {"parameters": table, "_parameters": all_of_them}
+
+    def _step_with_parameters(self, actions: Any) -> Any:
+        *results, infos = _native.Batch.step(self, actions)
+        return (*results, {**infos, **self._parameter_infos()})
 
     def _seeds(self, seed: Any) -> list[int | None]:
         if seed is None:

@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import Any, Sequence
 
-from ._settings import is_several, number
+from ._settings import ends, is_several, number
 from ._settings import law as _law
 
-__all__ = ["Gaussian", "LQR", "Observer", "PD", "PID", "Steps", "Uniform"]
+__all__ = ["Gaussian", "LQR", "LogUniform", "Observer", "PD", "PID", "Steps", "Uniform"]
 
 
 @dataclass(frozen=True)
@@ -19,28 +19,68 @@ class Steps:
     number: float
 
 
-def _check_rms(rms: float) -> None:
-    number("rms", rms, "finite and at least 0", lambda x: 0 <= x < math.inf)
+def _check_std(std: float) -> None:
+    number("std", std, "finite and at least 0", lambda x: 0 <= x < math.inf)
 
 
 @dataclass(frozen=True)
 class Gaussian:
-    """Normal distribution of steps or clock rates, with a relative standard deviation. A plain number is equivalent."""
+    """Normal distribution with a standard deviation.
 
-    rms: float
+    Of steps or clock rates it is relative and has the mean zero; a plain number is equivalent. A parameter of an environment requires a
+    ``mean``.
+    """
+
+    std: float
+    mean: float = 0.0
 
     def __post_init__(self) -> None:
-        _check_rms(self.rms)
+        _check_std(self.std)
+        number("mean", self.mean, "finite")
+
+
+class Uniform:
+    """Uniform distribution: ``Uniform(std)`` around zero, or ``Uniform(low, high)``.
+
+    Steps and clock rates have a relative standard deviation, as in ``jitter=Uniform(0.05)``. Parameters of environments have two ends, as in
+    ``omega2=Uniform(10, 20)``.
+    """
+
+    std: float | None
+    """Standard deviation of a distribution around zero."""
+    ends: tuple[float, float] | None
+    """Ends of a distribution between two numbers."""
+
+    def __init__(self, low: float | None = None, high: float | None = None, *, std: float | None = None) -> None:
+        if (low is None) == (std is None) or (high is not None and low is None):
+            raise TypeError("Uniform takes a standard deviation, Uniform(std), or two ends, Uniform(low, high)")
+        if high is None:
+            self.std, self.ends = (low if std is None else std), None
+            assert self.std is not None
+            _check_std(self.std)
+        else:
+            self.std, self.ends = None, ends("Uniform", (low, high))
+
+    def __repr__(self) -> str:
+        return f"Uniform({self.std!r})" if self.ends is None else f"Uniform({self.ends[0]!r}, {self.ends[1]!r})"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Uniform) and (self.std, self.ends) == (other.std, other.ends)
+
+    def __hash__(self) -> int:
+        return hash((self.std, self.ends))
 
 
 @dataclass(frozen=True)
-class Uniform:
-    """Uniform distribution of steps or clock rates, with a relative standard deviation."""
+class LogUniform:
+    """Distribution of a parameter of an environment between two ends above zero whose logarithm is uniform."""
 
-    rms: float
+    low: float
+    high: float
 
     def __post_init__(self) -> None:
-        _check_rms(self.rms)
+        number("low", self.low, "finite and greater than 0", lambda x: 0 < x < math.inf)
+        number("high", self.high, "finite and at least low", lambda x: self.low <= x < math.inf)
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ def test_keywords_without_effect_are_refused(given, error, told):
 @pytest.mark.parametrize("law", [libration.Gaussian, libration.Uniform])
 @pytest.mark.parametrize("rms", [-1.0, math.inf, math.nan])
 def test_a_distribution_needs_a_standard_deviation(law, rms):
-    with pytest.raises(ValueError, match="rms is .*, but it must be finite and at least 0"):
+    with pytest.raises(ValueError, match="std is .*, but it must be finite and at least 0"):
         law(rms)
 
 

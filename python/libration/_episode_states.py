@@ -1,0 +1,84 @@
+"""States and numbers of the episodes of environments."""
+
+from __future__ import annotations
+
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._settings import nearest
+
+OPTIONS = ("reset_mask", "state", "low", "high")
+
+
+def refuse_options(options: Mapping[str, Any]) -> None:
+    """Raise a ValueError for options of ``reset`` that have no effect."""
+    for name in options:
+        if name not in OPTIONS:
+            raise ValueError(f"options has {name!r}: {nearest(str(name), OPTIONS)}")
+    if "state" in options and ("low" in options or "high" in options):
+        raise ValueError("options has 'state' and ends of ranges, but it must have one of them")
+    for name, other in (("low", "high"), ("high", "low")):
+        if name in options and other not in options:
+            raise ValueError(f"options has {name!r} without {other!r}, but it must have both")
+
+
+def start_of(options: Mapping[str, Any], names: Sequence[str], num_envs: int) -> NDArray[np.float64] | None:
+    """Return states ``(num_envs, n)``, the ends of ranges of starts ``(2, n)``, or None where the options have neither."""
+    if "state" in options:
+        return rows_of("options['state']", options["state"], names, num_envs)
+    if "low" not in options:
+        return None
+    low, high = (rows_of(f"options[{name!r}]", options[name], names, 1)[0] for name in ("low", "high"))
+    if (low > high).any():
+        i = int(np.argmax(low > high))
+        raise ValueError(f"options has {names[i]} from {low[i]} to {high[i]}, but low must be at most high")
+    return np.stack([low, high])
+
+
+def rows_of(name: str, value: Any, names: Sequence[str], rows: int) -> NDArray[np.float64]:
+    """Return a finite number for each row and state."""
+    if isinstance(value, Mapping):
+        for key in value:
+            if key not in names:
+                raise ValueError(f"{name} has {key!r}: {nearest(str(key), names)}")
+        for key in names:
+            if key not in value:
+                raise ValueError(f"{name} has no {key!r}, but it must have {', '.join(names)}")
+        value = np.stack(np.broadcast_arrays(*(np.asarray(value[key]) for key in names)), axis=-1)
+    array = np.asarray(value)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} has dtype {array.dtype}, but it must have real numbers")
+    try:
+        all_rows = np.broadcast_to(array.astype(np.float64), (rows, len(names)))
+    except ValueError:
+        allowed = f"({len(names)},)" if rows == 1 else f"({rows}, {len(names)})"
+        raise ValueError(f"{name} has shape {array.shape}, but it must be {allowed}: {', '.join(names)}") from None
+    if not np.isfinite(all_rows).all():
+        n, i = np.argwhere(~np.isfinite(all_rows))[0]
+        raise ValueError(f"{name} has {all_rows[n, i]} for {names[i]}, but it must be finite")
+    return all_rows
+
+
+def episode_numbers(settings: Mapping[str, Any], inputs: Sequence[str], drawn: NDArray[Any]) -> dict[str, NDArray[Any]]:
+    """Return the numbers that vary by name, from all that the engine draws for each episode."""
+    subject = settings["subject"]
+    names = [name for name, _ in subject.get("varied", [])]
+    saturation = subject["saturation"]
+    if isinstance(saturation, list) and any(kind != "constant" for kind, _ in saturation):
+        names += ["max_action"] if len(inputs) == 1 else [f"max_action_{name}" for name in inputs]
+    found = {name: drawn[:, i].copy() for i, name in enumerate(names)}
+    for i, name in enumerate(("observation_delay", "action_delay")):
+        if name in settings["ranges"]:
+            found[name] = drawn[:, len(names) + i] * drawn.dtype.type(settings["dt"])
+    laws = {"jitter": settings["jitter"][1], "observation_noise": _noise(subject["noise"])}
+    for i, (name, std) in enumerate(laws.items()):
+        low, high = subject.get("error_scale", [[1.0, 1.0]] * 2)[i]
+        if low != high:
+            found[name] = drawn[:, len(names) + 2 + i] * drawn.dtype.type(std)
+    return found
+
+
+def _noise(laws: Any) -> float:
+    return max(std for _, std in laws) if isinstance(laws, list) else laws[1]

@@ -1,0 +1,91 @@
+"""Presets as systems by equations, for numbers that vary.
+
+The expressions compute the operations of the compiled environments: a parameter that varies in a range of one number leaves every bit.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Mapping
+
+from ._episode_numbers import is_varied
+from ._presets import Preset
+from ._settings import CATALOGUE, TASK_OPTIONS, ends, refuse_others
+from ._tasks import SMALLEST_OPTIONS, native_equations
+from .equations import EquationSystem
+
+_ACCELERATIONS = {"oscillator": "-omega2*q + u", "pendulum": "-omega2*sin(q) + u", "duffing": "-alpha*q - beta*(q*q*q) + u"}
+
+_WITH_MASS = "-(k/m)*q + u*(1/m)"
+
+_TASKS: Mapping[str, Mapping[str, Any]] = {
+    "regulate": {
+        "observe": ["q", "q'"],
+        "reward": "-(position_cost*q^2 + velocity_cost*q'^2 + effort_cost*u^2)",
+        "terminated": ["q > bound", "q < -bound"],
+    },
+    "swing-up": {
+        "observe": ["-cos(q)", "-sin(q)", "q'"],
+        "reward": "-cos(before(q)) - 1 - velocity_cost*before(q')^2 - effort_cost*u^2",
+        "terminated": [],
+    },
+}
+
+_RANGES = ("jitter", "observation_noise")
+
+
+def has_varied(given: Mapping[str, Any]) -> bool:
+    """Whether a number of the environments of a preset varies."""
+    ranges = any(_is_range(given[name]) for name in _RANGES)
+    return ranges or any(is_varied(x) for x in [given["max_action"], *given["parameters"].values()])
+
+
+def _is_range(value: Any) -> bool:
+    last = value[-1] if isinstance(value, (tuple, list)) and value else value
+    return getattr(last, "ends", None) is not None
+
+
+def native_varied(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
+    """Return the settings of environments of a preset with numbers that vary, in the format of the engine.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As for environments of constants.
+    """
+    parameters = given["parameters"]
+    of_system = CATALOGUE[preset.system]
+    taken = {*of_system, *preset.costs}
+    refuse_others(parameters, taken, [*SMALLEST_OPTIONS, *taken])
+    for name in TASK_OPTIONS:
+        if given[name] is not None:
+            raise TypeError(f"{name} belongs to environments of a System, not to {preset.name!r}")
+    mass = {"m", "k"} & set(parameters)
+    if len(mass) == 1:
+        raise TypeError(f"{mass.pop()} is given alone, but m and k must be given together")
+    if mass and "omega2" in parameters:
+        raise TypeError("omega2 is given with m and k, but it must be given alone")
+    own = {name: 1.0 for name in ("m", "k")} if mass else {**preset.parameters}
+    starts = {
+        "q": given["start_position"] if given["start_position"] is not None else preset.start_position,
+        "q'": given["start_velocity"] if given["start_velocity"] is not None else preset.start_velocity,
+    }
+    starts = {state: ends(name, starts[state]) for state, name in (("q", "start_position"), ("q'", "start_velocity"))}
+    task = dict(_TASKS[preset.task])
+    costs = dict(preset.costs)
+    bound = parameters.get("bound", costs.get("bound"))
+    if isinstance(bound, float) and bound == float("inf"):
+        # No comparison ends an episode.
+        task["terminated"] = []
+        costs.pop("bound")
+        parameters = {name: value for name, value in parameters.items() if name != "bound"}
+    system = EquationSystem(
+        acceleration={"q": _WITH_MASS if mass else _ACCELERATIONS[preset.system]},
+        parameters={**own, **costs},
+        inputs=["u"],
+        task={**task, "start": starts},
+        name=preset.name,
+    )
+    defaults = {name: getattr(preset, name) for name in ("dt", "max_episode_steps", "max_action")}
+    given = {**given, **{name: value for name, value in defaults.items() if given[name] is None}}
+    given |= {"start_position": None, "start_velocity": None, "parameters": parameters}
+    return native_equations(system, given)[1]
