@@ -96,14 +96,14 @@ def rows():
     medians = [statistics.median(column) for column in zip(*rounds)]
     yield f"rollout of {MANY} × {horizon} over the same in Rust", 0.95, ratios, medians
 
-    env = gymnasium.make_vec("libration/Pendulum-v0", MANY)
+    env = gymnasium.make_vec("libration/PendulumSwingUp-v0", MANY)
     theirs = gymnasium.make_vec("Pendulum-v1", MANY, vectorization_mode="sync")
     yield f"step of {MANY} over SyncVectorEnv", 2000, *compared(steps(env, zeros), steps(theirs, zeros))
     if envpool is not None:
         pool = envpool.make_gymnasium("Pendulum-v1", num_envs=MANY, num_threads=1, seed=0)
         pool.reset()
         yield f"step of {MANY} over EnvPool", 100, *compared(steps(env, zeros), lambda: pool.step(zeros))
-    one, zero = gymnasium.make_vec("libration/Pendulum-v0", 1), np.zeros((1, 1), np.float32)
+    one, zero = gymnasium.make_vec("libration/PendulumSwingUp-v0", 1), np.zeros((1, 1), np.float32)
     step, count = steps(one, zero), 20_000
     rounds = [
         (

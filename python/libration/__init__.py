@@ -2,7 +2,7 @@
 
 :func:`simulate`, :func:`analyze`, :func:`advise` and :func:`run_lab` correspond to the commands of the program; :class:`Ensemble` steps many
 trajectories, and :class:`LinearLoops` many loops around a linear plant. :class:`Environments` are the environments of the engine. With
-Gymnasium installed they are registered as ``libration/Oscillator-v0``, ``libration/Pendulum-v0`` and ``libration/Duffing-v0``, for
+Gymnasium installed they are registered as ``libration/Oscillator-v0``, ``libration/PendulumSwingUp-v0`` and ``libration/Duffing-v0``, for
 ``gymnasium.make`` and ``gymnasium.make_vec``; :class:`LinearVectorEnv` has a linear plant.
 """
 
@@ -35,7 +35,7 @@ from .linear import (
 )
 from .linear_loops import LinearLoops, LinearRollout
 from .operating_point import OperatingPoint
-from .perturbations import LQR, PD, PID, Gaussian, Observer, Steps, Uniform
+from .perturbations import LQR, PD, PID, Gaussian, LogUniform, Observer, Steps, Uniform
 from .probe_report import ProbeReport
 from .probing import probe
 from .replay import ReplayBuffer
@@ -63,6 +63,7 @@ __all__ = [
     "INTEGRATORS",
     "LQG",
     "LQR",
+    "LogUniform",
     "Lag",
     "LinearLoops",
     "LinearPlant",
@@ -103,6 +104,7 @@ if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_native._forked)
 
 try:
+    from . import classic_control
     from .custom import CustomTaskVectorEnv
     from .envs import VectorEnv, register
     from .linear_envs import LinearVectorEnv
@@ -112,4 +114,5 @@ except ModuleNotFoundError as error:
         raise
 else:
     register()
+    classic_control.register()
     __all__ += ["CustomTaskVectorEnv", "LinearVectorEnv", "VectorEnv"]

@@ -13,7 +13,7 @@ class Preset:
     """An environment: a system of the catalogue, a task, and numbers."""
 
     name: str
-    """Name in ``libration/NAME-v0``."""
+    """Name in :class:`libration.Environments`."""
     system: str
     task: str
     dt: float
@@ -31,6 +31,11 @@ class Preset:
     """Numbers of the task, in the order of the engine."""
 
     actions: tuple[str, ...] = ("acceleration",)
+
+    @property
+    def id(self) -> str:
+        """Identifier in Gymnasium: ``Pendulum-v1`` is that of Gymnasium's own pendulum."""
+        return f"{'PendulumSwingUp' if self.name == 'Pendulum' else self.name}-v0"
 
     @property
     def limits(self) -> tuple[float, ...]:

@@ -7,10 +7,11 @@ from typing import Any
 import gymnasium
 import numpy as np
 from gymnasium.error import ClosedEnvironmentError, ResetNeeded
-from gymnasium.spaces import Box
+from gymnasium.spaces import Box, Discrete
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
+from ._episode_numbers import largest
 from ._presets import PRESETS, Preset
 from ._tasks import EquationPreset
 from .environments import Environments
@@ -40,15 +41,18 @@ def _metadata(name: str | EquationSystem, settings: Any) -> dict[str, Any]:
     return {**METADATA, "render_fps": max(1, round(1.0 / (settings["dt"] * settings["substeps"])))}
 
 
-def _spaces(preset: Preset | EquationPreset, settings: dict[str, Any]) -> tuple[Box, Box]:
+def _spaces(preset: Preset | EquationPreset, settings: dict[str, Any]) -> tuple[Box, Box | Discrete]:
     """Return the observation space and the action space of one environment."""
     dtype, subject = np.dtype(settings["dtype"]), settings["subject"]
     noise = subject["noise"]
     laws = noise if isinstance(noise, list) else [noise] * len(preset.seen)
     limits = [np.inf if law[1] > 0 else limit for law, limit in zip(laws, preset.limits)]
     high = np.array(limits, dtype=dtype)
-    most = np.broadcast_to(np.array(subject["saturation"], dtype=dtype), len(preset.actions))
-    return Box(-high, high, dtype=dtype), Box(-most, most, dtype=dtype)
+    seen = Box(-high, high, dtype=dtype)
+    if settings["levels"]:
+        return seen, Discrete(len(settings["levels"]))
+    most = np.broadcast_to(np.array(largest(subject["saturation"]), dtype=dtype), len(preset.actions))
+    return seen, Box(-most, most, dtype=dtype)
 
 
 def _render_mode(name: str | EquationSystem, render_mode: str | None) -> str | None:
@@ -157,12 +161,16 @@ class Env(gymnasium.Env):
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
         super().reset(seed=seed)
-        observations, infos = self._all.reset(seed=None if seed is None else [seed])
-        return observations[0], infos
+        if options is not None and "reset_mask" in options:
+            raise ValueError("options has 'reset_mask', but it belongs to vector environments")
+        observations, infos = self._all.reset(seed=None if seed is None else [seed], options=options)
+        return observations[0], _single(infos)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         observations, rewards, terminated, truncated, infos = self._all.step(action)
-        info = {"lost": True} if infos else {}
+        info: dict[str, Any] = {"lost": True} if "lost" in infos else {}
+        if "parameters" in infos:
+            info |= _single({"parameters": infos["parameters"]})
         return observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), info
 
     def render(self) -> np.ndarray | None:
@@ -175,8 +183,30 @@ class Env(gymnasium.Env):
         assert isinstance(preset, Preset), "a system by equations has no render mode"
         return picture(preset, *self._all.states[0].astype(float))
 
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Numbers of the current episode that differ between episodes, by name."""
+        return {name: float(values[0]) for name, values in self._all.parameters.items()}
+
+    def set_state(self, state: Any) -> np.ndarray:
+        """Put the environment at a state, from which its episode goes on, and return the observation; see :meth:`VectorEnv.set_state`."""
+        return self._all.set_state(state)[0]
+
+    @property
+    def state(self) -> np.ndarray:
+        """True state, ``(n,)``, without noise and latency."""
+        return self._all.states[0]
+
     def close(self) -> None:
         self._all._close()
+
+
+def _single(infos: dict[str, Any]) -> dict[str, Any]:
+    """Return the infos of the only environment."""
+    if "parameters" not in infos:
+        return infos
+    names = [name for name in infos["parameters"] if not name.startswith("_")]
+    return {"parameters": {name: float(infos["parameters"][name][0]) for name in names}}
 
 
 class SystemEnv(Env):
@@ -207,13 +237,13 @@ def _classes(preset: Preset) -> tuple[type[Env], type[VectorEnv]]:
     """Return the single and the vector environment class of a preset."""
 
     class Single(Env):
-        __doc__ = f"Single environment ``{NAMESPACE}/{preset.name}-v0``."
+        __doc__ = f"Single environment ``{NAMESPACE}/{preset.id}``."
 
         def __init__(self, **given: Any) -> None:
             super().__init__(preset.name, **given)
 
     class Vector(VectorEnv):
-        __doc__ = f"Vector environment ``{NAMESPACE}/{preset.name}-v0``."
+        __doc__ = f"Vector environment ``{NAMESPACE}/{preset.id}``."
 
         def __init__(self, num_envs: int = 1, **given: Any) -> None:
             super().__init__(preset.name, num_envs, **given)
@@ -230,9 +260,11 @@ DuffingEnv, DuffingVectorEnv = _classes(PRESETS["Duffing"])
 
 def register() -> None:
     """Register the environments with Gymnasium; the import of the package does this."""
-    limits: dict[str, int | None] = {preset.name: preset.max_episode_steps for preset in PRESETS.values()}
-    for name, limit in {**limits, "System": None}.items():
-        known = f"{NAMESPACE}/{name}-v0"
+    entries: dict[str, tuple[str, int | None]] = {preset.id: (preset.name, preset.max_episode_steps) for preset in PRESETS.values()}
+    # Its former identifier, of which Gymnasium says that it is out of date.
+    entries |= {"Pendulum-v0": entries["PendulumSwingUp-v0"], "System-v0": ("System", None)}
+    for id, (name, limit) in entries.items():
+        known = f"{NAMESPACE}/{id}"
         if known not in gymnasium.registry:
             gymnasium.register(
                 id=known,

@@ -1,6 +1,7 @@
 """What tests share."""
 
 NAMES = ("Oscillator", "Pendulum", "Duffing")
+IDS = {"Oscillator": "libration/Oscillator-v0", "Pendulum": "libration/PendulumSwingUp-v0", "Duffing": "libration/Duffing-v0"}
 AUTORESETS = ("NextStep", "SameStep", "Disabled")
 
 # All that an environment can suffer from; dt is that of none of them.

@@ -294,13 +294,13 @@ def test_a_given_environment_without_spec_is_checked_as_far_as_one_environment_g
 
 def test_the_environments_of_the_package_keep_the_contract() -> None:
     for mode in ("NextStep", "SameStep", "Disabled"):
-        for id in ("libration/Oscillator-v0", "libration/Pendulum-v0"):
+        for id in ("libration/Oscillator-v0", "libration/PendulumSwingUp-v0"):
             report = check_vector_env(lambda n: gymnasium.make_vec(id, n, autoreset_mode=mode, max_episode_steps=20))
             assert report.is_correct and not report.remarks, str(report)
 
 
 def test_the_command_has_exit_codes(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["libration/Pendulum-v0", "--max-steps", "250"]) == 0
+    assert main(["libration/PendulumSwingUp-v0", "--max-steps", "250"]) == 0
     assert main(["CartPole-v1", "--vectorization-mode", "sync", "--autoreset-mode", "next-step"]) == 0
     # Of Gymnasium: `SyncVectorEnv.reset` takes `reset_mask` out of the options of its caller.
     assert main(["CartPole-v1", "--vectorization-mode", "sync", "--autoreset-mode", "disabled"]) == 1

@@ -10,7 +10,7 @@ import threading
 import gymnasium
 import numpy as np
 import pytest
-from common import AUTORESETS, NAMES, PERTURBED, Lent
+from common import AUTORESETS, IDS, NAMES, PERTURBED, Lent
 from gymnasium.error import ClosedEnvironmentError, ResetNeeded
 from gymnasium.utils import performance
 from gymnasium.utils.env_checker import check_env
@@ -20,7 +20,7 @@ import libration
 
 
 def made(name, num_envs, mode="NextStep", **given):
-    return gymnasium.make_vec(f"libration/{name}-v0", num_envs, autoreset_mode=mode, **given)
+    return gymnasium.make_vec(IDS[name], num_envs, autoreset_mode=mode, **given)
 
 
 # Positions have no bounds, and accelerations a unit.
@@ -28,7 +28,7 @@ def made(name, num_envs, mode="NextStep", **given):
 @pytest.mark.filterwarnings("ignore:.*For Box action spaces.*:UserWarning")
 @pytest.mark.parametrize("name", NAMES)
 def test_the_checker_of_gymnasium_has_nothing_to_say(name):
-    env = gymnasium.make(f"libration/{name}-v0", render_mode="rgb_array")
+    env = gymnasium.make(IDS[name], render_mode="rgb_array")
     check_env(env.unwrapped)
     env.close()
 
@@ -41,7 +41,7 @@ def test_the_checker_of_gymnasium_has_nothing_to_say(name):
 def test_the_benchmark_of_gymnasium_takes_far_more_steps_of_a_thousand_than_of_one(name, mode):
     many = made(name, 1000, mode)
     together = performance.benchmark_vector_step(many, target_duration=0.2, seed=0)
-    alone = performance.benchmark_step(gymnasium.make(f"libration/{name}-v0"), 0.2, seed=0)
+    alone = performance.benchmark_step(gymnasium.make(IDS[name]), 0.2, seed=0)
     # A thousand are stepped in one call: a small part of that is left whatever else the machine does.
     assert together > 20 * alone
 
@@ -55,7 +55,7 @@ def test_trajectories_are_those_of_single_environments_side_by_side(name, mode, 
         limits["bound"] = 1.1
     ours = made(name, 5, mode, **limits)
     theirs = SyncVectorEnv(
-        [lambda: gymnasium.make(f"libration/{name}-v0", **limits)] * 5,
+        [lambda: gymnasium.make(IDS[name], **limits)] * 5,
         autoreset_mode=AutoresetMode(mode),
     )
     rng = np.random.default_rng(3)
@@ -379,7 +379,7 @@ def test_actions_that_lie_where_a_step_is_written_are_taken_as_they_were():
 
 
 def test_a_single_environment_that_is_closed_says_so():
-    env = gymnasium.make("libration/Pendulum-v0")
+    env = gymnasium.make("libration/PendulumSwingUp-v0")
     env.reset()
     env.close()
     with pytest.raises(ClosedEnvironmentError):
@@ -439,7 +439,7 @@ def test_seeds_that_cannot_be_are_refused(seed, error, said):
     ],
 )
 def test_masks_that_cannot_be_are_refused_as_gymnasium_does(mask, error, said):
-    single = SyncVectorEnv([lambda: gymnasium.make("libration/Pendulum-v0")] * 3)
+    single = SyncVectorEnv([lambda: gymnasium.make("libration/PendulumSwingUp-v0")] * 3)
     for env in (made("Pendulum", 3), single):
         env.reset(seed=0)
         # Of Gymnasium 1.2 it is an assertion.

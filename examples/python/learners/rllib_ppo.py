@@ -29,7 +29,7 @@ from ray.rllib.core.rl_module.default_model_config import DefaultModelConfig
 
 # What stands before the colon is imported first, which registers the environments: in whatever process RLlib
 # makes them.
-NAME = "libration:libration/Pendulum-v0"
+NAME = "libration:libration/PendulumSwingUp-v0"
 
 
 def returns(algorithm: Algorithm, num_envs: int, settings: dict[str, float]) -> np.ndarray:

@@ -28,7 +28,7 @@ from stable_baselines3.common.vec_env import DummyVecEnv, VecEnv, VecMonitor
 
 import libration  # registers the environments
 
-NAME = "libration/Pendulum-v0"
+NAME = "libration/PendulumSwingUp-v0"
 
 
 class Adapter(VecEnv):

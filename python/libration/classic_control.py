@@ -1,0 +1,280 @@
+"""Twins of Gymnasium's classic control: the same steps, with latencies, jitter, noise and parameters that vary.
+
+``libration/CartPole-v1``, ``libration/Pendulum-v1``, ``libration/MountainCar-v0``, ``libration/MountainCarContinuous-v0`` and
+``libration/Acrobot-v1`` have spaces, constants, integrators, rewards, terminations and time limits of Gymnasium's environments of these names.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium.spaces import Box, Discrete
+from gymnasium.utils.seeding import np_random
+from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
+
+from ._classic_systems import CLASSIC, ClassicSystem, system_of
+from ._settings import nearest
+from .envs import Env, VectorEnv
+
+__all__ = [
+    "AcrobotEnv",
+    "AcrobotVectorEnv",
+    "CartPoleEnv",
+    "CartPoleVectorEnv",
+    "MountainCarContinuousEnv",
+    "MountainCarContinuousVectorEnv",
+    "MountainCarEnv",
+    "MountainCarVectorEnv",
+    "PendulumEnv",
+    "PendulumVectorEnv",
+]
+
+STARTS = ("libration", "gymnasium")
+
+
+def _with_defaults(classic: ClassicSystem, given: dict[str, Any]) -> dict[str, Any]:
+    """Return keywords of the engine with the twin's constants where nothing else is given."""
+    own = {"integrator": classic.integrator, "dt": classic.dt, "max_action": classic.max_action, "dtype": classic.dtype}
+    return {**own, **given}
+
+
+def _checked(starts: Any) -> str:
+    if starts not in STARTS:
+        raise ValueError(f"starts is {starts!r}: {nearest(str(starts), STARTS)}")
+    return starts
+
+
+def _seen(classic: ClassicSystem, noisy: bool) -> Box:
+    low, high = (np.array(ends, np.float32) for ends in zip(*classic.limits))
+    if noisy:
+        low, high = np.full_like(low, -np.inf), np.full_like(high, np.inf)
+    return Box(low, high, dtype=np.float32)
+
+
+def _action_space(classic: ClassicSystem, space: Any) -> Any:
+    return space if isinstance(space, Discrete) else Box(np.float32(space.low), np.float32(space.high), dtype=np.float32)
+
+
+def _is_noisy(settings: Any) -> bool:
+    return any(std > 0 for _, std in settings["subject"]["noise"])
+
+
+def _draw(classic: ClassicSystem, generator: np.random.Generator, options: dict[str, Any] | None) -> NDArray[np.float64]:
+    """Return the state from which Gymnasium's environment starts, in the order of the system's states."""
+    options = options or {}
+    states = dict.fromkeys(system_of(classic.name).states, 0.0)
+    if classic.name == "Pendulum":
+        high = np.array([options.get("x_init", np.pi), options.get("y_init", 1.0)])
+        drawn = generator.uniform(low=-high, high=high)
+    else:
+        low, high = options.get("low", classic.start[0]), options.get("high", classic.start[1])
+        size = (4,) if len(classic.drawn) == 4 else (1,)
+        drawn = generator.uniform(low=low, high=high, size=size)
+    if classic.rounds_start:
+        drawn = drawn.astype(np.float32)
+    states.update(zip(classic.drawn, drawn.astype(np.float64)))
+    return np.array(list(states.values()))
+
+
+class _Picture:
+    """Pictures of Gymnasium's environment."""
+
+    def __init__(self, classic: ClassicSystem) -> None:
+        self._places = [system_of(classic.name).states.index(name) for name in classic.order]
+        self._env: Any = gymnasium.make(classic.id, render_mode="rgb_array").unwrapped
+        self._env.reset(seed=0)
+
+    def __call__(self, state: NDArray[Any]) -> NDArray[np.uint8]:
+        self._env.state = state[self._places].astype(np.float64)
+        return self._env.render()
+
+    def close(self) -> None:
+        self._env.close()
+
+
+class ClassicVectorEnv(VectorEnv):
+    """Vector environment of a twin of Gymnasium's classic control.
+
+    Parameters
+    ----------
+    name:
+        Name of the twin without its version.
+    num_envs:
+        Number of environments.
+    starts:
+        ``"libration"``: starts depend on seed, environment and episode only. ``"gymnasium"``: those of Gymnasium's ``SyncVectorEnv`` with the
+        same seeds, which NumPy draws; a step at which episodes begin is slower.
+    **given:
+        Keywords of :class:`libration.Environments`, such as ``action_delay``, ``jitter`` and ``skew``, and parameters of the system.
+    """
+
+    def __init__(self, name: str, num_envs: int = 1, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
+        self._classic, self._starts = CLASSIC[name], _checked(starts)
+        given.setdefault("max_episode_steps", self._classic.max_episode_steps)
+        super().__init__(system_of(name), num_envs, **_with_defaults(self._classic, given))
+        self._given = {"num_envs": num_envs, "starts": starts, "render_mode": render_mode, **given}
+        self.render_mode, self._picture = _render_mode(render_mode), None
+        self.metadata = {**self.metadata, "render_modes": ["rgb_array"], "render_fps": _FPS[self._classic.name]}
+        self.single_observation_space = _seen(self._classic, _is_noisy(self._settings))
+        self.single_action_space = _action_space(self._classic, self.single_action_space)
+        self.observation_space = batch_space(self.single_observation_space, self.num_envs)
+        self.action_space = batch_space(self.single_action_space, self.num_envs)
+        self._generators: list[np.random.Generator | None] = [None] * self.num_envs
+        self._ended = np.zeros(self.num_envs, bool)
+
+    def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
+        if self._starts == "libration":
+            observations, infos = super().reset(seed=seed, options=options)
+            return observations.astype(np.float32), infos
+        options = dict(options or {})
+        bounds = {name: options.pop(name) for name in ("low", "high", "x_init", "y_init") if name in options}
+        observations, infos = super().reset(seed=seed, options=options)
+        mask = options.get("reset_mask", np.ones(self.num_envs, bool))
+        for n, one in enumerate(self._seeds(seed)):
+            if mask[n] and (one is not None or self._generators[n] is None):
+                self._generators[n] = np_random(one)[0]
+        self._ended[mask] = False
+        if "state" not in options:
+            observations = self._start(mask, bounds)
+        return observations.astype(np.float32), infos
+
+    def _start(self, mask: NDArray[np.bool_], options: dict[str, Any]) -> np.ndarray:
+        """Put environments at starts of Gymnasium."""
+        states = self.states.astype(np.float64)
+        for n in np.flatnonzero(mask):
+            generator = self._generators[n]
+            assert generator is not None, "every environment was reset"
+            states[n] = _draw(self._classic, generator, options)
+        return super().set_state(states, mask)
+
+    def set_state(self, states: Any, mask: np.ndarray | None = None) -> np.ndarray:
+        return super().set_state(states, mask).astype(np.float32)
+
+    def step(self, actions: Any) -> Any:
+        observations, rewards, terminated, truncated, infos = super().step(actions)
+        if "final_obs" in infos:
+            final = infos["final_obs"]
+            for n in np.flatnonzero(infos["_final_obs"]):
+                final[n] = final[n].astype(np.float32)
+        if self._starts == "gymnasium":
+            mode = self._settings["autoreset"]
+            ended = terminated | truncated
+            begun = {"NextStep": self._ended, "SameStep": ended}.get(mode)
+            if begun is not None and begun.any():
+                observations = self._start(begun, {})
+            self._ended = ended
+        return observations.astype(np.float32), rewards, terminated, truncated, infos
+
+    def render(self) -> tuple[np.ndarray, ...] | None:
+        """Return one picture of Gymnasium's per environment, if ``render_mode`` is ``"rgb_array"``; it requires Pygame."""
+        if self.render_mode is None:
+            return super().render()
+        if self._picture is None:
+            self._picture = _Picture(self._classic)
+        return tuple(self._picture(state) for state in self.states)
+
+    def close_extras(self, **kwargs: Any) -> None:
+        if self.__dict__.get("_picture") is not None:
+            self._picture.close()
+        super().close_extras(**kwargs)
+
+    def _extras(self) -> dict[str, Any]:
+        return {**super()._extras(), "_generators": self._generators, "_ended": self._ended}
+
+    def __reduce__(self) -> Any:
+        function, (cls, _, *rest) = super().__reduce__()
+        return function, (cls, (self._classic.name, self._given), *rest)
+
+    @classmethod
+    def _construct(cls, name: Any, given: dict[str, Any]) -> Any:
+        return cls(name, **given) if cls is ClassicVectorEnv else cls(**given)
+
+
+class ClassicEnv(Env):
+    """Single environment of a twin of Gymnasium's classic control; see :class:`ClassicVectorEnv`."""
+
+    def __init__(self, name: str, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
+        self._classic, self._starts = CLASSIC[name], _checked(starts)
+        super().__init__(system_of(name), **_with_defaults(self._classic, given))
+        self.render_mode, self._picture = _render_mode(render_mode), None
+        self.metadata = {"render_modes": ["rgb_array"], "render_fps": _FPS[self._classic.name]}
+        self.observation_space = _seen(self._classic, _is_noisy(self._all._settings))
+        self.action_space = _action_space(self._classic, self.action_space)
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
+        if self._starts == "libration" or "state" in (options or {}):
+            observation, info = super().reset(seed=seed, options=options)
+            return observation.astype(np.float32), info
+        observation, info = super().reset(seed=seed)
+        return self.set_state(_draw(self._classic, self.np_random, options)), info
+
+    def set_state(self, state: Any) -> np.ndarray:
+        return super().set_state(state).astype(np.float32)
+
+    def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        observation, *rest = super().step(action)
+        return (observation.astype(np.float32), *rest)
+
+    def render(self) -> np.ndarray | None:
+        if self.render_mode is None:
+            return super().render()
+        if self._picture is None:
+            self._picture = _Picture(self._classic)
+        return self._picture(self.state)
+
+    def close(self) -> None:
+        if self.__dict__.get("_picture") is not None:
+            self._picture.close()
+        super().close()
+
+
+def _render_mode(render_mode: str | None) -> str | None:
+    if render_mode not in (None, "rgb_array"):
+        raise ValueError(f"render_mode is {render_mode!r}, but it must be 'rgb_array' or None")
+    return render_mode
+
+
+_FPS = {"CartPole": 50, "Pendulum": 30, "MountainCar": 30, "MountainCarContinuous": 30, "Acrobot": 15}
+
+
+def _classes(name: str) -> tuple[type[ClassicEnv], type[ClassicVectorEnv]]:
+    """Return the single and the vector environment class of a twin."""
+
+    class Single(ClassicEnv):
+        __doc__ = f"Twin of Gymnasium's ``{CLASSIC[name].id}``; see :class:`ClassicVectorEnv` for all keywords."
+
+        def __init__(self, **given: Any) -> None:
+            super().__init__(name, **given)
+
+    class Vector(ClassicVectorEnv):
+        __doc__ = f"Vector environment of twins of Gymnasium's ``{CLASSIC[name].id}``; see :class:`ClassicVectorEnv` for all keywords."
+
+        def __init__(self, num_envs: int = 1, **given: Any) -> None:
+            super().__init__(name, num_envs, **given)
+
+    for made, title in ((Single, f"{name}Env"), (Vector, f"{name}VectorEnv")):
+        made.__name__ = made.__qualname__ = title
+    return Single, Vector
+
+
+CartPoleEnv, CartPoleVectorEnv = _classes("CartPole")
+PendulumEnv, PendulumVectorEnv = _classes("Pendulum")
+MountainCarEnv, MountainCarVectorEnv = _classes("MountainCar")
+MountainCarContinuousEnv, MountainCarContinuousVectorEnv = _classes("MountainCarContinuous")
+AcrobotEnv, AcrobotVectorEnv = _classes("Acrobot")
+
+
+def register() -> None:
+    """Register the twins with Gymnasium; the import of the package does this."""
+    for classic in CLASSIC.values():
+        known = f"libration/{classic.id}"
+        if known not in gymnasium.registry:
+            gymnasium.register(
+                id=known,
+                entry_point=f"libration.classic_control:{classic.name}Env",
+                vector_entry_point=f"libration.classic_control:{classic.name}VectorEnv",
+                max_episode_steps=classic.max_episode_steps,
+            )

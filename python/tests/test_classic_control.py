@@ -1,0 +1,215 @@
+"""Twins of Gymnasium's classic control, step by step beside Gymnasium."""
+
+import copy
+import pickle
+
+import gymnasium
+import numpy as np
+import pytest
+from common import AUTORESETS
+
+import libration
+from libration._classic_systems import CLASSIC, system_of
+from libration.check_environments_match import check_environments_match, main
+from libration.check_vector_env import check_vector_env
+
+IDS = [each.id for each in CLASSIC.values()]
+
+
+def twin(id, **given):
+    return gymnasium.make(f"libration/{id}", starts="gymnasium", **given)
+
+
+def exact_action(env, generator):
+    """Actions of Pendulum as ``float64``: Gymnasium multiplies those of ``float32`` in ``float32``."""
+    return generator.uniform(-2, 2, 1) if "Pendulum" in env.spec.id else env.action_space.sample()
+
+
+# Observations of float64 states are equal after rounding to float32. Rewards of Pendulum differ since Gymnasium subtracts turns of a rounded
+# 2π: 2.4e-16 rad a turn, times angles up to π.
+REWARD_TOLERANCES = {"Pendulum-v1": 1e-11}
+
+
+@pytest.mark.parametrize("id", ["CartPole-v1", "Pendulum-v1", "MountainCar-v0"])
+def test_a_twin_moves_as_gymnasium_over_ten_thousand_steps(id):
+    reward = REWARD_TOLERANCES.get(id, 0.0)
+    match = check_environments_match(
+        id, lambda: twin(id), steps=10_000, seeds=[3], sample=exact_action, tolerance_ulps=0, reward_tolerance=reward
+    )
+    assert match, str(match)
+
+
+# Angles of Acrobot to π, speeds to 9π: four slopes of some forty operations each, in float64. MountainCarContinuous has some ten operations
+# in float32, and the float32 of an action's square as its reward.
+@pytest.mark.parametrize(
+    ("id", "roundings", "reward_tolerance"),
+    [("Acrobot-v1", 60 * np.spacing(4 * np.pi), 0.0), ("MountainCarContinuous-v0", 2 * np.spacing(np.float32(1.2)), np.spacing(np.float32(0.1)))],
+)
+def test_each_step_of_a_twin_is_that_of_gymnasium_to_a_few_roundings(id, roundings, reward_tolerance):
+    """Both are compared from equal states: over an episode a rounding grows, that of the chaotic Acrobot 10¹⁰ times."""
+    other, own = gymnasium.make(id).unwrapped, twin(id).unwrapped
+    own.reset(seed=0), other.reset(seed=0)
+    other.action_space.seed(0)
+    largest = 0.0
+    for step in range(2000):
+        if step % 100 == 0:
+            # Gymnasium takes the first step of MountainCarContinuous in float64.
+            other.reset(seed=step)
+            other.step(other.action_space.sample())
+        own.set_state(np.asarray(other.state, float))
+        action = other.action_space.sample()
+        _, reward, over, _, _ = other.step(action)
+        _, own_reward, own_over, _, _ = own.step(action)
+        assert abs(own_reward - reward) <= reward_tolerance and own_over == over
+        largest = max(largest, np.abs(own.state - other.state).max())
+    assert 0 < largest < roundings, largest
+
+
+def test_the_first_steps_of_acrobot_are_those_of_gymnasium():
+    other, own = gymnasium.make("Acrobot-v1"), twin("Acrobot-v1")
+    for seed in range(5):
+        rows = [env.reset(seed=seed)[0] for env in (other, own)]
+        for _ in range(60):
+            assert np.array_equal(*rows)
+            rows = [env.step(2 * (seed % 2))[0] for env in (other, own)]
+
+
+@pytest.mark.parametrize("id", IDS)
+def test_a_twin_has_the_spaces_and_the_limit_of_gymnasium(id):
+    for make in (gymnasium.make, lambda id: gymnasium.make_vec(id, 3, vectorization_mode="sync")):
+        other = make(id)
+        own = gymnasium.make_vec(f"libration/{id}", 3) if other.unwrapped.__class__.__name__ == "SyncVectorEnv" else make(f"libration/{id}")
+        assert own.observation_space == other.observation_space and own.action_space == other.action_space
+        assert own.observation_space.dtype == np.float32
+        assert own.spec.max_episode_steps == other.spec.max_episode_steps
+        own.close(), other.close()
+
+
+@pytest.mark.parametrize("mode", AUTORESETS)
+@pytest.mark.parametrize("id", ["CartPole-v1", "MountainCar-v0"])
+def test_a_batch_of_twins_equals_the_sync_vector_env_of_gymnasium(id, mode):
+    autoreset = gymnasium.vector.AutoresetMode(mode)
+    other = gymnasium.make_vec(id, 5, vectorization_mode="sync", vector_kwargs={"autoreset_mode": autoreset})
+    own = gymnasium.make_vec(f"libration/{id}", 5, starts="gymnasium", autoreset_mode=autoreset)
+    assert np.array_equal(own.reset(seed=8)[0], other.reset(seed=8)[0])
+    own.action_space.seed(1)
+    ends = 0
+    for _ in range(250):
+        actions = own.action_space.sample()
+        results = [env.step(actions) for env in (own, other)]
+        for one, two in zip(results[0][:4], results[1][:4]):
+            assert np.array_equal(one, two)
+        over = results[0][2] | results[0][3]
+        ends += over.sum()
+        if mode == "SameStep" and over.any():
+            for one, two in zip(results[0][4]["final_obs"][over], results[1][4]["final_obs"][over]):
+                assert np.array_equal(one, two) and one.dtype == two.dtype
+        if mode == "Disabled" and over.any():
+            rows = [env.reset(options={"reset_mask": over.copy()})[0] for env in (own, other)]
+            assert np.array_equal(*rows)
+    assert ends > 4
+    own.close(), other.close()
+
+
+@pytest.mark.parametrize("starts", ["libration", "gymnasium"])
+def test_a_batch_of_twins_keeps_the_contract_of_gymnasium(starts):
+    report = check_vector_env(lambda n: gymnasium.make_vec("libration/CartPole-v1", n, starts=starts), num_envs=3, max_steps=200)
+    assert report.is_correct, str(report)
+
+
+def test_starts_of_libration_do_not_depend_on_the_batch_and_lie_within_those_of_gymnasium():
+    envs = gymnasium.make_vec("libration/Pendulum-v1", 2000)
+    envs.reset(seed=4)
+    few = gymnasium.make_vec("libration/Pendulum-v1", 2)
+    few.reset(seed=14)
+    assert np.array_equal(envs.states[10:12], few.states)
+    assert (np.abs(envs.states) <= [np.pi, 1.0]).all() and (np.abs(envs.states).max(axis=0) > [3.1, 0.99]).all()
+
+
+def test_options_of_gymnasium_bound_its_starts():
+    for id, options in (("CartPole-v1", {"low": -0.2, "high": 0.1}), ("Pendulum-v1", {"x_init": 0.5, "y_init": 0.1})):
+        other, own = gymnasium.make(id), twin(id)
+        assert np.array_equal(other.reset(seed=2, options=options)[0], own.reset(seed=2, options=options)[0])
+
+
+def test_parameters_and_imperfections_are_those_of_the_engine():
+    late = gymnasium.make_vec("libration/CartPole-v1", 64, action_delay=(0.0, 0.04), jitter=0.1, length=libration.Uniform(0.3, 0.7))
+    plain = gymnasium.make_vec("libration/CartPole-v1", 64)
+    assert np.array_equal(late.reset(seed=0)[0], plain.reset(seed=0)[0])
+    assert set(late.parameters) == {"length", "action_delay"}
+    assert 0.3 <= late.parameters["length"].min() < late.parameters["length"].max() <= 0.7
+    actions = np.ones(64, int)
+    assert not np.array_equal(late.step(actions)[0], plain.step(actions)[0])
+    # Half a metre is Gymnasium's own.
+    same = gymnasium.make_vec("libration/CartPole-v1", 64, length=libration.Uniform(0.5, 0.5))
+    same.reset(seed=0), plain.reset(seed=0)
+    for _ in range(9):
+        np.testing.assert_allclose(same.step(actions)[0], plain.step(actions)[0], rtol=1e-6)
+
+
+def test_copies_and_pickles_of_twins_go_on_alike():
+    envs = gymnasium.make_vec("libration/CartPole-v1", 4, starts="gymnasium", autoreset_mode="SameStep", action_delay=0.02)
+    envs.reset(seed=0)
+    for other in (copy.deepcopy(envs), pickle.loads(pickle.dumps(envs)), gymnasium.make_vec(envs.spec)):
+        mine = copy.deepcopy(envs)
+        if other.spec is envs.spec or not hasattr(other, "_seeder") or other._seeder is None:
+            other.reset(seed=0), mine.reset(seed=0)
+        for _ in range(60):
+            actions = np.ones(4, int)
+            assert np.array_equal(mine.step(actions)[0], other.step(actions)[0])
+
+
+def test_a_picture_is_that_of_gymnasium_of_the_same_state():
+    pytest.importorskip("pygame", reason="Gymnasium draws by Pygame, which is no dependency")
+    other, own = gymnasium.make("CartPole-v1", render_mode="rgb_array"), twin("CartPole-v1", render_mode="rgb_array")
+    other.reset(seed=1), own.reset(seed=1)
+    assert np.array_equal(other.render(), own.render())
+    own.close(), other.close()
+
+
+def test_systems_of_twins_have_the_states_that_gymnasium_has():
+    for name, classic in CLASSIC.items():
+        assert set(classic.order) == set(system_of(name).states) >= set(classic.drawn)
+        assert len(classic.limits) == len(system_of(name).summary["task"]["observe"])
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "text"),
+    [
+        ({"starts": "gym"}, ValueError, "starts is 'gym'"),
+        ({"max_action": 0.5}, TypeError, "max_action is given, but"),
+        ({"lenght": 1.0}, TypeError, "did you mean 'length'"),
+    ],
+)
+def test_wrong_keywords_of_twins_are_refused(given, error, text):
+    for make in (lambda **given: gymnasium.make("libration/CartPole-v1", **given), lambda **given: gymnasium.make_vec("libration/CartPole-v1", 2, **given)):
+        with pytest.raises(error, match=text):
+            make(**given)
+
+
+def test_environments_that_differ_are_told_with_seed_and_step():
+    match = check_environments_match("CartPole-v1", lambda: twin("CartPole-v1", gravity=9.81), steps=100, seeds=[5])
+    assert not match and match.difference.startswith("seed 5, step 0: observation[3]"), str(match)
+    match = check_environments_match("CartPole-v1", lambda: twin("CartPole-v1", force_mag=10.001), steps=50, seeds=[5], tolerance_ulps=1e9)
+    assert match.observation_ulps[3] > 100
+    class Cut(gymnasium.Wrapper):
+        def step(self, action):
+            return (*super().step(action)[:3], True, {})
+    match = check_environments_match("CartPole-v1", lambda: Cut(gymnasium.make("CartPole-v1")), steps=10, seeds=[0])
+    assert match.difference == "seed 0, step 0: truncated is False and True"
+    with pytest.raises(ValueError, match="observation_space of CartPole-v1"):
+        check_environments_match("CartPole-v1", "Pendulum-v1")
+    for given, error in (({"steps": 0}, ValueError), ({"seeds": []}, ValueError), ({"steps": 1.5}, TypeError), ({"tolerance_ulps": -1}, ValueError)):
+        with pytest.raises(error, match=next(iter(given))):
+            check_environments_match("CartPole-v1", "CartPole-v1", **given)
+
+
+def test_the_command_compares_registered_environments(capsys):
+    ids = ["CartPole-v1", "libration/CartPole-v1"]
+    assert main([*ids, "--second", "starts=gymnasium", "--steps", "200", "--seeds", "1"]) == 0
+    assert "match" in capsys.readouterr().out
+    assert main([*ids, "--steps", "5", "--seeds", "1"]) == 1
+    for wrong in (["CartPole-v1", "NoSuch-v0"], [*ids, "--second", "starts"], [*ids, "--steps", "0"]):
+        with pytest.raises(SystemExit) as exit:
+            main(wrong)
+        assert exit.value.code == 2
