@@ -126,11 +126,24 @@ def _steps(seconds: tuple[float, float], dt: float) -> list[int] | None:
     return whole if near else None
 
 
+def inner_count(dt: float, inner_period: float | None, substeps: int | None) -> int:
+    """Return how many periods of the inner controller there are between two actions."""
+    if inner_period is None:
+        return 1
+    period = positive("inner_period", inner_period)
+    parts = _steps((dt, dt), period)
+    if parts is None or not 1 <= parts[0] <= MOST_SUBSTEPS:
+        raise ValueError(f"inner_period is {period!r} s, but dt = {dt!r} s must be 1 to {MOST_SUBSTEPS} whole periods")
+    if substeps is not None and substeps % parts[0]:
+        raise ValueError(f"substeps is {substeps}, but it must be a multiple of the {parts[0]} periods of the inner controller")
+    return parts[0]
+
+
 def delays(
-    dt: float, substeps: int | None, named: dict[str, tuple[float, float]]
+    dt: float, substeps: int | None, named: dict[str, tuple[float, float]], multiple: int = 1
 ) -> tuple[int, dict[str, list[int]]]:
     """Return the number of substeps, and latencies in substeps."""
-    tried = range(1, MOST_SUBSTEPS + 1) if substeps is None else (substeps,)
+    tried = range(multiple, MOST_SUBSTEPS + 1, multiple) if substeps is None else (substeps,)
     for parts in tried:
         found = {name: _steps(seconds, dt / parts) for name, seconds in named.items()}
         steps = {name: late for name, late in found.items() if late is not None}
@@ -179,6 +192,9 @@ OPTIONS = (
     "start",
     "project",
     "actions",
+    "targets",
+    "inner",
+    "inner_period",
     "dtype",
     "threads",
     "copy",
@@ -187,7 +203,7 @@ OPTIONS = (
     "render_mode",
 )
 
-TASK_OPTIONS = ("observe", "reward", "terminated", "start", "project", "actions")
+TASK_OPTIONS = ("observe", "reward", "terminated", "start", "project", "actions", "targets", "inner", "inner_period")
 """Options of environments of systems by equations."""
 
 CATALOGUE = {name: tuple(entry[0] for entry in all) for name, _, _, _, all in _systems()}
@@ -259,7 +275,7 @@ def refuse_others(given: Iterable[str], taken: Container[str], known: Iterable[s
             raise TypeError(f"unexpected keyword argument {name!r}: {nearest(name, known)}")
 
 
-def common(given: dict[str, Any]) -> dict[str, Any]:
+def common(given: dict[str, Any], inner_period: float | None = None) -> dict[str, Any]:
     """Return the settings that environments of all systems have."""
     dt = positive("dt", given["dt"])
     substeps = given["substeps"]
@@ -272,9 +288,9 @@ def common(given: dict[str, Any]) -> dict[str, Any]:
         for name in ("observation_delay", "action_delay")
     }
     late = {name: ends(name, value, least=0.0) for name, value in stated.items()}
-    asked = substeps
-    substeps, late_steps = delays(dt, substeps, late)
-    if asked is None and substeps > MANY_SUBSTEPS:
+    asked, periods = substeps, inner_count(dt, inner_period, substeps)
+    substeps, late_steps = delays(dt, substeps, late, periods)
+    if asked is None and substeps > max(MANY_SUBSTEPS, periods):
         warn_of(substeps, dt, late)
     limit = given["max_episode_steps"]
     # -1 is Gymnasium's word for no limit.

@@ -10,6 +10,7 @@ from ._episode_numbers import each, episode_number, largest_commands, scaled_law
 from ._settings import OPTIONS, TASK_OPTIONS, common, count, ends, is_several, law, number, refuse_others
 from ._toml import text_of
 from .equations import EquationSystem
+from .perturbations import PD
 
 SMALLEST_OPTIONS = [name for name in OPTIONS if name not in ("start_position", "start_velocity")]
 
@@ -61,11 +62,15 @@ def native_equations(
     task = {name: given.pop(name) for name in TASK_OPTIONS}
     own = system.summary["task"]
     text = None
+    if isinstance(task["inner"], PD):
+        task |= _pd_targets(system, task["inner"], task["targets"])
     if any(value is not None for value in task.values()):
         text = _task(system, task, own)
     seen, levels = (own["observe"], own["actions"]) if own else (list(system.states), [])
     seen = list(task["observe"]) if task["observe"] is not None else seen
     levels = [float(x) for x in task["actions"]] if task["actions"] is not None else levels
+    targets = task["targets"] if task["targets"] is not None else own["targets"] if own else []
+    actions = tuple(targets) if targets else system.inputs
     given["max_episode_steps"] = math.inf if given["max_episode_steps"] is None else given["max_episode_steps"]
     num_envs = count("num_envs", given["num_envs"], 1, 2**40)
     numbers = {name: episode_number(name, value, num_envs) for name, value in parameters.items()}
@@ -73,7 +78,8 @@ def native_equations(
     constants = {name: values[0] for name, (_, values) in numbers.items() if name not in varied}
     given["jitter"], clock = scaled_law("jitter", given["jitter"])
     given["observation_noise"], sensor = scaled_law("observation_noise", given["observation_noise"])
-    settings = common(given)
+    inner_period = task["inner_period"] if task["inner_period"] is not None or not own else own["inner_period"]
+    settings = common(given, inner_period)
     if clock[0] != clock[1] and settings["skew"][1] > 0:
         raise ValueError(f"skew is {given['skew']!r}, but it must be 0 where each episode draws its jitter")
     if levels and given["max_action"] not in (None, math.inf):
@@ -83,31 +89,47 @@ def native_equations(
         "equations": (system.replace(**constants) if constants else system)._text,
         "task": text,
         "varied": list(varied.items()),
-        "saturation": largest_commands(given["max_action"], len(system.inputs), num_envs),
+        "saturation": largest_commands(given["max_action"], len(actions), num_envs),
         "noise": [law("observation_noise", x) for x in _each_law(given["observation_noise"], len(seen))],
         "error_scale": [clock, sensor],
     }
-    return EquationPreset(system.name, tuple(seen), system.inputs, tuple(levels)), settings
+    return EquationPreset(system.name, tuple(seen), actions, tuple(levels)), settings
+
+
+def _pd_targets(system: EquationSystem, gains: PD, targets: Sequence[str] | None) -> dict[str, Any]:
+    """Return the keys of a task whose actions are targets of a PD controller of each coordinate."""
+    coordinates = [name for name in system.states if f"{name}'" in system.states]
+    if len(coordinates) != len(system.inputs):
+        raise ValueError(
+            f"inner is {gains!r}, but it must be a dictionary of expressions: the system has {len(coordinates)} coordinates and "
+            f"{len(system.inputs)} inputs"
+        )
+    stiffness, damping = (number(f"{name} of inner", x, "finite") for name, x in (("position", gains.position), ("velocity", gains.velocity)))
+    targets = [f"target_{name}" for name in coordinates] if targets is None else targets
+    commands = {u: f"{stiffness!r}*({target} - {q}) - {damping!r}*{q}'" for u, target, q in zip(system.inputs, targets, coordinates)}
+    return {"targets": targets, "inner": commands}
 
 
 def _task(system: EquationSystem, task: Mapping[str, Any], own: Mapping[str, Any] | None) -> str:
     """Return the table of a task, with what the file of the system says in place of what is not given."""
-    own = own or {"observe": list(system.states), "reward": None, "terminated": [], "start": {}, "project": {}, "actions": []}
+    own = own or {"observe": list(system.states), "reward": None, "terminated": [], "start": {}, "project": {}}
+    own |= {name: value for name, value in (("actions", []), ("targets", []), ("inner", {}), ("inner_period", None)) if name not in own}
     table = {name: own[name] if value is None else value for name, value in task.items()}
     if table["reward"] is None:
         raise TypeError("reward is required: an expression, as in reward='-x^2 - 0.01*u^2'")
     if not isinstance(table["reward"], str):
         raise TypeError(f"reward must be an expression, not {type(table['reward']).__name__}")
-    for name in ("observe", "terminated"):
+    for name in ("observe", "terminated", "targets"):
         texts = table[name]
         if isinstance(texts, str) or not is_several(texts) or not all(isinstance(x, str) for x in texts):
             raise TypeError(f"{name} is {texts!r}, but it must be a list of expressions")
-    for name in ("start", "project"):
+    for name in ("start", "project", "inner"):
         if not isinstance(table[name], Mapping):
             raise TypeError(f"{name} must be a dictionary, not {type(table[name]).__name__}")
-    for name, text in table["project"].items():
-        if not isinstance(text, str):
-            raise TypeError(f"project of {name} must be an expression, not {type(text).__name__}")
+    for key in ("project", "inner"):
+        for name, text in table[key].items():
+            if not isinstance(text, str):
+                raise TypeError(f"{key} of {name} must be an expression, not {type(text).__name__}")
     if not is_several(table["actions"]) and not hasattr(table["actions"], "tolist"):
         raise TypeError(f"actions is {table['actions']!r}, but it must be a list of commands")
     table["actions"] = [number("actions", x, "finite") for x in table["actions"]] or None

@@ -15,6 +15,7 @@ from ._settings import AUTORESET, count, native, nearest
 from ._tasks import EquationPreset, native_equations
 from ._episode_states import episode_numbers, refuse_options, rows_of, start_of
 from .equations import EquationSystem
+from .perturbations import PD
 from .policies import Policy
 from .rollout import Rollout
 
@@ -74,6 +75,11 @@ class Environments(_native.Batch):
     actions:
         Commands of discrete actions, in ascending order: the action ``i`` is the command ``actions[i]``. A policy of the engine gives a
         command, of which the nearest one is taken.
+    inner, targets, inner_period:
+        An inner controller between actions and inputs: ``PD(kp, kd)`` for a system with as many inputs as coordinates, whose actions are then
+        targets of the coordinates, ``kp·(target - q) - kd·q'``; or an expression of the state and of ``targets``, names of actions, for each
+        input. It samples every ``inner_period`` seconds (default: every step of the integrator), of which ``dt`` is a whole multiple.
+        Latencies and ``max_action`` are those of the targets.
     threads:
         Number of threads (0: one per core). The results are independent of it.
     copy:
@@ -125,6 +131,9 @@ class Environments(_native.Batch):
         start: Mapping[str, Any] | None = None,
         project: Mapping[str, str] | None = None,
         actions: Sequence[float] | None = None,
+        targets: Sequence[str] | None = None,
+        inner: PD | Mapping[str, str] | None = None,
+        inner_period: float | None = None,
         dtype: Any = "float32",
         threads: int = 1,
         copy: bool = True,
@@ -160,6 +169,9 @@ class Environments(_native.Batch):
             "start": start,
             "project": project,
             "actions": actions,
+            "targets": targets,
+            "inner": inner,
+            "inner_period": inner_period,
             "dtype": _name_of(dtype),
             "threads": threads,
             "copy": copy,

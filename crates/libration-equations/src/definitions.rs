@@ -148,7 +148,7 @@ fn fault(key: &str, kind: EquationErrorKind) -> EquationError {
     EquationError { key: key.into(), span: None, kind }
 }
 
-fn is_name(name: &str) -> bool {
+pub(crate) fn is_name(name: &str) -> bool {
     let begins = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
     begins && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
 }

@@ -1,6 +1,6 @@
 //! Tasks of environments from text.
 
-use super::definitions::MAX_EXPRESSIONS;
+use super::definitions::{MAX_EXPRESSIONS, is_name};
 use super::equations::{define_parameters, define_states, define_values};
 use super::parser::name_before;
 use super::program::{Operation, Program, ValueId};
@@ -24,6 +24,17 @@ pub struct TaskDefinitions {
     /// States by name, and what each step of the integrator replaces them by: expressions of the state after it, of the inputs, of the
     /// length `dt` of the step in seconds, and by `before(x)` of the state before it.
     pub project: Vec<(String, String)>,
+    /// The names of actions that are targets of an inner controller; empty where actions are the inputs of the system.
+    pub targets: Vec<String>,
+    /// Inputs by name, and the command of the inner controller: an expression of the state and of targets.
+    pub inner: Vec<(String, String)>,
+}
+
+impl TaskDefinitions {
+    /// The names of the actions on a system.
+    pub fn actions<'a>(&'a self, definitions: &'a Definitions) -> &'a [String] {
+        if self.targets.is_empty() { &definitions.inputs } else { &self.targets }
+    }
 }
 
 /// A task as programs.
@@ -37,14 +48,18 @@ pub struct TaskPrograms {
     /// From positions and velocities after a step of the integrator, inputs and parameters that vary, the length of the step, and
     /// positions and velocities before it, to those that take the place of the former.
     pub projection: Option<Program>,
+    /// From positions, velocities, parameters that vary and actions to the inputs of the system that are no parameters.
+    pub inner: Option<Program>,
+    /// The number of targets of the inner controller.
+    pub targets: usize,
 }
 
 impl TaskPrograms {
     /// The task of these definitions on a system with its definitions.
     ///
     /// # Errors
-    /// [`EquationError`]: the first expression that is wrong, by keys as `task.observe.0`, `task.reward.0`, `task.terminated.0` and
-    /// `task.project.x`.
+    /// [`EquationError`]: the first expression that is wrong, by keys as `task.observe.0`, `task.reward.0`, `task.terminated.0`,
+    /// `task.project.x` and `task.inner.u`.
     pub fn new(
         task: &TaskDefinitions,
         definitions: &Definitions,
@@ -60,6 +75,8 @@ impl TaskPrograms {
             observation: observation(task, definitions, equations)?,
             verdict: verdict(task, definitions, equations)?,
             projection: projection(task, definitions, equations)?,
+            inner: inner(task, definitions, equations)?,
+            targets: task.targets.len(),
         })
     }
 }
@@ -87,7 +104,8 @@ fn verdict(
     let degrees = equations.degrees();
     let mut builder = ProgramBuilder::default();
     let before = builder.inputs(2 * degrees.len());
-    let commands = builder.inputs(definitions.inputs.len());
+    let actions = task.actions(definitions);
+    let commands = builder.inputs(actions.len());
     let varied = builder.inputs(definitions.varied.len());
     let after = builder.inputs(2 * degrees.len());
     let time = builder.input();
@@ -103,7 +121,7 @@ fn verdict(
     }
     let mut resolver = scope(resolver.builder, definitions, equations, (&after, &varied))?;
     resolver.define("t", 0, time);
-    define_values(&mut resolver, &definitions.inputs, &commands);
+    define_values(&mut resolver, actions, &commands);
     define_states(&mut resolver, degrees, before.split_at(degrees.len()), name_before);
     let reward = core::slice::from_ref(&task.reward);
     let reward = values(&mut resolver, "reward", reward, Expression::parse)?;
@@ -146,6 +164,61 @@ fn projection(
             return Err(EquationError { key, span: None, kind });
         };
         outputs[*place] = value(&mut resolver, &key, text, Expression::parse)?;
+    }
+    Ok(Some(resolver.builder.finish(&outputs)))
+}
+
+/// The commands of an inner controller.
+fn inner(
+    task: &TaskDefinitions,
+    definitions: &Definitions,
+    equations: &Equations,
+) -> Result<Option<Program>, EquationError> {
+    let fault = |key: &str, kind| EquationError { key: key.to_owned(), span: None, kind };
+    if task.inner.is_empty() && task.targets.is_empty() {
+        return Ok(None);
+    }
+    let degrees = equations.degrees();
+    let mut builder = ProgramBuilder::default();
+    let state = builder.inputs(2 * degrees.len());
+    let varied = builder.inputs(definitions.varied.len());
+    let actions = builder.inputs(task.targets.len());
+    let mut resolver = scope(builder, definitions, equations, (&state, &varied))?;
+    for (i, target) in task.targets.iter().enumerate() {
+        let taken = resolver.defines(target) || definitions.inputs.contains(target);
+        let reason = if !is_name(target) {
+            "no name"
+        } else if taken || task.targets[..i].contains(target) {
+            "given twice"
+        } else {
+            continue;
+        };
+        let kind = EquationErrorKind::Name { name: target.clone(), reason };
+        return Err(fault("task.targets", kind));
+    }
+    define_values(&mut resolver, &task.targets, &actions);
+    for (name, _) in &task.inner {
+        if !definitions.inputs.contains(name) {
+            let known = definitions.inputs.clone();
+            let kind = EquationErrorKind::UnknownName { name: name.clone(), known };
+            return Err(fault(&format!("task.inner.{name}"), kind));
+        }
+    }
+    let mut outputs = Vec::with_capacity(definitions.inputs.len());
+    for input in &definitions.inputs {
+        let Some((_, text)) = task.inner.iter().find(|(name, _)| name == input) else {
+            let reason = "has no command of the inner controller; expected one for each input";
+            let kind = EquationErrorKind::Coordinate { name: input.clone(), reason };
+            return Err(fault("task.inner", kind));
+        };
+        let key = format!("task.inner.{input}");
+        outputs.push(value(&mut resolver, &key, text, Expression::parse)?);
+    }
+    if task.targets.is_empty() {
+        let reason =
+            "is commanded by an inner controller without targets; expected names of actions";
+        let kind = EquationErrorKind::Coordinate { name: task.inner[0].0.clone(), reason };
+        return Err(fault("task.inner", kind));
     }
     Ok(Some(resolver.builder.finish(&outputs)))
 }

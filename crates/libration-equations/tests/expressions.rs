@@ -12,7 +12,7 @@ fn equations(text: &str) -> Result<Equations, EquationError> {
         parts: vec![own("sum", "a + b")],
         parameters: vec![("a".into(), 3.0), ("b".into(), 0.25)],
         inputs: vec!["u".into()],
-        energy: None,
+        ..Definitions::default()
     })
 }
 

@@ -195,6 +195,7 @@ impl Settings {
             delays: self.delays(),
             saturation: saturation.iter().map(episode_number).collect::<PyResult<_>>()?,
             levels: task.levels.clone(),
+            inner_steps: task.inner_steps(self.dt).map_err(value_error)?,
             parameters: varied
                 .iter()
                 .map(|(_, number)| episode_number(number))

@@ -57,15 +57,32 @@ pub struct SummaryTask {
     pub project: BTreeMap<String, String>,
     /// The commands of discrete actions; empty for commands of any value.
     pub actions: Vec<f64>,
+    /// The names of actions that are targets of the inner controller.
+    pub targets: Vec<String>,
+    /// The commands of the inner controller by input.
+    pub inner: BTreeMap<String, String>,
+    /// The period of the inner controller in seconds.
+    pub inner_period: Option<f64>,
 }
 
 impl SummaryTask {
     fn new(system: &EquationSystem, task: &EquationTask) -> Self {
-        let TaskDefinitions { observe, reward, terminated, project } = task.definitions.clone();
+        let TaskDefinitions { observe, reward, terminated, project, targets, inner } =
+            task.definitions.clone();
         let range = |state: &NamedState| (state.name.clone(), task.start[state.place]);
         let start = system.states.iter().map(range).collect();
         let project = project.into_iter().collect();
-        SummaryTask { observe, reward, terminated, start, project, actions: task.levels.clone() }
+        SummaryTask {
+            observe,
+            reward,
+            terminated,
+            start,
+            project,
+            actions: task.levels.clone(),
+            targets,
+            inner: inner.into_iter().collect(),
+            inner_period: task.inner_period,
+        }
     }
 }
 

@@ -55,12 +55,12 @@ pub(super) fn equation_environment(
             return Err(Fault::new("task", message));
         }
     };
-    let inputs = system.equations.inputs().len();
-    if inputs == 0 {
+    if system.equations.inputs().is_empty() {
         let message = format!("`{file}` has no inputs, but actions need at least one");
         return Err(fault(message));
     }
-    let columns = task.definitions.observe.iter().chain(system.equations.inputs());
+    let actions = task.definitions.actions(&system.definitions);
+    let columns = task.definitions.observe.iter().chain(actions);
     let mut known: Vec<&str> = COLUMNS.to_vec();
     for name in columns {
         if known.contains(&name.as_str()) {
@@ -74,11 +74,13 @@ pub(super) fn equation_environment(
     let dynamics = system.equations.dynamics().clone();
     let ideal = ProgramEnvironment::new(dynamics, task.programs.clone(), method, dt);
     let most = table.max_action.clone().unwrap_or(Numbers::One(Number(f64::INFINITY)));
-    let saturation = each("system.equations.max_action", most, inputs, |x| x > 0.0, "above 0")?;
+    let saturation =
+        each("system.equations.max_action", most, actions.len(), |x| x > 0.0, "above 0")?;
     let definition = ProgramEnvironment {
         start: task.start.clone(),
         saturation: saturation.into_iter().map(EpisodeNumber::from).collect(),
         levels: task.levels.clone(),
+        inner_steps: task.inner_steps(dt).map_err(|message| Fault::new("task", message))?,
         ..ideal
     };
     Ok(EquationEnvironment { system, text, parameters, task, definition })

@@ -156,7 +156,8 @@ fn by_equations(settings: &EquationEnvironment) -> Vec<(&'static str, Value)> {
         .iter()
         .map(|state| (state.name.clone(), json!(task.start[state.place])))
         .collect();
-    let TaskDefinitions { observe, reward, terminated, project } = &task.definitions;
+    let TaskDefinitions { observe, reward, terminated, project, targets, inner } =
+        &task.definitions;
     let saturation: Vec<f64> =
         definition.saturation.iter().filter_map(EpisodeNumber::as_constant).collect();
     let equations = json!({
@@ -169,6 +170,13 @@ fn by_equations(settings: &EquationEnvironment) -> Vec<(&'static str, Value)> {
     });
     if !project.is_empty() {
         expressions["project"] = json!(project.iter().cloned().collect::<BTreeMap<_, _>>());
+    }
+    if !inner.is_empty() {
+        expressions["targets"] = json!(targets);
+        expressions["inner"] = json!(inner.iter().cloned().collect::<BTreeMap<_, _>>());
+    }
+    if let Some(period) = task.inner_period {
+        expressions["inner_period"] = json!(period);
     }
     if !task.levels.is_empty() {
         expressions["actions"] = json!(task.levels);

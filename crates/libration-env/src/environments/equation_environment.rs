@@ -26,7 +26,10 @@ impl EquationEnvironment {
 
     /// Names and units of the actions; `"1"` where no unit is known.
     pub fn actions(&self) -> Vec<(String, String)> {
-        named(self.system.equations.inputs(), &self.system.input_units)
+        match self.task.definitions.targets.as_slice() {
+            [] => named(self.system.equations.inputs(), &self.system.input_units),
+            targets => named(targets, &vec![String::new(); targets.len()]),
+        }
     }
 }
 

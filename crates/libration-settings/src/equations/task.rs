@@ -25,6 +25,8 @@ pub struct EquationTask {
     pub start: Vec<[f64; 2]>,
     /// The commands of discrete actions, in ascending order; empty for commands of any value.
     pub levels: Vec<f64>,
+    /// The period of the inner controller in seconds; without one it takes every step of the integrator.
+    pub inner_period: Option<f64>,
 }
 
 /// A file with a task.
@@ -48,6 +50,11 @@ pub(super) struct TaskTable {
     #[serde(default)]
     project: BTreeMap<Spanned<String>, Spanned<String>>,
     actions: Option<Spanned<Vec<Number>>>,
+    #[serde(default)]
+    targets: Vec<Spanned<String>>,
+    #[serde(default)]
+    inner: BTreeMap<Spanned<String>, Spanned<String>>,
+    inner_period: Option<Spanned<Number>>,
 }
 
 /// A number, or the ends of a range.
@@ -71,6 +78,24 @@ impl EquationTask {
     }
 }
 
+impl EquationTask {
+    /// The period of the inner controller in steps of `dt` seconds.
+    ///
+    /// # Errors
+    /// If it is not a whole number of them.
+    pub fn inner_steps(&self, dt: f64) -> Result<u32, String> {
+        let Some(period) = self.inner_period else { return Ok(1) };
+        let steps = period / dt;
+        // The quotient of two doubles is accurate to some 1e-16; 1e-9 of a step is no intended fraction.
+        if steps.round() >= 1.0 && steps < 1e9 && (steps - steps.round()).abs() <= 1e-9 * steps {
+            return Ok(steps.round() as u32);
+        }
+        Err(format!(
+            "`inner_period` is {period} s; expected whole steps of the integrator of {dt} s"
+        ))
+    }
+}
+
 impl TaskTable {
     /// The task on a system; `text` is that of the file.
     pub(super) fn read(&self, system: &EquationSystem, text: &str) -> Result<EquationTask, Wrong> {
@@ -78,16 +103,13 @@ impl TaskTable {
             all.iter().map(|text| text.get_ref().clone()).collect()
         };
         let states = || system.states.iter().map(|state| state.name.clone()).collect();
-        let mut project: Vec<_> = self.project.iter().collect();
-        project.sort_by_key(|(name, _)| name.span().start);
-        let pair = |(name, text): (&Spanned<String>, &Spanned<String>)| {
-            (name.get_ref().clone(), text.get_ref().clone())
-        };
         let definitions = TaskDefinitions {
             observe: self.observe.as_deref().map_or_else(states, texts),
             reward: self.reward.get_ref().clone(),
             terminated: texts(&self.terminated),
-            project: project.into_iter().map(pair).collect(),
+            project: pairs(&self.project),
+            targets: texts(&self.targets),
+            inner: pairs(&self.inner),
         };
         if definitions.observe.is_empty() {
             let span = self.reward.span();
@@ -103,19 +125,33 @@ impl TaskTable {
         Ok(EquationTask {
             units: definitions.observe.iter().map(unit).collect(),
             start: self.start(system)?,
-            levels: self.levels(system)?,
+            levels: self.levels(definitions.actions(&system.definitions).len())?,
+            inner_period: self.inner_period()?,
             definitions,
             programs,
         })
     }
 
+    /// The period of the inner controller.
+    fn inner_period(&self) -> Result<Option<f64>, Wrong> {
+        let Some(period) = &self.inner_period else { return Ok(None) };
+        let seconds = period.get_ref().0;
+        let message = if self.inner.is_empty() {
+            "`inner_period` belongs to an inner controller; expected a table `inner`".to_owned()
+        } else if !(seconds > 0.0 && seconds.is_finite()) {
+            format!("`inner_period` is {seconds} s; expected a finite number above 0")
+        } else {
+            return Ok(Some(seconds));
+        };
+        Err((period.span(), message, None))
+    }
+
     /// The commands of discrete actions.
-    fn levels(&self, system: &EquationSystem) -> Result<Vec<f64>, Wrong> {
+    fn levels(&self, inputs: usize) -> Result<Vec<f64>, Wrong> {
         let Some(actions) = &self.actions else { return Ok(Vec::new()) };
         let levels: Vec<f64> = actions.get_ref().iter().map(|x| x.0).collect();
-        let inputs = system.equations.inputs().len();
         let message = if inputs != 1 {
-            format!("`actions` are commands of one input, but the system has {inputs}")
+            format!("`actions` are commands of one input, but there are {inputs}")
         } else if levels.len() < 2 {
             format!("`actions` has {} commands; expected at least two", levels.len())
         } else if levels.iter().any(|level| !level.is_finite())
@@ -132,14 +168,20 @@ impl TaskTable {
     fn place(&self, error: &EquationError, text: &str) -> Range<usize> {
         let mut keys = error.key.split('.').skip(1);
         let (key, index) = (keys.next(), keys.next().and_then(|index| index.parse().ok()));
-        if let (Some("project"), Some((_, name))) = (key, error.key.rsplit_once("project.")) {
-            let entry = self.project.iter().find(|(known, _)| known.get_ref() == name);
+        let tables = [("project", &self.project), ("inner", &self.inner)];
+        if let Some((key, table)) = tables.into_iter().find(|(table, _)| key == Some(*table)) {
+            let name = error.key.trim_start_matches("task.").trim_start_matches(key);
+            let name = name.trim_start_matches('.');
+            let entry = table.iter().find(|(known, _)| known.get_ref() == name);
             let unknown = matches!(error.kind, EquationErrorKind::UnknownName { .. });
             return match entry {
                 Some((key, _)) if unknown && error.span.is_none() => key.span(),
                 Some((_, text_of)) => inside(text_of, error, text),
-                None => self.reward.span(),
+                None => table.keys().next().map_or(self.reward.span(), Spanned::span),
             };
+        }
+        if key == Some("targets") {
+            return self.targets.first().map_or(self.reward.span(), Spanned::span);
         }
         let texts = match key {
             Some("observe") => self.observe.as_deref().unwrap_or_default(),
@@ -178,6 +220,16 @@ impl TaskTable {
         }
         Ok(ranges)
     }
+}
+
+/// Names and texts, in the order of the file.
+fn pairs(table: &BTreeMap<Spanned<String>, Spanned<String>>) -> Vec<(String, String)> {
+    let mut entries: Vec<_> = table.iter().collect();
+    entries.sort_by_key(|(name, _)| name.span().start);
+    entries
+        .into_iter()
+        .map(|(name, text)| (name.get_ref().clone(), text.get_ref().clone()))
+        .collect()
 }
 
 /// The place in the file of an error within an expression.

@@ -6,6 +6,7 @@ use libration_core::control::{Clock, Memory};
 use libration_core::random::{Purpose, Streams};
 
 use super::ProgramPolicy;
+use super::command_limits::CommandLimits;
 use super::environment::World;
 use super::episodes::EpisodeBlock;
 use super::row_program::ProgramRows;
@@ -16,7 +17,7 @@ use crate::rl::block_size::LANES;
 use crate::rl::deviation::scale_deviation;
 use crate::rl::episode_streams::begin_epochs;
 use crate::rl::history::History;
-use crate::rl::{EpisodeNumber, ProgramEnvironment, StepIndex};
+use crate::rl::{ProgramEnvironment, StepIndex};
 
 /// A row of a block.
 pub(super) type Row<T> = [T; LANES];
@@ -30,13 +31,12 @@ pub(super) struct BlockStep<'s, T> {
     dt: T,
     /// The time from action to action, in seconds.
     span: f64,
-    /// The largest commands, where they are constants.
-    saturation: Option<Vec<T>>,
-    levels: Vec<T>,
+    limits: CommandLimits<T>,
     /// Whether observation and verdict depend on time.
     is_timed: [bool; 2],
     step: ProgramRows<'s, T>,
     projection: Option<ProgramRows<'s, T>>,
+    inner: Option<ProgramRows<'s, T>>,
     observation: ProgramRows<'s, T>,
     verdict: ProgramRows<'s, T>,
     pub(super) seen: Vec<Row<T>>,
@@ -46,6 +46,8 @@ pub(super) struct BlockStep<'s, T> {
     pub(super) overs: [u8; LANES],
     commands: Vec<Row<T>>,
     held: Vec<Row<T>>,
+    /// The commands of the inner controller.
+    inner_commands: Vec<Row<T>>,
     /// Positions and velocities at other times than now.
     other: Vec<Row<T>>,
     /// Positions and velocities before a step of the integrator, for its projection.
@@ -78,9 +80,6 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
         let lanes = environments.min(LANES);
         let dt = T::from_f64(definition.dt);
         let (actions, coordinates) = (definition.actions(), definition.coordinates());
-        let saturation = definition.saturation.iter().map(EpisodeNumber::as_constant);
-        let saturation: Option<Vec<f64>> = saturation.collect();
-        let rounded = |all: &[f64]| all.iter().map(|&x| T::from_f64(x)).collect();
         let projection = programs.projection.as_ref();
         BlockStep {
             definition,
@@ -89,11 +88,11 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
             instructions,
             dt,
             span: definition.dt * f64::from(definition.substeps),
-            saturation: saturation.as_deref().map(rounded),
-            levels: rounded(&definition.levels),
+            limits: CommandLimits::new(definition),
             is_timed: programs.is_timed(),
             step: programs.step.rows(lanes, dt),
             projection: projection.map(|program| program.rows(lanes, dt)),
+            inner: programs.inner.as_ref().map(|program| program.rows(lanes, T::zero())),
             observation: programs.observation.rows(lanes, T::zero()),
             verdict: programs.verdict.rows(lanes, T::zero()),
             seen: rows(definition.observations()),
@@ -103,6 +102,9 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
             overs: [0; LANES],
             commands: rows(actions),
             held: rows(actions),
+            inner_commands: rows(
+                definition.task.inner.as_ref().map_or(0, |all| all.outputs().len()),
+            ),
             other: rows(coordinates),
             previous: rows(projection.map_or(0, |_| coordinates)),
             lengths: [dt; LANES],
@@ -138,7 +140,7 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
             set_times(&mut self.times, now, &block.episodes.began, self.span);
         }
         let parameters = &block.numbers[..self.definition.parameters.len()];
-        let rows = [&states[..], parameters];
+        let rows = [states, parameters];
         let input = |i: usize| row_of(rows, i).unwrap_or(&self.times);
         self.observation.run(input, &mut self.seen, self.instructions);
         if !noisy {
@@ -184,7 +186,8 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
         words: &mut Streams<LANES>,
     ) -> bool {
         let substeps = self.substeps();
-        self.saturate(block.numbers);
+        let drawn = &block.numbers[self.definition.parameters.len()..];
+        self.limits.apply(&self.actions, drawn, &mut self.commands);
         self.other.copy_from_slice(block.states);
         if self.history.delays_actions() {
             self.history.act(block.past, now, &self.commands);
@@ -201,6 +204,9 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
             if !self.definition.is_even() {
                 self.draw_lengths([now, substeps, substep], block.episodes, words);
             }
+            if substep % u64::from(self.definition.inner_steps) == 0 {
+                self.control(block.states, block.numbers);
+            }
             self.integrate(block.states, block.numbers);
         }
         self.judge(now, block);
@@ -209,32 +215,6 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
             *paid = *paid + reward;
         }
         self.overs[..count].iter().fold(0, |all, over| all | over) != 0
-    }
-
-    /// The commands of the actions after saturation, on their levels. NaN of an action [loses](BlockStep::settle) the environment.
-    fn saturate(&mut self, numbers: &[Row<T>]) {
-        let drawn = &numbers[self.definition.parameters.len()..];
-        for (i, (to, from)) in self.commands.iter_mut().zip(&self.actions).enumerate() {
-            let within = |x: T, most: T| {
-                let low = if x < -most { -most } else { x };
-                if low > most { most } else { low }
-            };
-            match &self.saturation {
-                Some(all) => to.iter_mut().zip(from).for_each(|(to, &x)| *to = within(x, all[i])),
-                None => {
-                    let pairs = from.iter().zip(&drawn[i]);
-                    to.iter_mut().zip(pairs).for_each(|(to, (&x, &most))| *to = within(x, most));
-                }
-            }
-            if let Some((&least, others)) = self.levels.split_first() {
-                for x in to.iter_mut() {
-                    let nearest = |best: T, &level: &T| {
-                        if level - *x <= *x - best { level } else { best }
-                    };
-                    *x = others.iter().fold(least, nearest);
-                }
-            }
-        }
     }
 
     /// Draws the lengths of a step of the integrator.
@@ -258,9 +238,25 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
         }
     }
 
+    /// Computes the commands of the inner controller, if there is one.
+    fn control(&mut self, states: &[Row<T>], numbers: &[Row<T>]) {
+        let Some(inner) = &mut self.inner else { return };
+        let held = if self.history.delays_actions() { &self.held } else { &self.commands };
+        let parameters = &numbers[..self.definition.parameters.len()];
+        let input = |i: usize| {
+            row_of([states, parameters], i)
+                .unwrap_or_else(|| &held[i - states.len() - parameters.len()])
+        };
+        inner.run(input, &mut self.inner_commands, self.instructions);
+    }
+
     /// A step of the integrator, and its projection.
     fn integrate(&mut self, states: &mut [Row<T>], numbers: &[Row<T>]) {
-        let held = if self.history.delays_actions() { &self.held } else { &self.commands };
+        let held = match (&self.inner, self.history.delays_actions()) {
+            (Some(_), _) => &self.inner_commands,
+            (None, true) => &self.held,
+            (None, false) => &self.commands,
+        };
         let parameters = &numbers[..self.definition.parameters.len()];
         let lengths = &self.lengths;
         let inputs = [&held[..], parameters];

@@ -68,6 +68,9 @@ pub struct ProgramEnvironment {
     pub delays: Delays,
     /// The largest command of each input, of either sign; the reward uses the saturated command. Infinite for no limit.
     pub saturation: Vec<EpisodeNumber>,
+    /// Steps of the integrator for which a command of the inner controller of the task is held; at least 1, and without effect where there
+    /// is none. Each action begins with a new command.
+    pub inner_steps: u32,
     /// The values that a command can have, in ascending order: each becomes the nearest one, of two as near the larger. Empty for
     /// commands of any value.
     pub levels: Vec<f64>,
@@ -81,6 +84,11 @@ pub struct ProgramEnvironment {
     pub noise: Vec<Jitter>,
     /// The error scales of the clock and of the sensor, drawn for every episode.
     pub error_scale: ErrorScale,
+}
+
+/// The number of actions of a task on a system without parameters that vary.
+fn actions(dynamics: &Dynamics, task: &TaskPrograms) -> usize {
+    task.inner.as_ref().map_or(dynamics.inputs(), |_| task.targets)
 }
 
 /// The clock of the environments.
@@ -98,7 +106,8 @@ impl ProgramEnvironment {
         let none = Jitter::Gaussian(0.0);
         ProgramEnvironment {
             start: vec![[0.0; 2]; 2 * dynamics.degrees()],
-            saturation: vec![f64::INFINITY.into(); dynamics.inputs()],
+            saturation: vec![f64::INFINITY.into(); actions(&dynamics, &task)],
+            inner_steps: 1,
             levels: Vec::new(),
             parameters: Vec::new(),
             dynamics,
@@ -126,9 +135,12 @@ impl ProgramEnvironment {
         2 * self.dynamics.degrees()
     }
 
-    /// The number of actions: inputs that are not parameters.
+    /// The number of actions: inputs that are not parameters, or targets of the inner controller.
     pub fn actions(&self) -> usize {
-        self.dynamics.inputs().saturating_sub(self.parameters.len())
+        actions(&self.dynamics, &self.task).saturating_sub(match self.task.inner {
+            Some(_) => 0,
+            None => self.parameters.len(),
+        })
     }
 
     /// What each episode has numbers for: parameters, then the largest commands unless all of them are constants.
@@ -166,7 +178,7 @@ impl ProgramEnvironment {
         let allowed = degrees.min(Self::MAX_DEGREES);
         EnvironmentError::shape("degrees of freedom of an environment", degrees, allowed)?;
         EnvironmentError::shape("inputs of the system", inputs, inputs.max(parameters + 1))?;
-        let actions = inputs - parameters;
+        let actions = self.actions();
         EnvironmentError::shape("ranges of the start", self.start.len(), 2 * degrees)?;
         EnvironmentError::shape("largest commands", self.saturation.len(), actions)?;
         if !self.noise.is_empty() {
@@ -181,7 +193,16 @@ impl ProgramEnvironment {
                 most(&self.task.observation),
                 2 * degrees + parameters + 1,
             ),
-            ("inputs of the verdict", most(&self.task.verdict), 4 * degrees + inputs + 1),
+            (
+                "inputs of the verdict",
+                most(&self.task.verdict),
+                4 * degrees + actions + parameters + 1,
+            ),
+            (
+                "inputs of the inner controller",
+                self.task.inner.as_ref().map_or(0, most),
+                2 * degrees + parameters + actions,
+            ),
             (
                 "inputs of the projection",
                 self.task.projection.as_ref().map_or(0, most),
@@ -191,6 +212,16 @@ impl ProgramEnvironment {
             EnvironmentError::shape(name, found, found.min(wanted))?;
         }
         EnvironmentError::shape("outputs of the verdict", self.task.verdict.outputs().len(), 2)?;
+        if let Some(inner) = &self.task.inner {
+            let outputs = inner.outputs().len();
+            EnvironmentError::shape(
+                "outputs of the inner controller",
+                outputs,
+                inputs - parameters,
+            )?;
+            let (steps, allowed) = (f64::from(self.inner_steps), "at least 1");
+            ensure("steps of the inner controller", steps, allowed, |steps| steps >= 1.0)?;
+        }
         if let Some(projection) = &self.task.projection {
             let outputs = projection.outputs().len();
             EnvironmentError::shape("outputs of the projection", outputs, 2 * degrees)?;

@@ -5,8 +5,10 @@
 //! an environment has the bits of a compiled one with the same operations.
 
 mod batch;
+mod batch_episodes;
 mod block_step;
 mod checkpoint;
+mod command_limits;
 mod environment;
 mod episodes;
 mod horizon;

@@ -16,6 +16,7 @@ use crate::rl::{Delays, Episode, block};
 pub(super) struct Programs {
     pub(super) step: RowProgram,
     pub(super) projection: Option<RowProgram>,
+    pub(super) inner: Option<RowProgram>,
     pub(super) observation: RowProgram,
     pub(super) verdict: RowProgram,
 }
@@ -28,12 +29,15 @@ impl Programs {
         let dt = coordinates + inputs;
         let uniform = definition.is_even().then_some(dt);
         let observed = coordinates + definition.parameters.len() + 1;
-        let projection = task.projection.as_ref();
+        let (projection, actions) = (task.projection.as_ref(), definition.actions());
+        let controlled = coordinates + definition.parameters.len() + actions;
+        let judged = 2 * coordinates + actions + definition.parameters.len() + 1;
         Programs {
             step: RowProgram::new(step.program(), dt + 1, uniform),
             projection: projection.map(|all| RowProgram::new(all, dt + 1 + coordinates, uniform)),
+            inner: task.inner.as_ref().map(|all| RowProgram::new(all, controlled, None)),
             observation: RowProgram::new(&task.observation, observed, None),
-            verdict: RowProgram::new(&task.verdict, 2 * coordinates + inputs + 1, None),
+            verdict: RowProgram::new(&task.verdict, judged, None),
         }
     }
 
@@ -44,8 +48,9 @@ impl Programs {
 
     /// The length of an action in shortest steps of an ensemble.
     pub(super) fn shortest_steps(&self, substeps: u32) -> u64 {
-        let projection = self.projection.as_ref().map_or(0, RowProgram::shortest_steps);
-        let steps = (self.step.shortest_steps() + projection).saturating_mul(substeps.into());
+        let others = [&self.projection, &self.inner].into_iter().flatten();
+        let others: u64 = others.map(RowProgram::shortest_steps).sum();
+        let steps = (self.step.shortest_steps() + others).saturating_mul(substeps.into());
         steps + self.observation.shortest_steps() + self.verdict.shortest_steps()
     }
 }

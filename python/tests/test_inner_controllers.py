@@ -1,0 +1,108 @@
+"""Environments of several rates: a policy gives targets to an inner controller that samples more often."""
+
+import numpy as np
+import pytest
+import scipy.linalg
+
+from libration import PD, Environments, System
+from libration.policies import Linear
+
+ARM = System(
+    acceleration={"q": "u/m - 3*q"},
+    parameters={"m": 0.5},
+    inputs=["u"],
+    task={"reward": "-q^2", "start": {"q": (-1, 1)}},
+)
+
+
+def arm(num_envs=3, **given):
+    return Environments(ARM, num_envs, **{"dtype": "float64", "integrator": "rk4", **given})
+
+
+def test_a_held_target_moves_alike_whatever_the_rate_of_the_policy():
+    """0.02 s × 1 is 0.01 s × 2: the inner controller and the integrator have 1 ms in both."""
+    slow, fast = (arm(dt=dt, inner=PD(40.0, 6.0), inner_period=0.001) for dt in (0.02, 0.01))
+    assert (slow.substeps, fast.substeps) == (20, 10)
+    slow.reset(seed=1), fast.reset(seed=1)
+    for k in range(50):
+        targets = np.full((3, 1), np.sin(k))
+        slow.step(targets), fast.step(targets), fast.step(targets)
+        assert np.array_equal(slow.states, fast.states)
+
+
+def test_an_inner_controller_holds_its_command_for_its_period():
+    envs = arm(1, dt=0.02, inner=PD(40.0, 6.0), inner_period=0.01, substeps=4)
+    envs.reset(seed=0)
+    (x, v), target = envs.states[0], 0.7
+    envs.step(np.full((1, 1), target))
+    # The exact motion of q'' = c - 3q under a held acceleration; RK4 in steps of 5 ms errs by (0.005·√3)⁵/120 a step.
+    omega = np.sqrt(3.0)
+    for _ in range(2):
+        c = (40.0 * (target - x) - 6.0 * v) / 0.5
+        rest, cos, sin = c / 3.0, np.cos(omega * 0.01), np.sin(omega * 0.01)
+        x, v = rest + (x - rest) * cos + v / omega * sin, -(x - rest) * omega * sin + v * cos
+    np.testing.assert_allclose(envs.states[0], [x, v], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize(("gain", "grows"), [(3.0, False), (9.0, True)])
+def test_a_loop_of_two_rates_grows_as_the_product_over_the_common_period(gain, grows):
+    """A policy at 20 Hz around a PD controller at 100 Hz: the spectral radius is that of the product of the five inner periods."""
+    dt, period = 0.05, 0.01
+    a, b = np.array([[0.0, 1.0], [-3.0, 0.0]]), np.array([[0.0], [2.0]])
+    held = scipy.linalg.expm(np.block([[a, b], [np.zeros((1, 3))]]) * period)
+    ad, bd = held[:2, :2], held[:2, 2:]
+    inner = np.block([[ad - bd @ np.array([[40.0, 6.0]]), bd * 40.0], [np.zeros((1, 2)), np.eye(1)]])
+    policy = np.array([[-gain, -0.2]])
+    product = np.linalg.matrix_power(inner, 5)
+    radius = max(abs(np.linalg.eigvals(product[:2, :2] + product[:2, 2:] @ policy)))
+    envs = arm(200, dt=dt, inner=PD(40.0, 6.0), inner_period=period, substeps=5)
+    envs.reset(seed=2)
+    envs.rollout(Linear([-gain, -0.2]), 40)
+    early = np.linalg.norm(envs.states)
+    envs.rollout(Linear([-gain, -0.2]), 40)
+    growth = (np.linalg.norm(envs.states) / early) ** (1 / 40)
+    assert (radius > 1) == grows
+    # The phase of a complex pair changes the norm by at most the condition of its vectors, 40 periods apart: 5 %.
+    assert abs(growth / radius - 1) < 0.05, (growth, radius)
+
+
+def test_targets_arrive_late_but_the_inner_controller_does_not():
+    late, timely = arm(2, dt=0.02, inner=PD(40.0, 6.0), action_delay=0.02), arm(2, dt=0.02, inner=PD(40.0, 6.0))
+    late.reset(seed=3), timely.reset(seed=3)
+    late.step(np.ones((2, 1))), timely.step(np.zeros((2, 1)))
+    assert np.array_equal(late.states, timely.states)
+    late.step(np.zeros((2, 1))), timely.step(np.ones((2, 1)))
+    assert np.array_equal(late.states, timely.states)
+
+
+def test_an_inner_controller_by_expressions_has_targets_of_its_own():
+    two = System(acceleration={"x": "a", "y": "b"}, inputs=["a", "b"])
+    envs = Environments(
+        two, 4, dt=0.02, reward="-(x - radius*cos(phase))^2", targets=["radius", "phase"],
+        inner={"a": "9*(radius*cos(phase) - x) - 3*x'", "b": "9*(radius*sin(phase) - y) - 3*y'"}, dtype="float64",
+    )
+    envs.reset(seed=0)
+    for _ in range(600):
+        rewards = envs.step(np.tile([0.5, 2.0], (4, 1)))[1]
+    np.testing.assert_allclose(envs.states[:, :2], np.tile([0.5 * np.cos(2), 0.5 * np.sin(2)], (4, 1)), atol=1e-6)
+    assert np.abs(rewards).max() < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "text"),
+    [
+        ({"inner": PD(1, 1), "inner_period": 0.003}, ValueError, "inner_period is 0.003 s, but dt = 0.02 s"),
+        ({"inner": PD(1, 1), "inner_period": 0.01, "substeps": 3}, ValueError, "multiple of the 2 periods"),
+        ({"inner_period": 0.01}, ValueError, "belongs to an inner controller"),
+        ({"inner": {"u": "target"}}, ValueError, "without targets"),
+        ({"inner": {"u": "q"}, "targets": ["q"]}, ValueError, "`q` is given twice"),
+        ({"inner": {"w": "target"}, "targets": ["target"]}, ValueError, "unknown name `w`"),
+        ({"inner": {}, "targets": ["target"]}, ValueError, "`u` has no command"),
+        ({"inner": {"u": "target + u"}, "targets": ["target"]}, ValueError, "unknown name `u`"),
+        ({"inner": "target"}, TypeError, "inner must be a dictionary"),
+        ({"inner": PD("stiff", 1)}, TypeError, "position of inner must be a number"),
+    ],
+)
+def test_wrong_inner_controllers_are_refused_by_name(given, error, text):
+    with pytest.raises(error, match=text):
+        arm(dt=0.02, **given)
