@@ -173,6 +173,19 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
         twin._ended, twin._turn = self._ended.copy(), threading.RLock()
         return twin
 
+    def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
+        """As :meth:`libration.VectorEnv.call`."""
+        return self.inner.call(name, *args, **kwargs)
+
+    def get_attr(self, name: str) -> tuple[Any, ...]:
+        """As :meth:`libration.VectorEnv.get_attr`."""
+        return self.inner.get_attr(name)
+
+    def set_attr(self, name: str, values: Any) -> None:
+        """As :meth:`libration.VectorEnv.set_attr`."""
+        self.inner.set_attr(name, values)
+        self.render_mode = self.inner.render_mode
+
     def render(self) -> Any:
         return self.inner.render()
 

@@ -11,6 +11,7 @@ from gymnasium.spaces import Box, Discrete
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
+from ._attributes import SETTABLE, keywords_of, refused, unknown
 from ._episode_numbers import largest
 from ._presets import PRESETS, Preset
 from ._tasks import EquationPreset
@@ -31,6 +32,8 @@ __all__ = [
 ]
 
 NAMESPACE = "libration"
+_ATTRIBUTES = ("action_space", "metadata", "observation_space", "render_mode", "spec", "state")
+"""Attributes of each environment besides its keywords."""
 METADATA: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 30}
 
 
@@ -67,6 +70,10 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
     """Gymnasium vector environment of the engine.
 
     See :class:`libration.Environments` for all keywords; ``render_mode`` may be ``"rgb_array"``.
+
+    ``step`` returns rewards of the ``dtype`` of the environments, ``(num_envs,)``: the numbers of the engine without a conversion or a
+    copy. Gymnasium's ``SyncVectorEnv`` returns the same numbers as ``float64``. ``terminated`` and ``truncated`` are ``bool``,
+    ``(num_envs,)``, as there.
     """
 
     metadata = METADATA
@@ -115,6 +122,72 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
         preset = self.preset
         assert isinstance(preset, Preset), "a system by equations has no render mode"
         return tuple(picture(preset, *state) for state in self.states.astype(float))
+
+    def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
+        """Return the result of ``render``, or the value of an attribute, of each environment, as ``SyncVectorEnv`` does.
+
+        Raises
+        ------
+        AttributeError
+            For a name that single environments do not have.
+        """
+        if name == "render":
+            pictures = self.render(*args, **kwargs)
+            return (None,) * self.num_envs if pictures is None else pictures
+        return self.get_attr(name)
+
+    def get_attr(self, name: str) -> tuple[Any, ...]:
+        """Return the value of an attribute of each environment, as ``SyncVectorEnv`` does.
+
+        Attributes are the keywords of single environments, such as ``dt`` or ``omega2``; ``state``, a row of ``states``; and
+        ``observation_space``, ``action_space``, ``metadata``, ``render_mode`` and ``spec``. An attribute that was assigned to the vector
+        environment has its value for each environment.
+
+        Raises
+        ------
+        AttributeError
+            For an unknown attribute; the message has the nearest name.
+        """
+        if name == "render":
+            return self.call(name)
+        if name == "state":
+            return tuple(self.states)
+        keywords = keywords_of(self)
+        if name == "metadata":
+            value = {key: one for key, one in self.metadata.items() if key != "autoreset_mode"}
+        elif name in ("observation_space", "action_space"):
+            value = getattr(self, f"single_{name}")
+        elif name in keywords:
+            value = keywords[name]
+        elif name == "spec" or (name in vars(self) and not name.startswith("_")):
+            value = getattr(self, name)
+        elif callable(getattr(type(self), name, None)):
+            raise AttributeError(f"{name} is a method of all environments; expected render or an attribute; help: envs.{name}(…)")
+        else:
+            raise unknown(name, [*keywords, *_ATTRIBUTES])
+        return (value,) * self.num_envs
+
+    def set_attr(self, name: str, values: Any) -> None:
+        """Set an attribute of each environment: a list or tuple has a value for each, another value is that of all.
+
+        Only ``render_mode`` can be set, with one value for all environments. The engine has the keywords since construction.
+
+        Raises
+        ------
+        ValueError
+            If there is not one value for each environment, or for a ``render_mode`` that is not allowed.
+        AttributeError
+            For another attribute.
+        """
+        each = list(values) if isinstance(values, (list, tuple)) else [values] * self.num_envs
+        if len(each) != self.num_envs:
+            raise ValueError(f"{name} has {len(each)} values, but there must be one for each of {self.num_envs} environments")
+        if name != SETTABLE:
+            self.get_attr(name)
+            raise refused(name, values, keywords_of(self))
+        if any(value != each[0] for value in each):
+            raise ValueError(f"{name} is {values!r}, but it must be the same for all environments")
+        self.render_mode = _render_mode(self._arguments[0], each[0])
 
     def close_extras(self, **kwargs: Any) -> None:
         self._close()
@@ -194,8 +267,33 @@ class Env(gymnasium.Env):
 
     @property
     def state(self) -> np.ndarray:
-        """True state, ``(n,)``, without noise and latency."""
+        """True position and velocity, without noise and latency; of a system by equations its states."""
         return self._all.states[0]
+
+    # With these three a vector environment of Gymnasium tells the same attributes as one of the engine.
+
+    def has_wrapper_attr(self, name: str) -> bool:
+        return super().has_wrapper_attr(name) or name in self._keywords()
+
+    def get_wrapper_attr(self, name: str) -> Any:
+        keywords = self._keywords()
+        if name in keywords:
+            return keywords[name]
+        if not hasattr(self, name):
+            raise unknown(name, [*keywords, *_ATTRIBUTES])
+        return super().get_wrapper_attr(name)
+
+    def set_wrapper_attr(self, name: str, value: Any, *, force: bool = True) -> bool:
+        keywords = self._keywords()
+        if name in keywords or name == "state":
+            raise refused(name, value, keywords)
+        if name == SETTABLE:
+            value = _render_mode(self._all._arguments[0], value)
+        return super().set_wrapper_attr(name, value, force=force)
+
+    def _keywords(self) -> dict[str, Any]:
+        # ``gymnasium.make`` adds the time limit.
+        return {name: value for name, value in keywords_of(self._all).items() if name != "max_episode_steps"}
 
     def close(self) -> None:
         self._all._close()

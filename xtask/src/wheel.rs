@@ -159,6 +159,7 @@ mod tests {
         assert_eq!(
             names,
             [
+                "test_attributes.py",
                 "test_check_vector_env.py",
                 "test_custom.py",
                 "test_first_hour.py",
