@@ -164,6 +164,7 @@ mod tests {
                 "test_custom.py",
                 "test_first_hour.py",
                 "test_probe_gymnasium.py",
+                "test_sb3.py",
                 "test_system_environments.py",
                 "test_vector.py"
             ]
