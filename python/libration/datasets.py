@@ -8,13 +8,14 @@ from pathlib import Path
 from typing import Any, Mapping
 
 from . import _native
+from ._dataset_environments import keywords_of_settings, read_settings
 from ._keywords import check_keywords
 from ._progress import Progress, ProgressDisplay
 from ._settings import count
 from ._toml import text_of
 from .equations import EquationSystem, check_system
 
-__all__ = ["Flaw", "SETTINGS", "Written", "verify", "write"]
+__all__ = ["Flaw", "SETTINGS", "Written", "environment_spec", "recover_environment", "verify", "write"]
 
 SETTINGS: str = _native._dataset_settings()
 """Default settings file, with comments."""
@@ -171,3 +172,46 @@ def verify(
         callback = report if display.enabled else None
         flaws = _native._verify_dataset(Path(folder), bool(replay), bool(repair), threads, callback)
     return [Flaw(chunk, Path(path), what, repaired) for chunk, path, what, repaired in flaws]
+
+
+def environment_spec(folder: str | os.PathLike[str]) -> Any:
+    """Return the specification of the environment with which a data set was written, a ``gymnasium.envs.registration.EnvSpec``.
+
+    It becomes JSON and back without loss (``to_json``). ``gymnasium.make`` makes the environment from it.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        Without Gymnasium.
+    ValueError
+        If the folder has no data set, or its system and task are those of no environment of the package.
+    """
+    from gymnasium.envs.registration import EnvSpec
+
+    from .envs import DATASET_ID
+
+    settings = read_settings(folder)
+    keywords_of_settings(settings)
+    limit = settings["limit"] or None
+    return EnvSpec(DATASET_ID, "libration.envs:DatasetEnv", max_episode_steps=limit, kwargs={"settings": settings})
+
+
+def recover_environment(folder: str | os.PathLike[str], **changed: Any) -> Any:
+    """Return the single Gymnasium environment with which a data set was written, in any format.
+
+    System, integrator, task, latencies, noise, start and time limit are those of the data set; the policy and the seed are not part of an
+    environment.
+
+    Parameters
+    ----------
+    **changed:
+        Keywords of :class:`libration.Environments` in place of those of the data set, and those of ``gymnasium.make``.
+
+    Raises
+    ------
+    ModuleNotFoundError, ValueError
+        As for :func:`environment_spec`.
+    """
+    import gymnasium
+
+    return gymnasium.make(environment_spec(folder), **changed)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Mapping
 
 import gymnasium
 import numpy as np
@@ -12,6 +12,7 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
 from ._attributes import SETTABLE, keywords_of, refused, unknown
+from ._dataset_environments import keywords_of_settings
 from ._episode_numbers import largest
 from ._presets import PRESETS, Preset
 from ._tasks import EquationPreset
@@ -19,6 +20,7 @@ from .environments import Environments
 from .equations import EquationSystem
 
 __all__ = [
+    "DatasetEnv",
     "DuffingEnv",
     "DuffingVectorEnv",
     "OscillatorEnv",
@@ -32,6 +34,7 @@ __all__ = [
 ]
 
 NAMESPACE = "libration"
+DATASET_ID = f"{NAMESPACE}/Dataset-v0"
 _ATTRIBUTES = ("action_space", "metadata", "observation_space", "render_mode", "spec", "state")
 """Attributes of each environment besides its keywords."""
 METADATA: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 30}
@@ -325,6 +328,24 @@ class SystemVectorEnv(VectorEnv):
         super().__init__(_system(system), num_envs, **given)
 
 
+class DatasetEnv(Env):
+    """Single environment ``libration/Dataset-v0``, with which a data set was written.
+
+    Parameters
+    ----------
+    settings:
+        The settings in the manifest of the data set (``data``).
+    **given:
+        Keywords of :class:`libration.Environments` in place of those of the data set, and ``render_mode``.
+    """
+
+    metadata = METADATA
+
+    def __init__(self, settings: Mapping[str, Any], **given: Any) -> None:
+        name, keywords = keywords_of_settings(settings)
+        super().__init__(name, **{**keywords, **given})
+
+
 def _system(system: Any) -> EquationSystem:
     if not isinstance(system, EquationSystem):
         raise TypeError(f"system must be a libration.EquationSystem, not {type(system).__name__}")
@@ -370,3 +391,5 @@ def register() -> None:
                 vector_entry_point=f"libration.envs:{name}VectorEnv",
                 max_episode_steps=limit,
             )
+    if DATASET_ID not in gymnasium.registry:
+        gymnasium.register(id=DATASET_ID, entry_point="libration.envs:DatasetEnv")
