@@ -57,7 +57,7 @@ class VecEnv(_BaseVecEnv):
     Parameters
     ----------
     env:
-        An id (``"libration/Pendulum-v0"``, or ``"Pendulum"``), a class such as :class:`libration.envs.PendulumVectorEnv`, a system by
+        An id (``"libration/PendulumSwingUp-v0"``, or ``"Pendulum"``), a class such as :class:`libration.envs.PendulumVectorEnv`, a system by
         equations (:class:`libration.EquationSystem`), or a vector environment of the package with ``autoreset_mode="SameStep"``.
     num_envs:
         Number of environments (default: 1); of a vector environment its own.
@@ -76,7 +76,7 @@ class VecEnv(_BaseVecEnv):
 
     Examples
     --------
-    >>> PPO("MlpPolicy", VecEnv("libration/Pendulum-v0", 64, action_delay=0.05)).learn(300_000)
+    >>> PPO("MlpPolicy", VecEnv("libration/PendulumSwingUp-v0", 64, action_delay=0.05)).learn(300_000)
     """
 
     def __init__(self, env: Any, num_envs: int | None = None, *, monitor: bool = True, **given: Any) -> None:
@@ -198,7 +198,7 @@ def _made(env: Any, num_envs: int | None, given: dict[str, Any]) -> Any:
     if not isinstance(made, (VectorEnv, CustomTaskVectorEnv)):
         raise TypeError(
             f"env is of type {type(made).__name__}; expected a vector environment of libration, its class, a System, or an id such as "
-            "'libration/Pendulum-v0'"
+            "'libration/PendulumSwingUp-v0'"
         )
     mode = made.metadata["autoreset_mode"]
     if mode is not AutoresetMode.SAME_STEP:

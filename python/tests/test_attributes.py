@@ -65,7 +65,7 @@ def test_an_attribute_that_no_environment_has_is_an_error_with_the_known_names(a
     with pytest.raises(AttributeError, match=f"no attribute '{attribute}': .*known are .*omega2"):
         made().get_attr(attribute)
     with pytest.raises(AttributeError, match="did you mean 'omega2'"):
-        gymnasium.make("libration/Pendulum-v0").unwrapped.get_wrapper_attr("omega")
+        gymnasium.make("libration/PendulumSwingUp-v0").unwrapped.get_wrapper_attr("omega")
 
 
 @pytest.mark.parametrize("method", ["reset", "step", "close", "rollout"])
@@ -107,7 +107,7 @@ def test_an_attribute_that_cannot_be_set_is_an_error_with_its_value_and_what_is_
 
 @pytest.mark.parametrize("attribute", ["dt", "omega2", "state"])
 def test_single_environments_refuse_what_vector_environments_refuse(attribute):
-    theirs = SyncVectorEnv([lambda: gymnasium.make("libration/Pendulum-v0")] * 2)
+    theirs = SyncVectorEnv([lambda: gymnasium.make("libration/PendulumSwingUp-v0")] * 2)
     theirs.reset(seed=0)
     with pytest.raises(AttributeError, match=f"{attribute} of single environments cannot be set to 0.1; expected render_mode"):
         theirs.set_attr(attribute, 0.1)
@@ -137,7 +137,7 @@ def test_rewards_have_the_dtype_of_the_environments_and_the_numbers_of_gymnasium
     settings = dict(dtype=dtype, max_episode_steps=7)
     ours = made(autoreset_mode=mode, **settings)
     theirs = SyncVectorEnv(
-        [lambda: gymnasium.make("libration/Pendulum-v0", **settings)] * 3, autoreset_mode=AutoresetMode(mode)
+        [lambda: gymnasium.make("libration/PendulumSwingUp-v0", **settings)] * 3, autoreset_mode=AutoresetMode(mode)
     )
     assert np.array_equal(ours.reset(seed=1)[0], theirs.reset(seed=1)[0])
     for _ in range(7):
@@ -147,7 +147,7 @@ def test_rewards_have_the_dtype_of_the_environments_and_the_numbers_of_gymnasium
         assert [array.dtype for array in wanted] == [dtype, np.float64, bool, bool]
         assert all(np.array_equal(mine, other) for mine, other in zip(found, wanted))
     assert found[3].all()
-    single = gymnasium.make("libration/Pendulum-v0", dtype=dtype)
+    single = gymnasium.make("libration/PendulumSwingUp-v0", dtype=dtype)
     single.reset(seed=1)
     assert [type(value) for value in single.step(np.ones(1, dtype))[1:4]] == [float, bool, bool]
 
@@ -155,7 +155,7 @@ def test_rewards_have_the_dtype_of_the_environments_and_the_numbers_of_gymnasium
 @pytest.mark.parametrize("mode", AUTORESETS[:2])
 def test_wrappers_of_gymnasium_wrap_it_as_they_wrap_single_environments_side_by_side(mode):
     settings = dict(max_episode_steps=9, render_mode="rgb_array")
-    theirs = SyncVectorEnv([lambda: gymnasium.make("libration/Pendulum-v0", **settings)] * 3, autoreset_mode=AutoresetMode(mode))
+    theirs = SyncVectorEnv([lambda: gymnasium.make("libration/PendulumSwingUp-v0", **settings)] * 3, autoreset_mode=AutoresetMode(mode))
 
     def wrapped(envs):
         envs = wrappers.RecordEpisodeStatistics(envs)
@@ -209,4 +209,4 @@ def test_the_recorder_of_videos_of_gymnasium_gets_a_picture_of_each_step(monkeyp
 @pytest.mark.filterwarnings("ignore:.*Box observation space.*:UserWarning")
 @pytest.mark.filterwarnings("ignore:.*For Box action spaces.*:UserWarning")
 def test_the_checker_of_gymnasium_accepts_single_environments_with_attributes():
-    check_env(gymnasium.make("libration/Pendulum-v0", render_mode="rgb_array", **GIVEN).unwrapped)
+    check_env(gymnasium.make("libration/PendulumSwingUp-v0", render_mode="rgb_array", **GIVEN).unwrapped)

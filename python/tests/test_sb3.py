@@ -133,7 +133,7 @@ def test_steps_are_those_of_single_environments_side_by_side(sb3, name, settings
 
 def test_an_id_a_class_and_an_environment_make_equal_environments(sb3):
     vector = libration.VectorEnv("Pendulum", 3, autoreset_mode="SameStep", action_delay=0.05)
-    made = [sb3.VecEnv(name, 3, action_delay=0.05) for name in ("libration/Pendulum-v0", "Pendulum", libration.envs.PendulumVectorEnv)]
+    made = [sb3.VecEnv(name, 3, action_delay=0.05) for name in ("libration/PendulumSwingUp-v0", "Pendulum", libration.envs.PendulumVectorEnv)]
     made.append(sb3.VecEnv(vector))
     steps = []
     for envs in made:
@@ -142,7 +142,7 @@ def test_an_id_a_class_and_an_environment_make_equal_environments(sb3):
         envs.reset()
         steps.append(np.array([envs.step(np.ones((3, 1), np.float32))[0] for _ in range(5)]))
     assert all(np.array_equal(steps[0], other) for other in steps[1:])
-    assert made[0].spec.id == "libration/Pendulum-v0" and sb3.VecEnv("Pendulum").num_envs == 1
+    assert made[0].spec.id == "libration/PendulumSwingUp-v0" and sb3.VecEnv("Pendulum").num_envs == 1
 
 
 def test_systems_by_equations_and_tasks_by_functions_are_environments_too(sb3):
@@ -163,7 +163,7 @@ def test_seeds_belong_to_one_reset_and_episodes_then_differ(sb3):
     envs = sb3.VecEnv("Pendulum", 3)
     assert list(envs.seed(5)) == [5, 6, 7]
     first, second = envs.reset(), envs.reset()
-    np.testing.assert_array_equal(first, gymnasium.make_vec("libration/Pendulum-v0", 3).reset(seed=5)[0])
+    np.testing.assert_array_equal(first, gymnasium.make_vec("libration/PendulumSwingUp-v0", 3).reset(seed=5)[0])
     assert not np.isin(first, second).any() and envs.reset_infos == [{}] * 3
     envs.seed(5)
     np.testing.assert_array_equal(envs.reset(), first)
@@ -289,7 +289,7 @@ def test_environments_that_stable_baselines3_would_misunderstand_are_refused(sb3
         ("Pendulum", dict(copy=False), ValueError, "copy is False; expected True"),
         (libration.VectorEnv("Pendulum", 2, **same), dict(dt=0.1), TypeError, "dt is given, but the environments exist already"),
         (libration.VectorEnv("Pendulum", 2, **same), dict(num_envs=2), TypeError, "num_envs is given, but"),
-        (gymnasium.make("libration/Pendulum-v0"), {}, TypeError, "env is of type .*; expected a vector environment of libration"),
+        (gymnasium.make("libration/PendulumSwingUp-v0"), {}, TypeError, "env is of type .*; expected a vector environment of libration"),
         (7, {}, TypeError, "env is of type int"),
         ("Pendulum", dict(intergrator="rk4"), TypeError, "did you mean 'integrator'"),
     ]:

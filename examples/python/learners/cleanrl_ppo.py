@@ -25,7 +25,7 @@ from torch.distributions import Normal
 
 import libration  # noqa: F401, registers the environments
 
-NAME = "libration/Pendulum-v0"
+NAME = "libration/PendulumSwingUp-v0"
 
 
 def parse() -> argparse.Namespace:

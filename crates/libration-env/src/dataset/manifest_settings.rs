@@ -47,7 +47,7 @@ impl Dataset {
     }
 
     /// The keys of the settings file.
-    fn data(&self) -> Value {
+    pub(super) fn data(&self) -> Value {
         let policy = match &self.policy {
             PolicySettings::Linear { weights, bias } => {
                 json!({ "weights": weights, "bias": one_or_each(bias) })

@@ -138,9 +138,24 @@ pub(super) fn metadata(dataset: &Dataset, all: Totals) -> String {
         "observation_space": space(dataset, &bounds(dataset)),
         "action_space": space(dataset, &actions(dataset)),
         "algorithm_name": dataset.policy.name(),
+        "env_spec": environment_spec(dataset),
         "libration": dataset.settings(DataFormat::Minari),
     });
     about.to_string()
+}
+
+/// The environment in the JSON of Gymnasium's `EnvSpec`, from which Minari recovers it: `libration.datasets.environment_spec` in Python.
+fn environment_spec(dataset: &Dataset) -> String {
+    let settings = dataset.data();
+    let limit = settings["limit"].as_u64().filter(|&limit| limit > 0);
+    let spec = json!({
+        "id": "libration/Dataset-v0",
+        "entry_point": "libration.envs:DatasetEnv",
+        "max_episode_steps": limit,
+        "kwargs": { "settings": settings },
+        "additional_wrappers": [],
+    });
+    spec.to_string()
 }
 
 /// The bounds of the observations.
