@@ -59,7 +59,7 @@ pub use episode_number::EpisodeNumber;
 pub use error::EnvironmentError;
 pub use error_scale::ErrorScale;
 pub use estimates::{Discounts, Estimates};
-pub use plan::{Layout, Plan, Writes};
+pub use plan::{Layout, Plan, TransitionWork, Writes};
 pub use policy::{ActionSample, Policy, StepIndex};
 #[cfg(not(test))]
 pub use program::{

@@ -3,8 +3,38 @@
 use super::block_size::LANES;
 use crate::ensemble::Execution;
 
-/// The shortest steps that take as long as a transition.
-const WRITTEN: u64 = 8;
+/// The shortest steps that take as long as a transition with one force evaluation and a linear policy.
+const TRANSITION: u64 = 8;
+
+/// The shortest steps that take as long as a further force evaluation.
+const EVALUATION: u64 = 4;
+
+/// Work of a transition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TransitionWork {
+    /// Force evaluations.
+    pub evaluations: u64,
+    /// Multiplications and additions of a policy besides those of a linear one.
+    pub policy_operations: u64,
+}
+
+impl TransitionWork {
+    /// One force evaluation and a linear policy.
+    pub const SHORTEST: TransitionWork = TransitionWork { evaluations: 1, policy_operations: 0 };
+
+    /// The number of the shortest steps of an ensemble that take as long.
+    pub(super) fn shortest_steps(self) -> u64 {
+        let evaluations = self.evaluations.saturating_sub(1).saturating_mul(EVALUATION);
+        TRANSITION
+            .saturating_add(evaluations)
+            .saturating_add(shortest_steps(self.policy_operations))
+    }
+}
+
+/// The number of the shortest steps of an ensemble, of three operations, that take as long as these.
+pub(super) fn shortest_steps(operations: u64) -> u64 {
+    operations.div_ceil(3)
+}
 
 /// The order of several numbers of a transition in memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -90,10 +120,11 @@ impl Plan {
         self.horizon as u128 * self.environments as u128
     }
 
-    /// On how many of its threads an execution has such a rollout: on fewer where there is little to do, or where there are few
-    /// environments.
-    pub fn threads(&self, execution: &Execution) -> usize {
-        let steps = u64::try_from(self.transitions()).unwrap_or(u64::MAX).saturating_mul(WRITTEN);
+    /// On how many of its threads an execution has such a rollout, of which each transition is this work: on fewer where there is little
+    /// to do, or where there are few environments.
+    pub fn threads(&self, execution: &Execution, each: TransitionWork) -> usize {
+        let transitions = u64::try_from(self.transitions()).unwrap_or(u64::MAX);
+        let steps = transitions.saturating_mul(each.shortest_steps());
         execution.threads_for(steps).min(self.environments.div_ceil(LANES).max(1))
     }
 

@@ -5,9 +5,9 @@ use core::mem::swap;
 use core::ops::Range;
 
 use bytemuck::Pod;
-use libration_core::Float;
 use libration_core::control::Clock;
 use libration_core::control::error::ensure;
+use libration_core::{Float, Integrator};
 
 use super::block_size::{LANES, TILE};
 use super::error::NOTHING_DRAWN;
@@ -15,7 +15,7 @@ use super::horizon::{Horizon, Share};
 use super::rollout_slice::{RolloutSlice, first_of, rows_of};
 use super::{
     Autoreset, EnvironmentError, Environments, EpisodeEnd, Layout, Plan, Policy, Rollout, Sensor,
-    World, Writes,
+    TransitionWork, World, Writes,
 };
 use crate::ensemble::{EnsembleError, InsufficientMemory};
 
@@ -82,7 +82,9 @@ where
         self.expect_rows(&plan, &rows, [O, D])?;
         self.ready(policy, plan.horizon, rows.len())?;
         self.begin_rows(rollout, rows.start);
-        let how = (plan.threads(&self.execution), plan.writes, rows.start);
+        let work = self.work(policy);
+        let filled = Plan { horizon: rows.len(), ..plan };
+        let how = (filled.threads(&self.execution, work), plan.writes, rows.start);
         let mut ends = self.advance(policy, rollout.slice(&rows), how);
         if rollout.finals.is_empty() {
             // Nothing is copied.
@@ -153,8 +155,18 @@ where
             next: rows_of(to.seen, 1),
             layout: Layout::Interleaved,
         };
-        let threads = Plan::new(1, len).threads(&self.execution);
+        let threads = Plan::new(1, len).threads(&self.execution, self.work(policy));
         Ok(self.advance(policy, slice, (threads, Writes::Plain, 0)))
+    }
+
+    /// The work of a transition under `policy`.
+    fn work<P: Policy<T, O, D>>(&self, policy: P) -> TransitionWork {
+        let parts = self.world.parts();
+        let evaluations = parts.method.evaluations() as u64;
+        TransitionWork {
+            evaluations: evaluations.saturating_mul(parts.substeps.into()),
+            policy_operations: policy.operations(self.len),
+        }
     }
 
     /// Checks that `policy` and the clock support `steps` steps.

@@ -70,6 +70,10 @@ impl<I: Integrator, const N: usize> Integrator for Composition<I, N> {
     // The weights.
     const REGISTERS: usize = I::REGISTERS + 6;
 
+    fn evaluations(&self) -> usize {
+        N * self.base.evaluations()
+    }
+
     #[inline(always)]
     fn step<S: Scalar, const D: usize>(
         self,

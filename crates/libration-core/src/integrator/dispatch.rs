@@ -16,6 +16,10 @@ impl Integrator for Method {
     // Of the one that fills the most.
     const REGISTERS: usize = 16;
 
+    fn evaluations(&self) -> usize {
+        with_method!(self, |method| method.evaluations())
+    }
+
     #[inline(always)]
     fn step<S: Scalar, const D: usize>(
         self,

@@ -47,6 +47,11 @@ pub trait Integrator: Copy + Send + Sync {
     /// Whether the integrator dispatches over several methods at run time.
     const DISPATCHES: bool = false;
 
+    /// Force evaluations of a step, of which one that [carries](Integrator::CARRIES) takes the first from the step before.
+    fn evaluations(&self) -> usize {
+        1
+    }
+
     /// Calls `with` with the concrete integrator, so that a loop is compiled for it alone.
     #[inline(always)]
     fn dispatch<W: WithIntegrator>(self, with: W) -> W::Output {

@@ -13,6 +13,10 @@ impl Integrator for Rk4 {
     // The state and what its four rates sum up to live through all stages.
     const REGISTERS: usize = 16;
 
+    fn evaluations(&self) -> usize {
+        4
+    }
+
     #[inline(always)]
     fn step<S: Scalar, const D: usize>(
         self,

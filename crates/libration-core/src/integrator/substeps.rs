@@ -15,6 +15,10 @@ pub struct Substeps<I> {
 impl<I: Integrator> Integrator for Substeps<I> {
     const REGISTERS: usize = I::REGISTERS;
 
+    fn evaluations(&self) -> usize {
+        self.method.evaluations() * usize::try_from(self.count).unwrap_or(0)
+    }
+
     #[inline(always)]
     fn step<S: Scalar, const D: usize>(
         self,

@@ -113,6 +113,10 @@ impl<T: Float + Elementary, const O: usize> Policy<T, O, 1> for SizedPolicy<'_, 
         with!(self, policy => Policy::<T, O, 1>::uses_observations(policy))
     }
 
+    fn operations(&self, environments: usize) -> u64 {
+        with!(self, policy => Policy::<T, O, 1>::operations(policy, environments))
+    }
+
     fn words(&self) -> usize {
         with!(self, policy => Policy::<T, O, 1>::words(policy))
     }

@@ -11,7 +11,8 @@ use libration::rl::policy::{Linear, Random};
 use libration::rl::start::{FixedStart, UniformStart};
 use libration::rl::task::{Regulate, SwingUp};
 use libration::rl::{
-    Environment, EnvironmentError, Environments, Layout, Plan, Policy, Rollout, World, Writes,
+    Environment, EnvironmentError, Environments, Layout, Plan, Policy, Rollout, TransitionWork,
+    World, Writes,
 };
 use libration::system::{Oscillator, Pendulum};
 use libration_study::{Lab, Machine, StudyError};
@@ -180,7 +181,7 @@ fn timed(
             case,
             layout,
             writes,
-            threads: case.plan().threads(execution),
+            threads: case.plan().threads(execution, TransitionWork::SHORTEST),
             median: rate.median(),
             spread: rate.spread(),
             share: share.median(),
@@ -263,7 +264,7 @@ pub(crate) fn fill(
     memory.fill(1);
     let pattern = vec![2_u8; PATTERN];
     let execution = execution.clone();
-    let threads = case.plan().threads(&execution);
+    let threads = case.plan().threads(&execution, TransitionWork::SHORTEST);
     let part = case.bytes().div_ceil(threads).next_multiple_of(PATTERN);
     Ok(Contestant::new(case.transitions() as f64, move |times| {
         for _ in 0..times {

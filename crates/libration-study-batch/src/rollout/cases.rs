@@ -1,7 +1,7 @@
 //! Rollouts relative to fills of the same memory, in both layouts, with stores through and past the caches.
 
 use libration::ensemble::Execution;
-use libration::rl::{Layout, Writes};
+use libration::rl::{Layout, TransitionWork, Writes};
 use libration_report::record::{Cell, Finding, Record, Table};
 use libration_study::{Effort, StudyError};
 
@@ -114,7 +114,7 @@ fn timed(
                 case.task.name().into(),
                 (case.environments as u64).into(),
                 (case.horizon as u64).into(),
-                (case.plan().threads(execution) as u64).into(),
+                (case.plan().threads(execution, TransitionWork::SHORTEST) as u64).into(),
                 layout_name.into(),
             ];
             for pair in rates.chunks_exact(2) {
@@ -145,7 +145,7 @@ fn compare(record: &mut Record, case: RolloutCase, execution: &Execution, rates:
         case.task.name(),
         case.environments,
         case.horizon,
-        on_cores(case.plan().threads(execution)),
+        on_cores(case.plan().threads(execution, TransitionWork::SHORTEST)),
     );
     let reason = "a fill waits for its stores alone, a rollout for its steps as well; the table of layouts has other ways to write";
     aim(record, id, text, bar(case, allowed), &share, reason);
@@ -154,7 +154,7 @@ fn compare(record: &mut Record, case: RolloutCase, execution: &Execution, rates:
 /// The rates of both layouts, in the faster way to write them.
 fn add_row(record: &mut Record, case: RolloutCase, execution: &Execution, [one, planes]: [f64; 2]) {
     let (name, on) = (name(case), on(execution.thread_count()));
-    let threads = on_cores(case.plan().threads(execution));
+    let threads = on_cores(case.plan().threads(execution, TransitionWork::SHORTEST));
     let what = format!("{} × {}, {threads}", case.environments, case.horizon);
     record.find(Finding::measured(
         format!("rollout.rate.{name}{on}"),

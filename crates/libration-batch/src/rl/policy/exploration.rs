@@ -38,6 +38,10 @@ impl<T: Float, P: Policy<T, O, D>, const O: usize, const D: usize> Policy<T, O, 
         Ok(())
     }
 
+    fn operations(&self, environments: usize) -> u64 {
+        self.policy.operations(environments)
+    }
+
     fn words(&self) -> usize {
         2 * D
     }

@@ -43,6 +43,12 @@ pub trait Policy<T: Float, const O: usize, const D: usize>: Copy + Send + Sync {
         true
     }
 
+    /// Multiplications and additions of an action of one of so many environments, besides those of a linear policy.
+    fn operations(&self, environments: usize) -> u64 {
+        let _ = environments;
+        0
+    }
+
     /// The number of random words per action, always the same.
     fn words(&self) -> usize {
         0

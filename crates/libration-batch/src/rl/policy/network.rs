@@ -59,6 +59,12 @@ impl<T: Float + Elementary> Network<'_, T> {
         all_finite::<T>("parameter of the network", parameters)
     }
 
+    /// Multiplications and additions of an action, with those of activations.
+    pub(in crate::rl) fn work(&self) -> u64 {
+        let neurons: usize = self.hidden.iter().sum();
+        perceptron::operations(self.parameters.len(), neurons, self.activation)
+    }
+
     /// The actions of `W` environments.
     pub(in crate::rl) fn forward<const W: usize>(&self, seen: &[[T; W]], actions: &mut [[T; W]]) {
         self.instructions.vectorize(Forward { network: self, seen, actions });
@@ -71,6 +77,10 @@ where
 {
     fn check(&self, _: usize, _: usize) -> Result<(), EnvironmentError> {
         self.check_sizes(O, D)
+    }
+
+    fn operations(&self, _: usize) -> u64 {
+        self.work()
     }
 
     #[inline(always)]

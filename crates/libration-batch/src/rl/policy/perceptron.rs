@@ -39,6 +39,16 @@ const fn parameters(inputs: usize, outputs: usize) -> usize {
     outputs * (inputs + 1)
 }
 
+/// Multiplications and additions of a network with these parameters and hidden neurons.
+pub(super) fn operations(parameters: usize, neurons: usize, activation: Activation) -> u64 {
+    // A hyperbolic tangent is a quotient of polynomials.
+    let each = match activation {
+        Activation::Tanh => 30,
+        Activation::Relu => 1,
+    };
+    2 * parameters as u64 + each * neurons as u64
+}
+
 /// Hidden layers between the first and the last, if there are so many parameters.
 fn between<const O: usize, const H: usize, const D: usize>(count: usize) -> usize {
     let ends = const { parameters(O, H) + parameters(H, D) };
@@ -67,6 +77,11 @@ where
         EnvironmentError::shape("parameters of the network", found, wanted)?;
         let parameters = self.parameters.iter().map(|x| x.to_f64());
         all_finite::<T>("parameter of the network", parameters)
+    }
+
+    fn operations(&self, _: usize) -> u64 {
+        let hidden = 1 + between::<O, H, D>(self.parameters.len());
+        operations(self.parameters.len(), hidden * H, self.activation)
     }
 
     #[inline(always)]
@@ -107,6 +122,11 @@ where
         EnvironmentError::shape("parameters of the networks", found, wanted)?;
         let parameters = self.parameters.iter().map(|x| x.to_f64());
         all_finite::<T>("parameter of the networks", parameters)
+    }
+
+    fn operations(&self, environments: usize) -> u64 {
+        let found = self.parameters.len().checked_div(environments).unwrap_or(0);
+        operations(found, (1 + between::<O, H, D>(found)) * H, self.activation)
     }
 
     #[inline(always)]

@@ -15,6 +15,7 @@ use super::{EpisodeEnds, ProgramEnvironment, ProgramPolicy, ProgramRollout};
 use crate::ensemble::{BatchFloat, Execution, InsufficientMemory};
 use crate::rl::block_size::LANES;
 use crate::rl::history::History;
+use crate::rl::plan::shortest_steps;
 use crate::rl::rollout_slice::{first_of, rows_of};
 use crate::rl::{EnvironmentError, StepBuffers};
 
@@ -199,6 +200,7 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
 
         let work = (len as u64).saturating_mul(steps.max(1));
         let each = programs.shortest_steps(definition.substeps);
+        let each = each.saturating_add(shortest_steps(policy.operations()));
         let threads = episodes.execution.threads_for(work.saturating_mul(each));
         let size = len.div_ceil(threads).next_multiple_of(LANES).max(LANES);
         let mut rest = (&mut blocks[..], &mut states[..], &mut past[..], [times, looks, acts]);

@@ -74,6 +74,17 @@ impl<T: Float + Elementary> ProgramPolicy<'_, T> {
         matches!(self, ProgramPolicy::Linear { .. } | ProgramPolicy::Network(_))
     }
 
+    /// Multiplications and additions of an action.
+    pub(super) fn operations(&self) -> u64 {
+        match self {
+            ProgramPolicy::Linear { weights, .. } => 2 * weights.len() as u64,
+            ProgramPolicy::Network(network) => network.work(),
+            ProgramPolicy::ActionSequence(_)
+            | ProgramPolicy::Constant(_)
+            | ProgramPolicy::Random { .. } => 0,
+        }
+    }
+
     /// The number of random words per step.
     pub(super) fn words(&self) -> usize {
         match self {
