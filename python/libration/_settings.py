@@ -139,6 +139,31 @@ def inner_count(dt: float, inner_period: float | None, substeps: int | None) -> 
     return parts[0]
 
 
+def parts(dt: float, named: dict[str, tuple[float, float]]) -> tuple[list[float], dict[str, list[int]]] | None:
+    """Return the lengths of as few steps as latencies require, and latencies in these steps; None for latencies that are drawn.
+
+    A command arrives at the beginning of a step, and an observation shows the beginning of one.
+    """
+    if dt / MOST_SUBSTEPS == 0 or any(low != high for low, high in named.values()):
+        return None
+    late = {name: divmod(low, dt) for name, (low, _) in named.items()}
+    # The time within a period at which a command arrives, or that an observation shows; 1e-9 of a period is no intended fraction.
+    rest = {name: part if name == "action_delay" else dt - part for name, (_, part) in late.items()}
+    cuts: list[float] = [0.0]
+    for time in sorted(rest.values()):
+        if 1e-9 * dt < time < (1 - 1e-9) * dt and time - cuts[-1] > 1e-9 * dt:
+            cuts.append(time)
+    lengths = [end - begin for begin, end in zip(cuts, [*cuts[1:], dt])]
+    steps = {}
+    for name, (periods, _) in late.items():
+        place = min(range(len(cuts) + 1), key=lambda i: abs([*cuts, dt][i] - rest[name]))
+        whole = int(periods) * len(cuts)
+        steps[name] = [whole + (place if name == "action_delay" else len(cuts) - place)] * 2
+        if steps[name][0] > 4096:
+            return None
+    return lengths, steps
+
+
 def delays(
     dt: float, substeps: int | None, named: dict[str, tuple[float, float]], multiple: int = 1
 ) -> tuple[int, dict[str, list[int]]]:
@@ -290,6 +315,11 @@ def common(given: dict[str, Any], inner_period: float | None = None) -> dict[str
     late = {name: ends(name, value, least=0.0) for name, value in stated.items()}
     asked, periods = substeps, inner_count(dt, inner_period, substeps)
     substeps, late_steps = delays(dt, substeps, late, periods)
+    lengths: list[float] = []
+    if asked is None and substeps > MANY_SUBSTEPS and periods == 1 and (split := parts(dt, late)) is not None:
+        # A few long steps that begin where latencies end take the place of many that are equal.
+        lengths, late_steps = split
+        substeps = len(lengths)
     if asked is None and substeps > max(MANY_SUBSTEPS, periods):
         warn_of(substeps, dt, late)
     limit = given["max_episode_steps"]
@@ -313,6 +343,7 @@ def common(given: dict[str, Any], inner_period: float | None = None) -> dict[str
         "jitter": law("jitter", given["jitter"]),
         "skew": law("skew", given["skew"]),
         "levels": [],
+        "lengths": lengths,
         "parameter_infos": given["parameter_infos"],
         "ranges": {name: ranges for name, ranges in late.items() if ranges[0] != ranges[1]},
     }

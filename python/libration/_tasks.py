@@ -92,6 +92,7 @@ def native_equations(
         "saturation": largest_commands(given["max_action"], len(actions), num_envs),
         "noise": [law("observation_noise", x) for x in _each_law(given["observation_noise"], len(seen))],
         "error_scale": [clock, sensor],
+        "lengths": settings["lengths"],
     }
     return EquationPreset(system.name, tuple(seen), actions, tuple(levels)), settings
 

@@ -46,7 +46,8 @@ class Environments(_native.Batch):
     dt:
         Time between two actions in s.
     substeps:
-        Steps of the integrator between two actions (default: the smallest number for which all latencies are whole steps).
+        Steps of the integrator between two actions, of equal length. Default: the smallest number up to 20 for which all latencies are whole
+        steps; else a step begins where each latency ends, and their lengths differ.
     action_delay, observation_delay:
         Latencies of actions and observations in s: a number, or a pair ``(low, high)``, from which each episode draws one.
     jitter:
@@ -190,6 +191,9 @@ class Environments(_native.Batch):
         else:
             self.preset, stated = PRESETS[name], {**given, "parameters": parameters}
             self._settings = (native_varied if has_varied(stated) else native)(self.preset, stated)
+            if self._settings["lengths"] and "catalogued" in self._settings["subject"]:
+                # Steps of different lengths are those of programs.
+                self._settings = native_varied(self.preset, stated)
         self._seeder: np.random.Generator | None = None
         self.num_envs = self._settings["num_envs"]
         kept = 0 if copy else count("buffers", 2 if buffers is None else buffers, 1, 1_000_000)

@@ -46,14 +46,14 @@ def test_minus_one_is_no_limit_of_an_episode_as_in_gymnasium():
 
 
 def test_many_substeps_are_told_with_latencies_that_need_few():
-    with pytest.warns(UserWarning, match=r"takes 500 substeps.*at most 20: action_delay of 0.0325 s") as told:
-        envs = libration.Environments("Oscillator", 2, dt=0.05, action_delay=0.0333)
+    with pytest.warns(UserWarning, match=r"takes 500 substeps.*at most 20: action_delay of 0 to 0.0325 s") as told:
+        envs = libration.Environments("Oscillator", 2, dt=0.05, action_delay=(0.0, 0.0333))
     assert envs.substeps == 500
-    named = float(str(told[0].message).rsplit("action_delay of ", 1)[1].split(" ")[0])
+    named = float(str(told[0].message).rsplit(" to ", 1)[1].split(" ")[0])
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         # The latency that the warning names needs at most 20 substeps; substeps that are given need no warning.
-        assert libration.Environments("Oscillator", 2, dt=0.05, action_delay=named).substeps <= 20
+        assert libration.Environments("Oscillator", 2, dt=0.05, action_delay=(0.0, named)).substeps <= 20
         assert libration.Environments("Oscillator", 2, dt=0.05, action_delay=0.0333, substeps=500).substeps == 500
         assert libration.Environments("Oscillator", 2, dt=0.05, action_delay=0.1).substeps == 1
 

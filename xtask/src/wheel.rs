@@ -161,6 +161,7 @@ mod tests {
             [
                 "test_attributes.py",
                 "test_check_vector_env.py",
+                "test_classic_control.py",
                 "test_custom.py",
                 "test_first_hour.py",
                 "test_probe_gymnasium.py",

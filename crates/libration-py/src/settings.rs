@@ -66,6 +66,8 @@ struct EquationSubject {
     varied: Vec<(String, NumberRequest)>,
     saturation: Vec<NumberRequest>,
     noise: Vec<(String, f64)>,
+    /// Lengths of the steps of the integrator between two actions in s, where they differ.
+    lengths: Vec<f64>,
     /// Ranges of the factors of errors of the clock and of noise.
     error_scale: [[f64; 2]; 2],
 }
@@ -173,11 +175,10 @@ impl Settings {
         })
     }
     fn by_equations(&self, subject: &EquationSubject) -> PyResult<EquationEnvironment> {
-        let EquationSubject { equations: source, task, varied, saturation, noise, error_scale } =
-            subject;
+        let EquationSubject { equations: source, task, varied, saturation, noise, .. } = subject;
         let names: Vec<String> = varied.iter().map(|(name, _)| name.clone()).collect();
         let system = equations::varied(source, &names)?;
-        let [clock, sensor] = *error_scale;
+        let [clock, sensor] = subject.error_scale;
         let task = match task {
             Some(text) => equations::task(text, &system)?,
             None => system.task.clone().ok_or_else(|| {
@@ -189,6 +190,7 @@ impl Settings {
         let dynamics = system.equations.dynamics().clone();
         let definition = ProgramEnvironment {
             substeps: self.substeps,
+            lengths: subject.lengths.clone(),
             start: task.start.clone(),
             limit: self.limit,
             autoreset: self.autoreset()?,

@@ -191,7 +191,7 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
         let drawn = definition.numbers().count();
         let Episodes { world, blocks, draws: [times, looks, acts], step, .. } = episodes;
         let substeps = u64::from(definition.substeps);
-        let words = if definition.is_even() { 0 } else { Clock::<T>::words(&world.clock) };
+        let words = if definition.is_jittered() { Clock::<T>::words(&world.clock) } else { 0 };
         let times = times.prepare(blocks, [*step, substeps], steps, words);
         let laws = definition.noise.iter().map(libration_core::control::clock::Noise::words);
         let words = if definition.is_noisy() { laws.sum() } else { 0 };

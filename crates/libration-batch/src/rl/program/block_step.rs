@@ -28,6 +28,7 @@ pub(super) struct BlockStep<'s, T> {
     pub(super) history: History,
     world: World,
     instructions: InstructionSet,
+    /// The length of a step of the integrator without jitter.
     dt: T,
     /// The time from action to action, in seconds.
     span: f64,
@@ -87,7 +88,7 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
             world: definition.world(),
             instructions,
             dt,
-            span: definition.dt * f64::from(definition.substeps),
+            span: definition.period(),
             limits: CommandLimits::new(definition),
             is_timed: programs.is_timed(),
             step: programs.step.rows(lanes, dt),
@@ -201,7 +202,11 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
                 let (q, v) = block.states.split_at(block.states.len() / 2);
                 self.history.pass(block.past, now * substeps + substep, q, v);
             }
-            if !self.definition.is_even() {
+            if let Some(&length) = self.definition.lengths.get(substep as usize) {
+                self.dt = T::from_f64(length);
+                self.lengths = [self.dt; LANES];
+            }
+            if self.definition.is_jittered() {
                 self.draw_lengths([now, substeps, substep], block.episodes, words);
             }
             if substep % u64::from(self.definition.inner_steps) == 0 {

@@ -58,6 +58,8 @@ pub struct ProgramEnvironment {
     pub dt: f64,
     /// Steps of the integrator for which an action is held; at least 1.
     pub substeps: u32,
+    /// The lengths of these steps in seconds, where they differ: latencies then are no whole parts of an action. Empty for steps of `dt`.
+    pub lengths: Vec<f64>,
     /// The range of each position, then of each velocity, from which the start of an episode is drawn uniformly.
     pub start: Vec<[f64; 2]>,
     /// The time limit: the number of actions after which an episode is truncated.
@@ -115,6 +117,7 @@ impl ProgramEnvironment {
             method,
             dt,
             substeps: 1,
+            lengths: Vec::new(),
             limit: None,
             autoreset: Autoreset::SameStep,
             delays: Delays::default(),
@@ -150,9 +153,22 @@ impl ProgramEnvironment {
         self.parameters.iter().chain(saturation)
     }
 
+    /// Whether the lengths of steps are drawn.
+    pub(super) fn is_jittered(&self) -> bool {
+        self.skew.rms() != 0.0 || self.jitter.rms() != 0.0
+    }
+
     /// Whether each step is `Δt` long.
     pub(super) fn is_even(&self) -> bool {
-        self.skew.rms() == 0.0 && self.jitter.rms() == 0.0
+        !self.is_jittered() && self.lengths.is_empty()
+    }
+
+    /// The time from action to action, in seconds.
+    pub(super) fn period(&self) -> f64 {
+        match self.lengths.as_slice() {
+            [] => self.dt * f64::from(self.substeps),
+            lengths => lengths.iter().sum(),
+        }
     }
 
     /// Whether observations have noise.
@@ -225,6 +241,17 @@ impl ProgramEnvironment {
         if let Some(projection) = &self.task.projection {
             let outputs = projection.outputs().len();
             EnvironmentError::shape("outputs of the projection", outputs, 2 * degrees)?;
+        }
+        if !self.lengths.is_empty() {
+            let substeps = self.substeps as usize;
+            EnvironmentError::shape("lengths of steps", self.lengths.len(), substeps)?;
+        }
+        for (index, &length) in self.lengths.iter().enumerate() {
+            let allowed = "a finite number above 0 in the float type";
+            ensure("length of a step", length, allowed, |length| {
+                T::from_f64(length) > T::zero() && T::from_f64(length).is_finite()
+            })
+            .map_err(|error| ControlError { index: Some(index), ..error })?;
         }
         for end in self.start.iter().flatten() {
             ensure_finite::<T>("end of the start", *end)?;
