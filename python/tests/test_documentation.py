@@ -1,0 +1,53 @@
+"""Each block of Python in the documents runs, in the order of its page."""
+
+import importlib.util
+import os
+import re
+from pathlib import Path
+
+import pytest
+
+os.environ["MPLBACKEND"] = "Agg"
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+# A block that needs a library beyond NumPy and Gymnasium has a line ``<!-- requires: NAME -->`` above it, and is left out without the library.
+BLOCK = re.compile(r"(?:<!-- requires: (?P<modules>[a-z_, ]+) -->\n+)?^```python\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL)
+LIBRARIES = {"mujoco", "scipy"}
+
+
+def blocks_of(page: Path) -> list[tuple[int, str, list[str]]]:
+    """The line, the text and the required libraries of each block."""
+    text = page.read_text(encoding="utf-8")
+    return [
+        (text.count("\n", 0, block.start("text")), block["text"], [name.strip() for name in (block["modules"] or "").split(",") if name.strip()])
+        for block in BLOCK.finditer(text)
+    ]
+
+
+WITH_BLOCKS = [page for page in PAGES if blocks_of(page)]
+
+
+@pytest.mark.parametrize("page", WITH_BLOCKS, ids=lambda page: page.name)
+def test_blocks_of_a_page_run_as_a_reader_copies_them(page, tmp_path, monkeypatch):
+    # A reader is in a clone of the repository. Nothing else exists before the first block: no name, no file.
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    monkeypatch.chdir(tmp_path)
+    shared: dict = {"__name__": "__main__"}
+    for line, text, libraries in blocks_of(page):
+        if any(importlib.util.find_spec(name) is None for name in libraries):
+            continue
+        code = compile("\n" * line + text, str(page), "exec")
+        exec(code, shared)
+
+
+def test_blocks_are_found_and_left_out_only_for_a_library_that_they_import():
+    texts = {page.name: page.read_text(encoding="utf-8") for page in PAGES}
+    assert len(WITH_BLOCKS) >= 6
+    for page in PAGES:
+        assert len(blocks_of(page)) == texts[page.name].count("```python"), page.name
+        assert sum(bool(libraries) for *_, libraries in blocks_of(page)) == texts[page.name].count("<!-- requires:"), page.name
+        for line, text, libraries in blocks_of(page):
+            assert set(libraries) <= LIBRARIES
+            for name in libraries:
+                assert name in text, f"{page.name}:{line} does not use {name}"
