@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 import json
 from pathlib import Path
-from typing import Any, Mapping
+from typing import TYPE_CHECKING, Any, Mapping
 
 from . import _native
 from ._requests import coordinates, loop_request, step_request, text, whole
@@ -37,13 +37,15 @@ class Answer(Mapping[str, Any]):
     def __len__(self) -> int:
         return len(self._parts)
 
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):
-            # Copies and pickles read such attributes before ``_parts`` exists.
-            raise AttributeError(name)
-        if name not in self._parts:
-            raise AttributeError(f"{type(self).__name__} has no part {name!r}; expected one of {', '.join(self)}")
-        return self._parts[name]
+    if not TYPE_CHECKING:
+        # Type checkers read the annotations of the subclasses, so that a misspelt name is an error.
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("_"):
+                # Copies and pickles read such attributes before ``_parts`` exists.
+                raise AttributeError(name)
+            if name not in self._parts:
+                raise AttributeError(f"{type(self).__name__} has no part {name!r}; expected one of {', '.join(self)}")
+            return self._parts[name]
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self._parts]
@@ -73,8 +75,112 @@ class Analysis(Answer):
 
     ``spectral_radius`` and all keys without ``closed_loop`` belong to one step of the plant without feedback. The loop has
     ``closed_loop_spectral_radius``, and with jitter or losses ``mean_square_growth``. ``note`` is a restriction of the numbers,
-    if there is one.
+    if there is one. An analysis has the attributes of its kind only: ``dir(analysis)`` and ``list(analysis)`` have their names.
     """
+
+    # Of one step, and of a linear plant.
+    dt: float
+    """Time step in s; of a linear plant None without one."""
+    note: str
+    """A restriction of the numbers."""
+
+    # Of one step.
+    system: Any
+    """Name of the system; of a system by equations its description."""
+    parameters: dict[str, float]
+    integrator: str
+    q: list[float]
+    """Positions, around which the step is linearised."""
+    v: list[float]
+    steps: Any
+    """Number of steps of the energy drift; of a linear plant the steps of each integrator, a list."""
+    linear: Any
+    """Whether the system is linear; of a system by equations the analysis of its plant at an equilibrium, a dictionary or None."""
+    update_matrix: list[list[float]]
+    update_matrix_in_z: list[list[str]]
+    """Its entries as polynomials of ``z = ω·dt``."""
+    determinant: float
+    determinant_minus_one: float
+    trace: float
+    eigenvalues: list[list[float]]
+    """Real and imaginary parts, ``[re, im]``."""
+    spectral_radius: float
+    """Largest absolute eigenvalue of one step without feedback."""
+    spectral_radius_minus_one: float
+    bounded: bool | None
+    """Whether all trajectories stay bounded; None if the system is not linear."""
+    stability_windows: list[list[float | None]]
+    """Ranges of stable time steps in s; an end without limit is None."""
+    largest_dt: dict[str, float | None]
+    """Largest time step in s for each criterion."""
+    modified_hamiltonian: dict[str, float]
+    order_of_word: dict[str, Any]
+    symplecticity_defect: float
+    reversibility_defect: float
+    phase_error_per_step: float | None
+    """Phase error in rad per step."""
+    force_evaluations_per_step: int
+    max_energy_drift: float
+    """Largest relative energy drift within ``steps`` steps."""
+    log10_max_energy_drift: float | None
+    max_energy_drift_step: int
+    max_energy_drift_method: str
+    stopped_at_step: int
+    """First step whose state is not finite, if there is one."""
+
+    # Of a loop around a system of the catalogue.
+    command: str
+    """Quantity of commands, ``acceleration`` or ``force``."""
+    feedback: list[float]
+    feedback_units: list[str]
+    latency_steps: float
+    closed_loop_spectral_radius: float
+    closed_loop_spectral_radius_minus_one: float
+    critical_latency_steps: float | None
+    critical_latency_split_steps: float | None
+    critical_latency_seconds: float | None
+    """Latency in s at which the loop becomes unstable."""
+    latency_windows: list[list[float | None]]
+    """Ranges of stable latencies in steps."""
+    delay_margin_seconds: float | None
+    jitter_clips: bool
+    mean_square_radius: float | None
+    mean_square_growth: float | None
+    """Growth of the second moments per step, a logarithm."""
+    lyapunov_exponent: float | None
+    dephasing_steps: float | None
+    cost_weights: list[float]
+    cost: float | None
+    cost_infinite: bool | None
+    cost_increase: float | None
+    """Relative increase of the cost by latency, jitter and losses."""
+
+    # Of a linear plant, or of a system by equations.
+    schema: str
+    """Version of the keys."""
+    states: list[dict[str, str]]
+    """``name`` and ``unit`` of each state."""
+    inputs: list[dict[str, str]]
+    outputs: list[dict[str, str]]
+    sampling_period: float | None
+    """Period of a sampled plant in s."""
+    mechanical: bool
+    modes: list[dict[str, Any]]
+    """Modes of the plant, the one that grows fastest first."""
+    fastest_rate: float
+    """Largest absolute eigenvalue in 1/s."""
+    slowest_rate: float | None
+    stiffness: float | None
+    not_applicable: list[str]
+    """Integrators that do not apply to the plant."""
+    loop: dict[str, Any] | Any
+    """The closed loop; None without a controller."""
+    motion: dict[str, Any]
+    """Of a system by equations: order, errors and energy of the integrator."""
+    operating_point: dict[str, Any] | None
+    """Of a system by equations: the equilibrium of its plant."""
+    no_modes: str | None
+    """Reason for a missing ``linear``."""
 
 
 class Advice(Answer):
@@ -89,6 +195,71 @@ class Advice(Answer):
     """The request, as a file for ``libration advise --config``."""
     page: str | None
     """An HTML page with a stability map, with ``page=True``."""
+
+    answer: str
+    """The answer in a few sentences."""
+    warnings: list[str]
+    repeat_command: str
+    """The command that repeats this advice."""
+
+    # Of systems of the catalogue and by equations.
+    system: str
+    parameters: dict[str, float]
+    q: list[float]
+    v: list[float]
+    tolerance: dict[str, Any]
+    """The measure ``of``, and the largest allowed value ``most``."""
+    horizon: float
+    """Duration in s."""
+    loop: dict[str, Any] | Any
+    """Budgets and remedies of the loop; None without a controller."""
+    integrators: list[dict[str, Any]]
+    """Each integrator with its largest step, cheapest first."""
+    command: str | None
+    """A command that takes the advised steps."""
+    tried_down_to: float | None
+    runner_up: str | None
+    floats: list[dict[str, Any]]
+    """Errors of the float types."""
+    throughput: dict[str, Any] | Any
+    """Memory and speed of rollouts; None without advised steps."""
+
+    # Of linear plants.
+    states: list[dict[str, str]]
+    """``name`` and ``unit`` of each state."""
+    inputs: list[dict[str, str]]
+    outputs: list[dict[str, str]]
+    operating_point: dict[str, Any] | None
+    plant_modes: list[dict[str, Any]]
+    part_modes: list[dict[str, Any]]
+    """Modes of lags and filters."""
+    controller: str
+    gain: list[list[float]] | None
+    filter: list[list[float]] | None
+    controller_matrices: dict[str, Any] | Any
+    schedule: list[dict[str, Any]]
+    period: float
+    """Sample period in s."""
+    budgets: list[dict[str, Any]]
+    """Budget of each imperfection."""
+    fails_first: dict[str, Any] | Any
+    """The imperfection that fails first, or None."""
+    chain: list[dict[str, Any]]
+    margins: list[dict[str, Any]]
+    growth: float
+    """Growth of the second moments per period, a logarithm."""
+    margin: float | None
+    margin_tried_up_to: float | None
+    ideal_cost: float
+    cost: float | None
+    cost_increase: float | None
+    cost_tolerance: float | None
+    deviations: list[dict[str, Any]]
+    simulated: dict[str, Any] | Any
+    deadline_misses: dict[str, Any] | Any
+    remedies: dict[str, Any] | Any
+    redesign: dict[str, Any] | Any
+    """The controller of least cost, with ``redesign=True``."""
 
     def __init__(self, parts: dict[str, Any], holds: bool, request: str, page: str | None) -> None:
         super().__init__(parts)

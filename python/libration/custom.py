@@ -13,6 +13,7 @@ from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
 from ._arrays import actions as read
+from ._environment_keywords import CustomTaskKeywords, Unpack
 from ._episode_numbers import largest
 from .envs import VectorEnv
 from .equations import EquationSystem
@@ -50,8 +51,8 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
         num_envs: int = 1,
         *,
         task: Callable[[np.ndarray, np.ndarray, np.ndarray], Any],
-        autoreset_mode: Any = "NextStep",
-        **given: Any,
+        autoreset_mode: str | AutoresetMode = "NextStep",
+        **given: Unpack[CustomTaskKeywords],
     ) -> None:
         if not callable(task):
             raise TypeError(f"task must be a function, not {type(task).__name__}")

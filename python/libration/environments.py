@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import copy
-from typing import Any, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Mapping, Sequence
 
 import numpy as np
 
 from . import _native
+from ._episode_states import episode_numbers, refuse_options, rows_of, start_of
 from ._keywords import check_keywords
 from ._preset_equations import has_varied, native_varied
 from ._presets import PRESETS, Preset
 from ._settings import AUTORESET, count, native, nearest
 from ._tasks import EquationPreset, native_equations
-from ._episode_states import episode_numbers, refuse_options, rows_of, start_of
 from .equations import EquationSystem
 from .perturbations import PD
 from .policies import Policy
 from .rollout import Rollout
+
+if TYPE_CHECKING:
+    from numpy.typing import DTypeLike
+
+    from ._environment_keywords import Autoreset, Delay, Law, LawOfEach, Range, Varied
 
 __all__ = ["Environments"]
 
@@ -114,18 +119,18 @@ class Environments(_native.Batch):
         num_envs: int = 1,
         *,
         max_episode_steps: float | None = None,
-        autoreset_mode: Any = "NextStep",
+        autoreset_mode: Autoreset = "NextStep",
         integrator: str = "velocity-verlet",
         dt: float | None = None,
         substeps: int | None = None,
-        action_delay: Any = 0.0,
-        observation_delay: Any = 0.0,
-        jitter: Any = 0.0,
-        skew: Any = 0.0,
-        observation_noise: Any = 0.0,
-        max_action: float | None = None,
-        start_position: Any = None,
-        start_velocity: Any = None,
+        action_delay: Delay = 0.0,
+        observation_delay: Delay = 0.0,
+        jitter: Law = 0.0,
+        skew: Law = 0.0,
+        observation_noise: LawOfEach = 0.0,
+        max_action: Varied | Sequence[Varied] | None = None,
+        start_position: Range | None = None,
+        start_velocity: Range | None = None,
         observe: Sequence[str] | None = None,
         reward: str | None = None,
         terminated: Sequence[str] | None = None,
@@ -135,7 +140,7 @@ class Environments(_native.Batch):
         targets: Sequence[str] | None = None,
         inner: PD | Mapping[str, str] | None = None,
         inner_period: float | None = None,
-        dtype: Any = "float32",
+        dtype: DTypeLike = "float32",
         threads: int = 1,
         copy: bool = True,
         buffers: int | None = None,

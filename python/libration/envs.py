@@ -14,6 +14,15 @@ from gymnasium.vector.utils import batch_space
 from ._attributes import SETTABLE, keywords_of, refused, unknown
 from ._dataset_environments import keywords_of_settings
 from ._episode_numbers import largest
+from ._environment_keywords import (
+    DuffingKeywords,
+    DuffingVectorKeywords,
+    OscillatorKeywords,
+    OscillatorVectorKeywords,
+    PendulumKeywords,
+    PendulumVectorKeywords,
+    Unpack,
+)
 from ._presets import PRESETS, Preset
 from ._tasks import EquationPreset
 from .environments import Environments
@@ -201,7 +210,8 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
 
     @classmethod
     def _construct(cls, name: str | EquationSystem, given: dict[str, Any]) -> Environments:
-        return cls(name, **given) if cls in (VectorEnv, SystemVectorEnv) else cls(**given)
+        make: Any = cls
+        return make(name, **given) if cls in (VectorEnv, SystemVectorEnv) else make(**given)
 
     def close(self, **kwargs: Any) -> None:
         gymnasium.vector.VectorEnv.close(self, **kwargs)
@@ -352,29 +362,46 @@ def _system(system: Any) -> EquationSystem:
     return system
 
 
-def _classes(preset: Preset) -> tuple[type[Env], type[VectorEnv]]:
-    """Return the single and the vector environment class of a preset."""
+class OscillatorEnv(Env):
+    """Single environment ``libration/Oscillator-v0``."""
 
-    class Single(Env):
-        __doc__ = f"Single environment ``{NAMESPACE}/{preset.id}``."
-
-        def __init__(self, **given: Any) -> None:
-            super().__init__(preset.name, **given)
-
-    class Vector(VectorEnv):
-        __doc__ = f"Vector environment ``{NAMESPACE}/{preset.id}``."
-
-        def __init__(self, num_envs: int = 1, **given: Any) -> None:
-            super().__init__(preset.name, num_envs, **given)
-
-    for made, name in ((Single, f"{preset.name}Env"), (Vector, f"{preset.name}VectorEnv")):
-        made.__name__ = made.__qualname__ = name
-    return Single, Vector
+    def __init__(self, **given: Unpack[OscillatorKeywords]) -> None:
+        super().__init__("Oscillator", **given)
 
 
-OscillatorEnv, OscillatorVectorEnv = _classes(PRESETS["Oscillator"])
-PendulumEnv, PendulumVectorEnv = _classes(PRESETS["Pendulum"])
-DuffingEnv, DuffingVectorEnv = _classes(PRESETS["Duffing"])
+class OscillatorVectorEnv(VectorEnv):
+    """Vector environment ``libration/Oscillator-v0``."""
+
+    def __init__(self, num_envs: int = 1, **given: Unpack[OscillatorVectorKeywords]) -> None:
+        super().__init__("Oscillator", num_envs, **given)
+
+
+class PendulumEnv(Env):
+    """Single environment ``libration/Pendulum-v0``."""
+
+    def __init__(self, **given: Unpack[PendulumKeywords]) -> None:
+        super().__init__("Pendulum", **given)
+
+
+class PendulumVectorEnv(VectorEnv):
+    """Vector environment ``libration/Pendulum-v0``."""
+
+    def __init__(self, num_envs: int = 1, **given: Unpack[PendulumVectorKeywords]) -> None:
+        super().__init__("Pendulum", num_envs, **given)
+
+
+class DuffingEnv(Env):
+    """Single environment ``libration/Duffing-v0``."""
+
+    def __init__(self, **given: Unpack[DuffingKeywords]) -> None:
+        super().__init__("Duffing", **given)
+
+
+class DuffingVectorEnv(VectorEnv):
+    """Vector environment ``libration/Duffing-v0``."""
+
+    def __init__(self, num_envs: int = 1, **given: Unpack[DuffingVectorKeywords]) -> None:
+        super().__init__("Duffing", num_envs, **given)
 
 
 def register() -> None:

@@ -27,7 +27,7 @@ _PARTS = 4
 class Identification:
     """What a recording tells of a loop; :attr:`results` has all numbers under the keys of ``libration identify --json``.
 
-    Environments take it as a range of delays: ``libration.make_vec(…, action_delay=identified)``.
+    Environments take it as a range of delays: ``libration.VectorEnv(…, action_delay=identified)``.
     """
 
     def __init__(self, results: dict[str, Any], loop_file: str, page: str) -> None:

@@ -100,8 +100,8 @@ class LinearPlant:
     outputs: Sequence[str] | None = None
     parts: Sequence[Lag | Butterworth2 | MovingAverage | Difference] = field(default=())
     """Lags and filters of the channels."""
-    operating_point: OperatingPoint | None = None
-    """The equilibrium at which :meth:`linearize` found the matrices."""
+    operating_point: OperatingPoint | Any = None
+    """The equilibrium at which :meth:`linearize` found the matrices; None of other plants."""
 
     @classmethod
     @check_keywords

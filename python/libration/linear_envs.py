@@ -12,6 +12,7 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
+from ._environment_keywords import LoopKeywords, Unpack
 from ._settings import count, nearest, number
 from .linear_loops import OpenLoops
 
@@ -58,7 +59,7 @@ class LinearVectorEnv(gymnasium.vector.VectorEnv):
         start: ArrayLike = 1.0,
         max_action: float = np.inf,
         max_episode_steps: int = 1000,
-        **timing: Any,
+        **timing: Unpack[LoopKeywords],
     ) -> None:
         for name in timing:
             if name in ("controller", "reference", "x0", "seed", "num_loops"):

@@ -13,7 +13,7 @@ from ._settings import number
 __all__ = ["Constant", "Linear", "MLP", "Policy", "Random"]
 
 
-def _finite(name: str, values: ArrayLike) -> np.ndarray:
+def _finite(name: str, values: Any) -> np.ndarray:
     if hasattr(values, "detach"):
         # Parameters of PyTorch have a gradient, which NumPy refuses.
         values = values.detach().cpu()

@@ -194,7 +194,7 @@ class Probe:
 
         host = gymnasium_host(env, action, **keywords)
         keywords["conservative"] = conservative
-        functions = [Probe.gymnasium, gymnasium_host]
+        functions: list[Callable[..., Any]] = [Probe.gymnasium, gymnasium_host]
         invocation = python_call("libration.probe.gymnasium", functions, {"env": env, "action": action, **keywords}, ("env", "action"))
         return self.host(host, conservative=conservative, invocation=invocation)
 

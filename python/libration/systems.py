@@ -5,13 +5,16 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any, Callable, Mapping
+from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence, TypedDict, overload
 
 import numpy as np
 
 from . import _native
 from ._settings import nearest, number
 from .equations import EquationSystem
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 __all__ = ["CustomSystem", "IMPLICIT_INTEGRATORS", "INTEGRATORS", "SYSTEMS", "System"]
 
@@ -25,6 +28,19 @@ SYSTEMS: Mapping[str, str] = MappingProxyType({entry[0]: entry[1] for entry in _
 """Description of each system, by name."""
 
 _DIMENSIONS = {name: range(least, most + 1) for name, _, least, most, _ in _native._systems()}
+
+
+class EquationKeywords(TypedDict, total=False):
+    """Keywords of :class:`~libration.EquationSystem` besides ``acceleration``, ``rate`` and ``name``."""
+
+    parameters: Mapping[str, Any] | None
+    inputs: Sequence[str]
+    let: Mapping[str, str] | None
+    energy: str | None
+    start: Mapping[str, float] | None
+    units: Mapping[str, str] | None
+    task: Mapping[str, Any] | None
+    description: str
 
 
 class System:
@@ -48,26 +64,48 @@ class System:
     System('oscillator', m=2.0, k=20.0)
     """
 
-    def __new__(cls, name: Any = None, **given: Any) -> Any:
-        if "acceleration" in given or "rate" in given:
-            if name is not None:
-                given["name"] = name
-            return EquationSystem(**given)
-        return super().__new__(cls)
+    name: str
+    parameters: Mapping[str, float]
+
+    if TYPE_CHECKING:
+        # Type checkers know by the keywords which class a call returns.
+        @overload
+        def __new__(cls, name: str, **parameters: float) -> System: ...
+        @overload
+        def __new__(  # type: ignore[misc]
+            cls,
+            name: str = "system",
+            *,
+            acceleration: Mapping[str, str],
+            rate: Mapping[str, str] | None = None,
+            **given: Unpack[EquationKeywords],
+        ) -> EquationSystem: ...
+        @overload
+        def __new__(  # type: ignore[misc]
+            cls, name: str = "system", *, rate: Mapping[str, str], **given: Unpack[EquationKeywords]
+        ) -> EquationSystem: ...
+        def __new__(cls, name: Any = None, **given: Any) -> Any: ...
+
+    else:
+
+        def __new__(cls, name: Any = None, **given: Any) -> Any:
+            if "acceleration" in given or "rate" in given:
+                if name is not None:
+                    given["name"] = name
+                return EquationSystem(**given)
+            return super().__new__(cls)
+
+        def __init__(self, name: str, **parameters: Any) -> None:
+            if not isinstance(name, str):
+                raise TypeError(f"name must be a string, not {type(name).__name__}")
+            given = [(key, number(key, value, "finite")) for key, value in parameters.items()]
+            self.name = name
+            self.parameters = MappingProxyType(dict(_native._parameters((name, given))))
 
     @staticmethod
     def from_toml(path: str | os.PathLike[str], **parameters: float) -> EquationSystem:
         """Return the system of the equations in a file: :meth:`libration.EquationSystem.from_toml`."""
         return EquationSystem.from_toml(path, **parameters)
-
-    def __init__(self, name: str, **parameters: Any) -> None:
-        if not isinstance(name, str):
-            raise TypeError(f"name must be a string, not {type(name).__name__}")
-        given = [(key, number(key, value, "finite")) for key, value in parameters.items()]
-        self.name = name
-        self.parameters: Mapping[str, float] = MappingProxyType(
-            dict(_native._parameters((name, given)))
-        )
 
     @property
     def dimensions(self) -> range:

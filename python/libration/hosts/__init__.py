@@ -1,9 +1,17 @@
 """Adapters of other simulators: each is a step in minimal coordinates, without memory of earlier calls."""
 
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .host import Host
+
+if TYPE_CHECKING:
+    from ._mujoco_servos import mujoco_servos
+    from .fmu import fmu_host, fmu_plant
+    from .gymnasium import gymnasium_host
+    from .jax import jax_host
+    from .mujoco import mujoco_host
+    from .mujoco_delays import delay_audit
 
 # Each adapter is imported when it is used, since it needs a package of its own.
 _ADAPTERS = {
