@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any, Mapping
 from . import _native
 from ._requests import coordinates, loop_request, step_request, text, whole
 from ._keywords import check_keywords
+from ._html import pairs, table
+from ._plots import Panels, plot_equations, plot_plant, plot_step
 from ._progress import Progress, ProgressDisplay
 from ._settings import number
 from ._toml import text_of
@@ -54,20 +56,7 @@ class Answer(Mapping[str, Any]):
         return "\n".join([type(self).__name__, *(f"  {name}: {value!r}" for name, value in self.items())])
 
     def _repr_html_(self) -> str:
-        rows = (
-            f"<tr><th style='text-align:left'>{html.escape(name.replace('_', ' '))}</th>"
-            f"<td style='text-align:left'>{html.escape(_shown(value))}</td></tr>"
-            for name, value in self.items()
-        )
-        return f"<table>{''.join(rows)}</table>"
-
-
-def _shown(value: Any) -> str:
-    if isinstance(value, float):
-        return f"{value:.12g}"
-    if value is None:
-        return "none"
-    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+        return pairs(self.items())
 
 
 class Analysis(Answer):
@@ -183,6 +172,22 @@ class Analysis(Answer):
     """Reason for a missing ``linear``."""
 
 
+    def plot(self) -> Panels:
+        """Draw the analysis by matplotlib, and return the axes of the panels.
+
+        Of one step: eigenvalues, stable time steps, and stable latencies of the loop. Of a linear plant: modes of plant and loop, and
+        the stable time steps of integrators. Of a system by equations: errors of the integrator, and modes at the equilibrium.
+
+        Raises
+        ------
+        ImportError
+            Without matplotlib: ``pip install 'libration[plots]'``.
+        """
+        if "motion" in self:
+            return plot_equations(self)
+        return plot_plant(self) if "modes" in self else plot_step(self)
+
+
 class Advice(Answer):
     """Limits of a loop or a simulation, with the keys of ``libration advise --json``.
 
@@ -278,6 +283,30 @@ class Advice(Answer):
         if self.page is None:
             raise ValueError("there is no page; help: call advise with page=True")
         Path(path).write_text(self.page, encoding="utf-8")
+
+    def _repr_html_(self) -> str:
+        """Return the answer, the warnings, the budgets of the loop and the steps of the integrators."""
+        parts = [f"<p>{html.escape(self.answer)}</p>"]
+        if self.warnings:
+            parts.append(f"<ul>{''.join(f'<li>{html.escape(warning)}</li>' for warning in self.warnings)}</ul>")
+        budgets = self.get("budgets") or (self.get("loop") or {}).get("budgets") or []
+        if budgets:
+            head = ["imperfection", "unit", "stated", "stable up to", "part used"]
+            rows = [
+                (" of ".join(filter(None, (one["kind"], one.get("channel")))), one["unit"])
+                + (one["stated"], _limit(one), None if one["used"] is None else f"{100 * one['used']:.3g} %")
+                for one in budgets
+            ]
+            parts.append(table(head, rows, 2))
+        steps = self.get("integrators") or []
+        if steps:
+            head = ["integrator", "dt in s", "force evaluations per simulated s"]
+            parts.append(table(head, [(one["integrator"], one["dt"], one["evaluations"]) for one in steps[:5]]))
+        return "".join(parts)
+
+
+def _limit(budget: Mapping[str, Any]) -> Any:
+    return f"beyond {budget['tried_up_to']:.6g}" if budget["stable_up_to"] is None else budget["stable_up_to"]
 
 
 _STEPS = 1_000_000

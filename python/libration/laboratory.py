@@ -17,6 +17,7 @@ import numpy as np
 
 from . import _native
 from ._keywords import check_keywords
+from ._plots import Panels, plot_findings
 from ._progress import Progress, ProgressDisplay
 from ._toml import text_of
 from .equations import EquationSystem, check_system
@@ -120,6 +121,18 @@ class Results:
         judged = [finding for finding in self.findings if finding.verdict != "measured"]
         agree = sum(finding.agrees for finding in judged)
         return f"{agree} of {len(judged)} findings agree with theory"
+
+    def plot(self) -> Panels:
+        """Draw the difference from the prediction of each finding, relative to the allowed one, and return the axes, ``(1,)``.
+
+        Findings without a prediction are left out. ``folder / "figures"`` has the figures of the studies.
+
+        Raises
+        ------
+        ImportError
+            Without matplotlib: ``pip install 'libration[plots]'``.
+        """
+        return plot_findings(self.findings, self._summary())
 
     def _repr_html_(self) -> str:
         sign = {"agrees": "✓", "disagrees": "✗", "measured": ""}

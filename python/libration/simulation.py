@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _native
 from ._requests import coordinates, text, loop_request, step_request, whole
+from ._html import table
+from ._plots import Panels, plot_trajectory
 from ._keywords import check_keywords
 from ._settings import count as _whole_between, nearest, number
 from .ensemble import Ensemble
@@ -84,8 +86,41 @@ class Trajectory(Mapping[str, np.ndarray]):
 
         return pandas.DataFrame(dict(self))
 
+    def plot(self) -> Panels:
+        """Draw all columns over time by matplotlib, in a panel for each unit, and return the axes of the panels.
+
+        ``trajectory.plot()[0].figure.savefig("trajectory.png")`` writes the figure to a file.
+
+        Raises
+        ------
+        ImportError
+            Without matplotlib: ``pip install 'libration[plots]'``.
+        """
+        return plot_trajectory(self, self.units, self._end(), None if self.stopped is None else self.stopped["t"])
+
+    def _end(self) -> str:
+        """Return what became of states that are not finite."""
+        if self.stopped is not None:
+            return f": not finite from t = {self.stopped['t']:.6g} s"
+        return "" if self.not_finite is None else f": {self.not_finite['count']} not finite in the end"
+
+    def _repr_html_(self) -> str:
+        count = int(self["trajectory"].max()) + 1 if "trajectory" in self else 1
+        what = "Trajectory" if count == 1 else f"{count} trajectories"
+        names = [name for name in self if name != "trajectory"]
+        rows = [(name, self.units.get(name, ""), *_extent(self[name].astype(float))) for name in names]
+        head = ("column", "unit", "first", "last", "least", "largest")
+        return f"<p>{what}, {len(self['t'])} rows{self._end()}</p>{table(head, rows, 2)}"
+
     def __repr__(self) -> str:
         return f"<Trajectory of {len(self['t'])} rows: {', '.join(self)}>"
+
+
+def _extent(column: NDArray[np.float64]) -> tuple[float, ...]:
+    """Return the first, last, least and largest number; of the last two without those that are not finite."""
+    finite = column[np.isfinite(column)]
+    ends = (math.nan, math.nan) if not len(finite) else (float(finite.min()), float(finite.max()))
+    return (float(column[0]), float(column[-1]), *ends)
 
 
 @check_keywords
