@@ -6,13 +6,11 @@ Gymnasium installed they are registered as ``libration/Oscillator-v0``, ``librat
 ``gymnasium.make`` and ``gymnasium.make_vec``; :class:`LinearVectorEnv` has a linear plant.
 """
 
-from __future__ import annotations
-
-import os
+import os as _os
 
 from . import _native
 from ._native import __version__
-from . import datasets, plants, policies
+from . import datasets, hosts, plants, policies
 from .analysis import Advice, Analysis, advise, analyze
 from .bits import FirstDifference, first_difference
 from .energy import EnergyReport, audit_energy
@@ -92,6 +90,7 @@ __all__ = [
     "datasets",
     "first_difference",
     "gains",
+    "hosts",
     "identify",
     "plants",
     "policies",
@@ -100,19 +99,23 @@ __all__ = [
     "simulate",
 ]
 
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_native._forked)
+if hasattr(_os, "register_at_fork"):
+    _os.register_at_fork(after_in_child=_native._forked)
 
 try:
-    from . import classic_control
+    from . import classic_control, envs
     from .custom import CustomTaskVectorEnv
-    from .envs import VectorEnv, register
+    from .envs import VectorEnv
     from .linear_envs import LinearVectorEnv
 except ModuleNotFoundError as error:
     # Gymnasium is an extra.
     if error.name is None or error.name.split(".")[0] != "gymnasium":
         raise
 else:
-    register()
+    envs.register()
     classic_control.register()
-    __all__ += ["CustomTaskVectorEnv", "LinearVectorEnv", "VectorEnv"]
+    __all__ += ["CustomTaskVectorEnv", "LinearVectorEnv", "VectorEnv", "classic_control", "envs"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
