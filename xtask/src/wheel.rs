@@ -14,10 +14,11 @@ const OLDER_GYMNASIUM: &str = "gymnasium==1.2.2";
 const PROCESSES: usize = 4;
 
 /// Files of tests that take longest, which are divided first.
-const LONG: [&str; 10] = [
+const LONG: [&str; 11] = [
     "test_hosts_fmu.py",
     "test_stubs.py",
     "test_leaks.py",
+    "test_documentation.py",
     "test_linear.py",
     "test_probe_mujoco.py",
     "test_examples.py",
@@ -163,6 +164,7 @@ mod tests {
                 "test_check_vector_env.py",
                 "test_classic_control.py",
                 "test_custom.py",
+                "test_environment_pages.py",
                 "test_first_hour.py",
                 "test_probe_gymnasium.py",
                 "test_sb3.py",
