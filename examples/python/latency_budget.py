@@ -58,7 +58,7 @@ def predicted_growth(latency: float) -> float:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--figure", metavar="FILE", help="draw into this file (needs matplotlib)")
     figure = parser.parse_args().figure
 

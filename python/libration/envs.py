@@ -532,7 +532,7 @@ class OscillatorVectorEnv(VectorEnv):
 
 
 class PendulumEnv(Env):
-    """Environment ``libration/Pendulum-v0``: a pendulum to swing up.
+    """Environment ``libration/PendulumSwingUp-v0``: a pendulum to swing up.
 
     ## Description
 

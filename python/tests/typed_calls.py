@@ -24,14 +24,15 @@ def environments(cart: libration.EquationSystem, identified: Identification) -> 
     PendulumVectorEnv(num_envs=4, autoreset_mode="SameStep", copy=False, buffers=3)
     PendulumVectorEnv(4, autoreset_mode=gymnasium.vector.AutoresetMode.DISABLED, max_episode_steps=-1)
     OscillatorEnv(m=2.0, k=20.0, bound=np.inf)
-    DuffingEnv(alpha=-1.0, beta=1.0, position_cost=2.0)
+    DuffingEnv(alpha=libration.Uniform(-1.0, -0.5), beta=np.ones(1), position_cost=libration.LogUniform(1.0, 2.0))
+    SystemEnv(cart, dt=0.02, pole=libration.Gaussian(0.1, mean=1.0), inner=libration.PD(1.0, 1.0), inner_period=0.01)
     SystemEnv(cart, dt=0.02, reward="-x^2", start={"x": (-1, 1)}, max_action=[10.0])
     SystemVectorEnv(cart, 4, dt=0.02, observe=["x"], terminated=("abs(x) > 1",))
     libration.Environments("Oscillator", 4, dt=0.02, omega2=10.0, substeps=2, threads=0)
     libration.VectorEnv(cart, 4, dt=0.02, max_action=np.ones(2), observation_noise=[0.1, ("uniform", 0.1)])
     libration.CustomTaskVectorEnv("Pendulum", 4, task=lambda before, actions, after: after[:, 1], action_delay=0.05)
     libration.LinearVectorEnv(libration.LinearPlant.mechanical(1.0, 0.1, 10.0, 1.0), 4, latency=0.004, max_action=2.0)
-    gymnasium.make_vec("libration/Pendulum-v0", num_envs=4, action_delay=0.05)
+    gymnasium.make_vec("libration/PendulumSwingUp-v0", num_envs=4, action_delay=0.05)
     vector: gymnasium.vector.VectorEnv = PendulumVectorEnv(4)
     single: gymnasium.Env = PendulumEnv()
     vector.reset(seed=0), single.reset(seed=0)
@@ -46,11 +47,7 @@ def wrong_environments(cart: libration.EquationSystem) -> None:
     PendulumVectorEnv("4")  # type: ignore[arg-type]
     OscillatorEnv(omega=10.0)  # type: ignore[call-arg]
     DuffingEnv(omega2=10.0)  # type: ignore[call-arg]
-    SystemEnv(cart, dt=0.02, rewards="-x^2")  # type: ignore[call-arg]
     SystemVectorEnv(num_envs=4, dt=0.02)  # type: ignore[call-arg]
-    libration.Environments("Oscillator", 4, action_dely=0.05)  # type: ignore[call-arg]
-    libration.Environments("Oscillator", 4, render_mode="rgb_array")  # type: ignore[call-arg]
-    libration.VectorEnv("Oscillator", 4, action_dely=0.05)  # type: ignore[call-arg]
     libration.CustomTaskVectorEnv("Pendulum", 4, task=max, bound=2.0)  # type: ignore[call-arg]
     libration.LinearVectorEnv("plant", 4, latenzy=0.004)  # type: ignore[call-arg]
 
