@@ -61,7 +61,7 @@ def choices(given: Any, num_envs: int, levels: list[float], dtype: str) -> np.nd
     if array.min() < 0 or array.max() >= len(levels):
         n = int(np.argmax((array < 0) | (array >= len(levels))))
         raise ValueError(f"actions[{n}] is {array[n]}, but it must be 0 to {len(levels) - 1}")
-    return np.array(levels, dtype).take(array)
+    return np.array(levels, dtype).take(array.astype(np.int64, copy=False))
 
 
 def infos(

@@ -113,8 +113,8 @@ def _pd_targets(system: EquationSystem, gains: PD, targets: Sequence[str] | None
 
 def _task(system: EquationSystem, task: Mapping[str, Any], own: Mapping[str, Any] | None) -> str:
     """Return the table of a task, with what the file of the system says in place of what is not given."""
-    own = own or {"observe": list(system.states), "reward": None, "terminated": [], "start": {}, "project": {}}
-    own |= {name: value for name, value in (("actions", []), ("targets", []), ("inner", {}), ("inner_period", None)) if name not in own}
+    empty: dict[str, Any] = {"observe": list(system.states), "reward": None, "terminated": [], "start": {}, "project": {}, "inner": {}}
+    own = {**empty, "actions": [], "targets": [], "inner_period": None, **(own or {})}
     table = {name: own[name] if value is None else value for name, value in task.items()}
     if table["reward"] is None:
         raise TypeError("reward is required: an expression, as in reward='-x^2 - 0.01*u^2'")

@@ -116,7 +116,8 @@ class ClassicVectorEnv(VectorEnv):
         given.setdefault("max_episode_steps", self._classic.max_episode_steps)
         super().__init__(system_of(name), num_envs, **_with_defaults(self._classic, given))
         self._given = {"num_envs": num_envs, "starts": starts, "render_mode": render_mode, **given}
-        self.render_mode, self._picture = _render_mode(render_mode), None
+        self.render_mode = _render_mode(render_mode)
+        self._picture: _Picture | None = None
         self.metadata = {**self.metadata, "render_modes": ["rgb_array"], "render_fps": _FPS[self._classic.name]}
         self.single_observation_space = _seen(self._classic, _is_noisy(self._settings))
         self.single_action_space = _action_space(self._classic, self.single_action_space)
@@ -130,7 +131,7 @@ class ClassicVectorEnv(VectorEnv):
             observations, infos = super().reset(seed=seed, options=options)
             return observations.astype(np.float32), infos
         options = dict(options or {})
-        bounds = {name: options.pop(name) for name in ("low", "high", "x_init", "y_init") if name in options}
+        bounds: dict[str, Any] = {name: options.pop(name) for name in ("low", "high", "x_init", "y_init") if name in options}
         observations, infos = super().reset(seed=seed, options=options)
         mask = options.get("reset_mask", np.ones(self.num_envs, bool))
         for n, one in enumerate(self._seeds(seed)):
@@ -177,8 +178,8 @@ class ClassicVectorEnv(VectorEnv):
         return tuple(self._picture(state) for state in self.states)
 
     def close_extras(self, **kwargs: Any) -> None:
-        if self.__dict__.get("_picture") is not None:
-            self._picture.close()
+        if (picture := self.__dict__.get("_picture")) is not None:
+            picture.close()
         super().close_extras(**kwargs)
 
     def _extras(self) -> dict[str, Any]:
@@ -199,7 +200,8 @@ class ClassicEnv(Env):
     def __init__(self, name: str, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
         self._classic, self._starts = CLASSIC[name], _checked(starts)
         super().__init__(system_of(name), **_with_defaults(self._classic, given))
-        self.render_mode, self._picture = _render_mode(render_mode), None
+        self.render_mode = _render_mode(render_mode)
+        self._picture: _Picture | None = None
         self.metadata = {"render_modes": ["rgb_array"], "render_fps": _FPS[self._classic.name]}
         self.observation_space = _seen(self._classic, _is_noisy(self._all._settings))
         self.action_space = _action_space(self._classic, self.action_space)
@@ -215,8 +217,8 @@ class ClassicEnv(Env):
         return super().set_state(state).astype(np.float32)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        observation, *rest = super().step(action)
-        return (observation.astype(np.float32), *rest)
+        observation, reward, terminated, truncated, info = super().step(action)
+        return observation.astype(np.float32), reward, terminated, truncated, info
 
     def render(self) -> np.ndarray | None:
         if self.render_mode is None:
@@ -226,8 +228,8 @@ class ClassicEnv(Env):
         return self._picture(self.state)
 
     def close(self) -> None:
-        if self.__dict__.get("_picture") is not None:
-            self._picture.close()
+        if (picture := self.__dict__.get("_picture")) is not None:
+            picture.close()
         super().close()
 
 
