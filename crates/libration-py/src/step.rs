@@ -104,6 +104,15 @@ impl EpisodeStates {
         }
     }
 
+    /// The command of an integer that is the discrete action of the only environment.
+    fn single_choice<T: Number>(&self, given: &Bound<'_, PyAny>) -> Option<[T; 1]> {
+        if self.levels.is_empty() || self.len != 1 {
+            return None;
+        }
+        let level = given.extract().ok().and_then(|i: usize| self.levels.get(i));
+        level.map(|&level| [T::from_f64(level)])
+    }
+
     /// The arrays of the next step.
     fn row<'py, T: Number>(
         &mut self,
@@ -163,7 +172,9 @@ pub(crate) fn take<'py, T: Number>(
     let made;
     let shape = [episodes.len, environments.sizes()[1]];
     let is_discrete = !episodes.levels.is_empty();
-    let actions: &[T] = match contiguous_actions(given, shape).filter(|_| !is_discrete) {
+    let chosen = episodes.single_choice::<T>(given);
+    let direct = || contiguous_actions(given, shape).filter(|_| !is_discrete);
+    let actions: &[T] = match chosen.as_ref().map(<[T; 1]>::as_slice).or_else(direct) {
         Some(actions) => actions,
         None => {
             made = if is_discrete {
