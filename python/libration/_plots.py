@@ -31,6 +31,8 @@ MOST_GROWTH = 1e4
 
 SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
+MOST_TICKS = 5
+
 MOST_NAMES = 20
 """Number of findings that a figure names."""
 
@@ -127,7 +129,9 @@ def plot_step(analysis: Mapping[str, Any]) -> Panels:
     return axes
 
 
-def _radius(minus_one: float) -> str:
+def _radius(minus_one: float | None) -> str:
+    if minus_one is None:
+        return "not finite"
     if abs(minus_one) >= 1e-3 or minus_one == 0:
         return f"{1 + minus_one:.6g}"
     return f"1 {'+' if minus_one > 0 else '−'} {abs(minus_one):.3g}"
@@ -185,6 +189,9 @@ def _modes(axis: Axes, modes: Sequence[Mapping[str, Any]], loop: Mapping[str, An
         threshold = 10.0 ** math.ceil(math.log10(min(sizes)))
         axis.set_xscale("symlog", linthresh=threshold)
         axis.set_yscale("symlog", linthresh=threshold)
+        for scaled in (axis.xaxis, axis.yaxis):
+            locator: Any = scaled.get_major_locator()
+            locator.set_params(numticks=MOST_TICKS)
     axis.axvline(0, color="0.6", linewidth=1)
     axis.set(xlabel="growth rate (1/s)", ylabel="frequency (rad/s)", title="Modes; those on the left of the line decay")
     axis.grid(alpha=0.3)

@@ -65,6 +65,7 @@ class Analysis(Answer):
     ``spectral_radius`` and all keys without ``closed_loop`` belong to one step of the plant without feedback. The loop has
     ``closed_loop_spectral_radius``, and with jitter or losses ``mean_square_growth``. ``note`` is a restriction of the numbers,
     if there is one. An analysis has the attributes of its kind only: ``dir(analysis)`` and ``list(analysis)`` have their names.
+    A number that is not finite, since a step overflows, is None.
     """
 
     # Of one step, and of a linear plant.

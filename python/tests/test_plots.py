@@ -81,6 +81,11 @@ def test_an_analysis_of_a_step_shows_eigenvalues_stable_steps_and_stable_latenci
     assert float(axes[1].texts[0].get_text()) == pytest.approx(loop.critical_latency_seconds, rel=1e-3)
 
 
+def test_an_analysis_whose_numbers_are_not_finite_says_so():
+    axes = drawn(libration.analyze("duffing", integrator="suzuki4", dt=30.0, steps=50).plot())
+    assert axes[0].get_title().endswith("spectral radius not finite")
+
+
 def test_an_analysis_of_a_plant_shows_modes_of_plant_and_loop_and_the_limits_of_integrators():
     analysis = libration.analyze(PLANT, LQR([100.0, 100.0, 1.0, 1.0], [1.0]), dt=0.01, period=0.01, latency=0.004)
     modes, steps = drawn(analysis.plot())
