@@ -178,6 +178,12 @@ fn inner(
     if task.inner.is_empty() && task.targets.is_empty() {
         return Ok(None);
     }
+    if task.targets.is_empty() {
+        let reason =
+            "is commanded by an inner controller without targets; expected names of actions";
+        let kind = EquationErrorKind::Coordinate { name: task.inner[0].0.clone(), reason };
+        return Err(fault("task.inner", kind));
+    }
     let degrees = equations.degrees();
     let mut builder = ProgramBuilder::default();
     let state = builder.inputs(2 * degrees.len());
@@ -213,12 +219,6 @@ fn inner(
         };
         let key = format!("task.inner.{input}");
         outputs.push(value(&mut resolver, &key, text, Expression::parse)?);
-    }
-    if task.targets.is_empty() {
-        let reason =
-            "is commanded by an inner controller without targets; expected names of actions";
-        let kind = EquationErrorKind::Coordinate { name: task.inner[0].0.clone(), reason };
-        return Err(fault("task.inner", kind));
     }
     Ok(Some(resolver.builder.finish(&outputs)))
 }

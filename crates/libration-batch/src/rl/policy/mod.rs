@@ -156,6 +156,16 @@ pub(in crate::rl) fn all_finite<T: Float>(
     Err(ControlError { name, index: Some(index), value, allowed }.into())
 }
 
+/// Multiplications and additions of a network with these parameters and hidden neurons.
+fn network_operations(parameters: usize, neurons: usize, activation: Activation) -> u64 {
+    // A hyperbolic tangent is a quotient of polynomials.
+    let each = match activation {
+        Activation::Tanh => 30,
+        Activation::Relu => 1,
+    };
+    2 * parameters as u64 + each * neurons as u64
+}
+
 /// Number `k` of neighbouring environments, from `[k, n]`. Values beyond the last environment are arbitrary.
 #[inline(always)]
 fn lanes<T: Float, const W: usize>(numbers: &[T], place: StepIndex, k: usize) -> [T; W] {

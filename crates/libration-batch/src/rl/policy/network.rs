@@ -4,7 +4,7 @@ use libration_core::random::Streams;
 use libration_core::{Elementary, Float};
 
 use super::perceptron::Activation;
-use super::{ActionSample, Policy, StepIndex, all_finite, perceptron};
+use super::{ActionSample, Policy, StepIndex, all_finite, network_operations, perceptron};
 use crate::ensemble::{InstructionSet, Loop};
 use crate::rl::EnvironmentError;
 
@@ -62,7 +62,7 @@ impl<T: Float + Elementary> Network<'_, T> {
     /// Multiplications and additions of an action, with those of activations.
     pub(in crate::rl) fn work(&self) -> u64 {
         let neurons: usize = self.hidden.iter().sum();
-        perceptron::operations(self.parameters.len(), neurons, self.activation)
+        network_operations(self.parameters.len(), neurons, self.activation)
     }
 
     /// The actions of `W` environments.

@@ -3,7 +3,7 @@
 use libration_core::random::Streams;
 use libration_core::{Elementary, Float};
 
-use super::{ActionSample, Policy, StepIndex, all_finite, lanes};
+use super::{ActionSample, Policy, StepIndex, all_finite, lanes, network_operations};
 use crate::rl::EnvironmentError;
 
 /// The activation function of the hidden layers of a [`Perceptron`].
@@ -39,16 +39,6 @@ const fn parameters(inputs: usize, outputs: usize) -> usize {
     outputs * (inputs + 1)
 }
 
-/// Multiplications and additions of a network with these parameters and hidden neurons.
-pub(super) fn operations(parameters: usize, neurons: usize, activation: Activation) -> u64 {
-    // A hyperbolic tangent is a quotient of polynomials.
-    let each = match activation {
-        Activation::Tanh => 30,
-        Activation::Relu => 1,
-    };
-    2 * parameters as u64 + each * neurons as u64
-}
-
 /// Hidden layers between the first and the last, if there are so many parameters.
 fn between<const O: usize, const H: usize, const D: usize>(count: usize) -> usize {
     let ends = const { parameters(O, H) + parameters(H, D) };
@@ -81,7 +71,7 @@ where
 
     fn operations(&self, _: usize) -> u64 {
         let hidden = 1 + between::<O, H, D>(self.parameters.len());
-        operations(self.parameters.len(), hidden * H, self.activation)
+        network_operations(self.parameters.len(), hidden * H, self.activation)
     }
 
     #[inline(always)]
@@ -126,7 +116,7 @@ where
 
     fn operations(&self, environments: usize) -> u64 {
         let found = self.parameters.len().checked_div(environments).unwrap_or(0);
-        operations(found, (1 + between::<O, H, D>(found)) * H, self.activation)
+        network_operations(found, (1 + between::<O, H, D>(found)) * H, self.activation)
     }
 
     #[inline(always)]

@@ -6,7 +6,8 @@ use libration_core::Float;
 use libration_core::control::Clock;
 use ndarray::ArrayViewMut3;
 
-use super::block_step::{BlockStep, Row};
+use super::block_state::Row;
+use super::block_step::BlockStep;
 use super::episodes::Episodes;
 use super::horizon::{Horizon, Share};
 use super::state::{Beginning, Programs};

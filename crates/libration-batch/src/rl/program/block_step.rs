@@ -6,6 +6,7 @@ use libration_core::control::{Clock, Memory};
 use libration_core::random::{Purpose, Streams};
 
 use super::ProgramPolicy;
+use super::block_state::{BlockState, Row, row_of, set_times};
 use super::command_limits::CommandLimits;
 use super::environment::World;
 use super::episodes::EpisodeBlock;
@@ -18,9 +19,6 @@ use crate::rl::deviation::scale_deviation;
 use crate::rl::episode_streams::begin_epochs;
 use crate::rl::history::History;
 use crate::rl::{ProgramEnvironment, StepIndex};
-
-/// A row of a block.
-pub(super) type Row<T> = [T; LANES];
 
 /// What all blocks and steps of a thread share, with the rows that a step fills.
 pub(super) struct BlockStep<'s, T> {
@@ -56,16 +54,6 @@ pub(super) struct BlockStep<'s, T> {
     lengths: Row<T>,
     times: Row<T>,
     judged: [Row<T>; 2],
-}
-
-/// A block with its positions and velocities and with what is on its way.
-pub(super) struct BlockState<'a, T: Float> {
-    pub(super) episodes: &'a mut EpisodeBlock<T>,
-    /// Positions, then velocities.
-    pub(super) states: &'a mut [Row<T>],
-    /// The [numbers](ProgramEnvironment::numbers) of the episodes.
-    pub(super) numbers: &'a mut [Row<T>],
-    pub(super) past: &'a mut [T],
 }
 
 impl<'s, T: BatchFloat> BlockStep<'s, T> {
@@ -301,24 +289,5 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
             self.overs[l] = u8::from(overs[l] > T::zero()) | (u8::from(lost) * LOST);
             self.rewards[l] = if lost { T::zero() } else { rewards[l] };
         }
-    }
-}
-
-/// Row `i` of these one after the other; none behind the last.
-fn row_of<T, const N: usize>(all: [&[Row<T>]; N], mut i: usize) -> Option<&Row<T>> {
-    for rows in all {
-        if let Some(row) = rows.get(i) {
-            return Some(row);
-        }
-        i -= rows.len();
-    }
-    None
-}
-
-/// Sets the times since the episodes began, in seconds of an ideal clock.
-fn set_times<T: Float>(times: &mut Row<T>, now: u64, began: &[u64; LANES], span: f64) {
-    for (time, began) in times.iter_mut().zip(began) {
-        // Lanes that are no environments have no age.
-        *time = T::from_f64(f64::from(now.saturating_sub(*began) as u32) * span);
     }
 }

@@ -2,7 +2,7 @@
 
 use libration_core::Float;
 
-use super::block_step::Row;
+use super::block_state::Row;
 use crate::rl::{EpisodeNumber, ProgramEnvironment};
 
 /// What makes actions commands.

@@ -3,7 +3,8 @@
 use libration_core::Float;
 use libration_core::random::Streams;
 
-use super::block_step::{BlockState, BlockStep, Row};
+use super::block_state::{BlockState, Row};
+use super::block_step::BlockStep;
 use super::episodes::EpisodeBlock;
 use super::rollout::EpisodeEnds;
 use super::state::Beginning;

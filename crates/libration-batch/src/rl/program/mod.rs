@@ -6,6 +6,7 @@
 
 mod batch;
 mod batch_episodes;
+mod block_state;
 mod block_step;
 mod checkpoint;
 mod command_limits;

@@ -4,7 +4,7 @@ use libration_core::{Float, with_method};
 use libration_equations::StepProgram;
 
 use super::ProgramEnvironment;
-use super::block_step::{BlockState, Row};
+use super::block_state::{BlockState, Row};
 use super::environment::World;
 use super::row_program::RowProgram;
 use crate::rl::history::History;

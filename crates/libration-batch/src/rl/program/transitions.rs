@@ -3,7 +3,8 @@
 use libration_core::Float;
 use ndarray::{ArrayViewMut2, ArrayViewMut3, Axis};
 
-use super::block_step::{BlockStep, Row};
+use super::block_state::Row;
+use super::block_step::BlockStep;
 use crate::rl::block_size::LANES;
 
 /// The destination of transitions of neighbouring environments: `[t, n]`, or `[t, n, i]`. What is not requested has no columns.
