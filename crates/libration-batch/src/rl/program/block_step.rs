@@ -1,6 +1,5 @@
 //! The parts of a step of a block.
 
-use libration_core::Float;
 use libration_core::control::clock::Noise;
 use libration_core::control::{Clock, Memory};
 use libration_core::random::{Purpose, Streams};
