@@ -3,18 +3,18 @@
 use libration::State;
 use libration::ensemble::{All, Execution};
 use libration::integrator::SymplecticEuler;
-use libration::rl::policy::Constant;
-use libration::rl::start::FixedStart;
+use libration::rl::start::UniformStart;
 use libration::rl::task::Regulate;
-use libration::rl::{Autoreset, Delays, Environment, Environments, Layout, Plan, Rollout, Task};
+use libration::rl::{Autoreset, Delays, Environment, Environments, Layout, Plan, Rollout};
 use libration::system::BaselineOnly;
 
+use crate::any_policy::{AnyPolicy, sequence};
 use crate::bits::POLICY;
-use crate::{SPRING, TASK, perturbed, plain};
+use crate::{SPRING, TASK, ideal, perturbed, plain};
 
 #[test]
 fn an_episode_that_ends_is_kept_with_what_was_seen_last_and_what_it_paid() {
-    let mut all = Environments::new(plain(), 200, 4, Execution::serial()).unwrap();
+    let mut all = Environments::new(ideal(), 200, 4, Execution::serial()).unwrap();
     let mut rollout = Rollout::new(Plan::new(130, 200).truncated().layout(Layout::Planes)).unwrap();
     all.rollout(POLICY, &mut rollout).unwrap();
     let flags = (0..130 * 200).filter(|&at| rollout.terminated()[at] + rollout.truncated()[at] > 0);
@@ -42,12 +42,13 @@ fn an_episode_that_ends_is_kept_with_what_was_seen_last_and_what_it_paid() {
 fn what_is_no_longer_finite_is_over_pays_nothing_and_begins_again() {
     // Beyond z = 2 symplectic Euler grows without end.
     let task = Regulate { bound: f64::INFINITY, ..TASK };
-    let start = FixedStart(State { q: [1.0], v: [0.0] });
+    let at = State { q: [1.0], v: [0.0] };
+    let start = UniformStart(at, at);
     let environment =
         Environment::new(All(BaselineOnly(SPRING)), SymplecticEuler, 1e6, task, start);
     let mut all = Environments::new(environment, 3, 0, Execution::serial()).unwrap();
     let mut rollout = Rollout::new(Plan::new(20, 3)).unwrap();
-    all.rollout(Constant([0.0]), &mut rollout).unwrap();
+    all.rollout(AnyPolicy::constant(0.0), &mut rollout).unwrap();
     assert!(rollout.finals().len() >= 3 && rollout.finals().iter().all(|end| end.lost));
     assert!(rollout.observation().iter().all(|x| x.is_finite()));
     for end in rollout.finals() {
@@ -59,14 +60,13 @@ fn what_is_no_longer_finite_is_over_pays_nothing_and_begins_again() {
 #[test]
 fn an_action_or_a_reward_that_is_no_number_ends_the_episode_of_its_environment_and_touches_no_other()
  {
-    use libration::rl::policy::ActionSequence;
     let run = |bad: Option<f32>, delays| {
         let environment = plain().delays(delays);
         let mut all = Environments::new(environment, 70, 1, Execution::serial()).unwrap();
         let mut actions = vec![0.5_f32; 70 * 6];
         bad.into_iter().for_each(|action| actions[2 * 70 + 33] = action);
         let mut rollout = Rollout::new(Plan::new(6, 70).truncated()).unwrap();
-        all.rollout(ActionSequence(&actions), &mut rollout).unwrap();
+        all.rollout(sequence(&actions), &mut rollout).unwrap();
         rollout
     };
     // Also where its effect would come later.
@@ -89,14 +89,13 @@ fn an_action_or_a_reward_that_is_no_number_ends_the_episode_of_its_environment_a
 
 #[test]
 fn what_is_lost_is_seen_so_in_no_transition_and_begins_again() {
-    use libration::rl::policy::ActionSequence;
     for autoreset in [Autoreset::NextStep, Autoreset::Disabled] {
         let mut all =
             Environments::new(plain().autoreset(autoreset), 70, 1, Execution::serial()).unwrap();
         let mut actions = vec![0.5_f32; 70 * 6];
         actions[2 * 70 + 33] = f32::INFINITY;
         let mut rollout = Rollout::new(Plan::new(6, 70).truncated()).unwrap();
-        all.rollout(ActionSequence(&actions), &mut rollout).unwrap();
+        all.rollout(sequence(&actions), &mut rollout).unwrap();
         assert!(rollout.finals().iter().any(|end| end.lost && end.environment == 33));
         assert!(rollout.reward().iter().all(|reward| reward.is_finite()));
         for (t, n) in (0..6).flat_map(|t| (0..70).map(move |n| (t, n))) {
@@ -108,38 +107,10 @@ fn what_is_lost_is_seen_so_in_no_transition_and_begins_again() {
         assert_eq!(moves, [false, autoreset == Autoreset::NextStep]);
         if autoreset == Autoreset::Disabled {
             all.reset(&[true; 70]).unwrap();
-            all.rollout(ActionSequence(&[0.5; 70 * 6]), &mut rollout).unwrap();
+            all.rollout(sequence(&[0.5; 70 * 6]), &mut rollout).unwrap();
             assert!(rollout.observation().iter().all(|x| x.is_finite()));
         }
     }
-}
-
-#[test]
-fn what_is_finite_is_not_lost_however_large() {
-    use half::f16;
-    /// Nothing is paid for, and nothing is over.
-    #[derive(Clone, Copy)]
-    struct Nothing;
-    impl Task<f16, 1, 2> for Nothing {
-        fn observe(&self, _: f16, state: &State<f16, 1>) -> [f16; 2] {
-            [state.q[0], state.v[0]]
-        }
-        fn reward(&self, _: f16, _: &State<f16, 1>, _: &[f16; 1], _: &State<f16, 1>) -> f16 {
-            f16::MAX
-        }
-        fn terminated(&self, _: f16, _: &State<f16, 1>) -> bool {
-            false
-        }
-    }
-    // Of no two of these numbers there is a sum in this type.
-    let start = FixedStart(State { q: [40_000.0], v: [40_000.0] });
-    let still = libration::system::Oscillator { omega2: f16::ZERO };
-    let environment =
-        Environment::new(All(BaselineOnly(still)), SymplecticEuler, 1e-7, Nothing, start);
-    let mut all = Environments::new(environment, 64, 0, Execution::serial()).unwrap();
-    let mut rollout: Rollout<f16, 2, 1> = Rollout::new(Plan::new(3, 64)).unwrap();
-    all.rollout(Constant([0.0]), &mut rollout).unwrap();
-    assert!(rollout.finals().is_empty());
 }
 
 #[test]
@@ -147,14 +118,14 @@ fn what_stands_still_waits_for_its_reset_and_nothing_else_does() {
     let world = perturbed(Autoreset::Disabled);
     let mut all = Environments::new(world, 100, 3, Execution::serial()).unwrap();
     let mut rollout = Rollout::new(Plan::new(80, 100).truncated()).unwrap();
-    all.rollout(POLICY, &mut rollout).unwrap();
+    all.rollout(AnyPolicy::Linear(POLICY), &mut rollout).unwrap();
     // After 60 actions at the latest each has ended, once.
     assert_eq!(rollout.finals().len(), 100);
     assert!((0..100).all(|n| !rollout.is_transition(79, n)));
     let states: Vec<_> = (0..100).map(|n| all.state(n)).collect();
     let which: Vec<bool> = (0..100).map(|n| n % 3 == 0).collect();
     all.reset(&which).unwrap();
-    all.rollout(POLICY, &mut rollout).unwrap();
+    all.rollout(AnyPolicy::Linear(POLICY), &mut rollout).unwrap();
     for (n, &again) in which.iter().enumerate() {
         assert_eq!(rollout.is_transition(0, n), again, "{n}");
         assert_eq!(all.state(n) == states[n], !again, "{n}");

@@ -4,20 +4,22 @@ use libration::State;
 use libration::control::clock::{Gaussian, Jittered, Recorded, Uniform};
 use libration::ensemble::{All, Execution};
 use libration::rl::policy::{
-    ActionSequence, Activation, Constant, GaussianExploration, Linear, LinearPerEnvironment,
-    Perceptron, PerceptronPerEnvironment, Random,
+    Activation, GaussianExploration, Linear, LinearPerEnvironment, Perceptron,
+    PerceptronPerEnvironment,
 };
 use libration::rl::sensor::Noisy;
 use libration::rl::start::UniformStart;
 use libration::rl::task::Regulate;
 use libration::rl::variation::RandomParameters;
 use libration::rl::{
-    ActionSample, Delays, Distribution, Environment, Environments, ErrorScale, Estimates, Plan,
-    Policy, Rollout, StepIndex, World, Writes,
+    Delays, Distribution, Environment, Environments, ErrorScale, Estimates, Plan, Rollout, World,
+    Writes,
 };
 use libration::system::{BaselineOnly, Oscillator};
 
+use crate::any_policy::{AnyPolicy, sequence};
 use crate::bits::POLICY;
+use crate::clocks::{Idle, even};
 use crate::{ANYWHERE, plain};
 
 fn made<E: World<f32, 2, 1>>(world: E) -> Result<Environments<f32, E, 2, 1>, String> {
@@ -108,7 +110,7 @@ fn a_rollout_that_does_not_fit_is_refused_and_nothing_has_moved() {
     let mut two = made(plain()).unwrap();
     let mut fill = |plan: Plan| {
         let mut rollout = Rollout::new(plan).unwrap();
-        two.rollout(POLICY, &mut rollout).map_err(|error| error.to_string())
+        two.rollout(AnyPolicy::Linear(POLICY), &mut rollout).map_err(|error| error.to_string())
     };
     let other = fill(Plan::new(4, 3).truncated()).unwrap_err();
     assert_eq!(other, "the number of environments of the rollout is 3; it must be 2");
@@ -128,58 +130,65 @@ fn a_rollout_that_does_not_fit_is_refused_and_nothing_has_moved() {
     large(steps.parse::<usize>().unwrap() / 2, 1 << 26).unwrap();
     assert!(large(usize::MAX / 4, 1 << 20).unwrap_err().to_string().contains("memory"));
     let mut none = Environments::new(plain(), 0, 0, Execution::serial()).unwrap();
-    none.rollout(POLICY, &mut Rollout::new(Plan::new(3, 0).truncated()).unwrap()).unwrap();
-    let clock = Recorded::once(&[1.0, 1.1, 0.9]);
+    none.rollout(
+        AnyPolicy::Linear(POLICY),
+        &mut Rollout::new(Plan::new(3, 0).truncated()).unwrap(),
+    )
+    .unwrap();
+    let clock = (Recorded::once(&[1.0, 1.1, 0.9]), even().1);
     let mut short = Environments::new(plain().clock(clock), 2, 0, Execution::serial()).unwrap();
     let mut rollout = Rollout::new(Plan::new(5, 2).truncated()).unwrap();
-    let error = short.rollout(POLICY, &mut rollout).unwrap_err().to_string();
+    let error = short.rollout(Idle { words: 0 }, &mut rollout).unwrap_err().to_string();
     assert_eq!(error, "the record of a clock or a delay has 3 steps; the run requires 5");
 }
 
 #[test]
 fn a_policy_that_cannot_act_is_refused() {
-    fn told<P: Policy<f32, 2, 1>>(policy: P) -> String {
+    fn told(policy: AnyPolicy<'_>) -> String {
         let mut two = made(plain()).unwrap();
         let mut rollout = Rollout::new(Plan::new(5, 2).truncated()).unwrap();
         two.rollout(policy, &mut rollout).unwrap_err().to_string()
     }
-    assert_eq!(told(ActionSequence(&[0.0; 9])), "the number of actions is 9; it must be 10");
+    assert_eq!(told(sequence(&[0.0; 9])), "the number of actions is 9; it must be 10");
+    let linear = |weights| told(AnyPolicy::LinearPerEnvironment(LinearPerEnvironment(weights)));
+    assert_eq!(linear(&[0.0; 5]), "the number of weights of the policy is 5; it must be 6");
+    let network =
+        |parameters, activation| told(AnyPolicy::Network(Perceptron { parameters, activation }));
     assert_eq!(
-        told(LinearPerEnvironment(&[0.0; 5])),
-        "the number of weights of the policy is 5; it must be 6"
+        network(&[0.0; 34], Activation::Tanh),
+        "the number of parameters of the network is 34; it must be 105"
     );
-    let network = Perceptron::<f32, 8> { parameters: &[0.0; 34], activation: Activation::Tanh };
-    assert_eq!(told(network), "the number of parameters of the network is 34; it must be 105");
     assert_eq!(
-        told(GaussianExploration { policy: POLICY, sigma: [0.0] }),
+        told(AnyPolicy::Exploration(GaussianExploration { policy: POLICY, sigma: [0.0] })),
         "standard deviation of exploration 0 is 0; it must be a finite number above 0"
     );
     assert_eq!(
-        told(Linear { weights: [[1.0, f64::NAN]], bias: [0.0] }),
+        told(AnyPolicy::Linear(Linear { weights: [[1.0, f64::NAN]], bias: [0.0] })),
         "weight of the policy 1 is NaN; it must be finite in the float type"
     );
     assert_eq!(
-        told(Constant([1e300])),
+        told(AnyPolicy::constant(1e300)),
         "constant action 0 is 1e300; it must be finite in the float type"
     );
     let mut weights = [0.0; 6];
     weights[4] = f32::INFINITY;
-    assert!(told(LinearPerEnvironment(&weights)).contains("weight of the policy 4 is inf"));
+    assert!(linear(&weights).contains("weight of the policy 4 is inf"));
     let mut parameters = [0.0; Perceptron::<f32, 8>::parameters(2, 1, 1)];
     parameters[32] = f32::NAN;
-    let network = Perceptron::<f32, 8> { parameters: &parameters, activation: Activation::Relu };
-    assert!(told(network).contains("parameter of the network 32 is NaN"));
-    let networks = PerceptronPerEnvironment::<f32, 8> {
-        parameters: &parameters,
-        activation: Activation::Relu,
-    };
-    assert_eq!(told(networks), "the number of parameters of the networks is 33; it must be 66");
+    let told_of_network = network(&parameters, Activation::Relu);
+    assert!(told_of_network.contains("parameter of the network 32 is NaN"), "{told_of_network}");
+    let networks =
+        PerceptronPerEnvironment { parameters: &parameters, activation: Activation::Relu };
     assert_eq!(
-        told(Random::between([1.0], [0.0])),
+        told(AnyPolicy::NetworkPerEnvironment(networks)),
+        "the number of parameters of the networks is 33; it must be 66"
+    );
+    assert_eq!(
+        told(AnyPolicy::random(1.0, 0.0)),
         "width of the random action 0 is -1; it must be a finite number above 0"
     );
     assert_eq!(
-        told(Random::between([0.0], [1e300])),
+        told(AnyPolicy::random(0.0, 1e300)),
         "width of the random action 0 is 1e300; it must be a finite number above 0"
     );
 }
@@ -222,27 +231,11 @@ fn tasks_and_starts_that_cannot_be_are_refused() {
 
 #[test]
 fn a_policy_that_draws_without_saying_so_is_refused() {
-    #[derive(Clone, Copy)]
-    struct Secretive(usize);
-    impl Policy<f32, 2, 1> for Secretive {
-        fn words(&self) -> usize {
-            self.0
-        }
-
-        fn act(
-            &self,
-            _: StepIndex,
-            _: &[f32; 2],
-            word: &mut impl FnMut() -> u32,
-        ) -> ActionSample<f32, 1> {
-            ActionSample::deterministic([word() as f32])
-        }
-    }
-    let mut all = made(plain()).unwrap();
+    let mut all = made(plain().clock(even())).unwrap();
     let mut rollout = Rollout::new(Plan::new(1, 2).truncated()).unwrap();
-    assert!(all.rollout(Secretive(0), &mut rollout).is_ok());
+    assert!(all.rollout(Idle { words: 0 }, &mut rollout).is_ok());
     assert_eq!(
-        all.rollout(Secretive(1), &mut rollout).unwrap_err().to_string(),
+        all.rollout(Idle { words: 1 }, &mut rollout).unwrap_err().to_string(),
         "random words of the policy is 1; it must be 0 unless `DRAWS` is true"
     );
 }

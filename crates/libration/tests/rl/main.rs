@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod any_policy;
 mod bits;
 mod clocks;
 mod episodes;
@@ -42,7 +43,8 @@ fn ideal() -> Spring {
     Environment::new(All(SPRING), SymplecticEuler, 0.06, TASK, ANYWHERE).limit(60)
 }
 
-/// The same on one instruction set, which is compiled once and not once for each: for tests that do not compare them.
+/// The same on one instruction set, which is compiled once and not once for each: for tests that do not compare them. With `AnyPolicy` it
+/// is compiled once for all of these tests.
 fn plain() -> Spring<Fixed, Exact, NoVariation, BaselineOnly<Oscillator<f32>>> {
     Environment::new(All(BaselineOnly(SPRING)), SymplecticEuler, 0.06, TASK, ANYWHERE).limit(60)
 }
@@ -88,10 +90,13 @@ fn chosen(method: Method) -> impl World<f32, 2, 1> {
 
 /// On every instruction set, alone and with more threads than a small machine has cores.
 fn executions() -> Vec<Execution> {
-    let sets = InstructionSet::available().flat_map(|set| [1, 3].map(|threads| (set, threads)));
-    sets.map(|(set, threads)| {
+    InstructionSet::available().flat_map(executions_on).collect()
+}
+
+/// On one instruction set.
+fn executions_on(set: InstructionSet) -> [Execution; 2] {
+    [1, 3].map(|threads| {
         let execution = Execution::serial().threads(threads).unwrap().worth(1);
         execution.instructions(set).unwrap()
     })
-    .collect()
 }

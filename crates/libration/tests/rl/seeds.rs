@@ -8,6 +8,7 @@ use libration::rl::{
     Autoreset, EnvironmentError, Environments, Layout, Plan, Rollout, World, Writes,
 };
 
+use crate::any_policy::AnyPolicy;
 use crate::bits::{EXPLORING, told};
 use crate::scalar_reference::Told;
 use crate::{executions, perturbed, plain};
@@ -17,10 +18,10 @@ fn transitions(autoreset: Autoreset, limit: u32) -> Vec<Vec<Told>> {
     let world = perturbed(autoreset).limit(limit);
     let way = (Layout::Interleaved, Writes::Plain);
     // Energy is taken out: many episodes reach the limit.
-    let policy = GaussianExploration {
+    let policy = AnyPolicy::Exploration(GaussianExploration {
         policy: Linear { weights: [[-3.0, -0.5]], bias: [0.25] },
         sigma: [0.5],
-    };
+    });
     let mut all = told(world, policy, 0..70, Execution::serial(), &[700], way);
     all.iter_mut().for_each(|told| told.retain(|now| now.moved));
     all

@@ -1,11 +1,11 @@
 //! Single steps have the bits of a rollout.
 
 use libration::ensemble::Execution;
-use libration::rl::policy::ActionSequence;
 use libration::rl::{
     Autoreset, EnvironmentError, Environments, EpisodeEnd, Plan, Rollout, StepBuffers, World,
 };
 
+use crate::any_policy::sequence;
 use crate::bits::EXPLORING;
 use crate::{executions, perturbed, plain};
 
@@ -48,7 +48,7 @@ fn compare<E: World<f32, 2, 1>>(world: E, count: usize, execution: &Execution) {
             terminated: &mut terminated,
             truncated: &mut truncated,
         };
-        let ends = other.act(ActionSequence(&wanted.action()[row.clone()]), to).unwrap();
+        let ends = other.act(sequence(&wanted.action()[row.clone()]), to).unwrap();
         finals.extend(ends.into_iter().map(|end| EpisodeEnd { step: t, ..end }));
         assert_eq!(reward, wanted.reward()[row.clone()]);
         assert_eq!(terminated, wanted.terminated()[row.clone()]);
@@ -101,7 +101,7 @@ fn a_step_whose_room_is_for_more_or_fewer_is_refused_and_nothing_has_moved() {
     let mut refused = |seen: &mut [f32], reward: &mut [f32], flags: &mut [u8], actions: &[f32]| {
         let mut other = vec![0; flags.len()];
         let to = StepBuffers { seen, reward, terminated: flags, truncated: &mut other };
-        all.act(ActionSequence(actions), to).unwrap_err()
+        all.act(sequence(actions), to).unwrap_err()
     };
     for (error, name, found, wanted) in [
         (refused(&mut [0.0; 5], &mut [0.0; 3], &mut [0; 3], &[0.0; 3]), "observed numbers", 5, 6),

@@ -1,6 +1,6 @@
 //! The memory of rollouts.
 
-use bytemuck::Pod;
+use libration::State;
 use libration::ensemble::{All, Execution, PerTrajectory};
 use libration::integrator::{Integrator, Rk4};
 use libration::rl::policy::Constant;
@@ -8,12 +8,13 @@ use libration::rl::start::FixedStart;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{Autoreset, Environment, Environments, Plan, Rollout};
 use libration::system::{BaselineOnly, CommandedSystem, Oscillator, Pendulum};
-use libration::{Float, State};
+
+use crate::any_policy::AnyPolicy;
 
 #[test]
 fn each_environment_has_its_own_system_and_tasks_see_what_they_say() {
-    let systems: Vec<Pendulum<f64>> =
-        (0..70).map(|n| Pendulum { omega2: 1.0 + f64::from(n) }).collect();
+    let systems: Vec<BaselineOnly<Pendulum<f64>>> =
+        (0..70).map(|n| BaselineOnly(Pendulum { omega2: 1.0 + f64::from(n) })).collect();
     let (task, start) =
         (SwingUp { velocity: 0.1, effort: 0.0 }, FixedStart(State { q: [0.5], v: [0.0] }));
     let environment = Environment::new(PerTrajectory(&systems), Rk4, 0.05, task, start).substeps(2);
@@ -127,14 +128,14 @@ fn values_have_their_room_and_nobody_else_writes_there() {
     let mut rollout = Rollout::<f32, 2, 1>::new(Plan::new(4, 64).values()).unwrap();
     rollout.value_mut().fill(2.5);
     let mut all = Environments::new(crate::plain(), 64, 0, Execution::serial()).unwrap();
-    let refused = all.rollout(Constant([0.0]), &mut rollout).unwrap_err().to_string();
+    let refused = all.rollout(AnyPolicy::constant(0.0), &mut rollout).unwrap_err().to_string();
     assert_eq!(
         refused,
         "the environments have a time limit: the rollout requires the field `truncated`"
     );
     let mut rollout = Rollout::new(Plan::new(4, 64).truncated().values()).unwrap();
     rollout.value_mut().fill(2.5);
-    all.rollout(Constant([0.0]), &mut rollout).unwrap();
+    all.rollout(AnyPolicy::constant(0.0), &mut rollout).unwrap();
     assert!(rollout.value().iter().all(|&value| value == 2.5));
     assert!(rollout.reward().iter().any(|&reward| reward != 0.0));
 }
@@ -173,7 +174,7 @@ fn advantages(
 fn advantages_are_those_of_the_definition_under_every_autoreset() {
     use libration::rl::{Discounts, Estimates};
     for autoreset in [Autoreset::SameStep, Autoreset::NextStep, Autoreset::Disabled] {
-        let environment = crate::plain().autoreset(autoreset);
+        let environment = crate::ideal().autoreset(autoreset);
         let mut all = Environments::new(environment, 90, 6, Execution::serial()).unwrap();
         let plan = Plan::new(100, 90).truncated().values();
         let mut rollout = Rollout::new(plan).unwrap();
@@ -211,35 +212,5 @@ fn advantages_are_those_of_the_definition_under_every_autoreset() {
             "the number of values after the last step is 89; it must be 90"
         );
         assert_eq!(told(&next, 1.5), "discount of rewards is 1.5; it must be from 0 to 1");
-    }
-}
-
-#[test]
-fn short_and_long_floats_are_environments_too() {
-    use half::f16;
-    use libration::ensemble::InstructionSet;
-    use libration::integrator::SymplecticEuler;
-    use libration::rl::policy::Linear;
-    fn last<T: Float + Pod>(omega2: T, set: InstructionSet) -> Vec<f64> {
-        let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 };
-        let start = FixedStart(State { q: [1.0], v: [0.0] });
-        let environment =
-            Environment::new(All(Oscillator { omega2 }), SymplecticEuler, 0.0625, task, start);
-        let execution = Execution::serial().instructions(set).unwrap();
-        let mut all = Environments::new(environment, 70, 0, execution).unwrap();
-        let mut rollout: Rollout<T, 2, 1> = Rollout::new(Plan::new(32, 70)).unwrap();
-        let policy = Linear { weights: [[-1.0, -0.5]], bias: [0.0] };
-        all.rollout(policy, &mut rollout).unwrap();
-        rollout.observation()[31 * 140..].iter().map(|x| x.to_f64()).collect()
-    }
-    for set in InstructionSet::available() {
-        let wide = last(10.0_f64, set);
-        // An oscillation of size 1 over 32 steps keeps some digits of ten bits.
-        for (short, bound) in [(last(10.0_f32, set), 1e-5), (last(f16::from_f64(10.0), set), 0.05)]
-        {
-            let furthest = |worst: f64, (a, b): (&f64, &f64)| worst.max((a - b).abs());
-            let error = short.iter().zip(&wide).fold(0.0, furthest);
-            assert!(error > 0.0 && error < bound, "{error}");
-        }
     }
 }
