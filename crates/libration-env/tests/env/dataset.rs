@@ -11,7 +11,7 @@ use libration::rl::policy::Linear;
 use libration::rl::start::UniformStart;
 use libration::rl::task::SwingUp;
 use libration::rl::{Environment, Environments, Plan, Rollout};
-use libration::system::Pendulum;
+use libration::system::{BaselineOnly, Pendulum};
 use libration_env::dataset::{
     DataFormat, Dataset, Monitor, VerifyOptions, WriteJob, parse, verify, write,
 };
@@ -80,7 +80,7 @@ fn a_data_set_holds_the_bits_of_the_environments_of_the_engine() {
 
     let task = SwingUp { velocity: 0.2, effort: 0.01 };
     let start = UniformStart(State { q: [-0.5], v: [0.0] }, State { q: [0.5], v: [0.0] });
-    let pendulum = All(Pendulum { omega2: 4.0_f32 });
+    let pendulum = All(BaselineOnly(Pendulum { omega2: 4.0_f32 }));
     let world = Environment::new(pendulum, VelocityVerlet, 0.05, task, start).limit(40);
     let mut all = Environments::<f32, _, 3, 1>::new(world, 100, 3, Execution::serial()).unwrap();
     let mut rollout = Rollout::new(Plan::new(75, 100).truncated()).unwrap();

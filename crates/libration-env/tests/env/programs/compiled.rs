@@ -2,87 +2,69 @@
 
 use libration::control::clock::{Jittered, Skewed};
 use libration::ensemble::All;
-use libration::integrator::{Rk4, SymplecticEuler, VelocityVerlet, YOSHIDA4};
 use libration::rl::sensor::Noisy;
 use libration::rl::start::UniformStart;
-use libration::rl::{Environment, Environments};
-use libration::system::BaselineOnly;
-use libration::{AnySystem, Integrator, Method, Model, State, System};
+use libration::rl::{Environment, Environments, Task};
+use libration::system::{BaselineOnly, DampedOscillator, Duffing, Oscillator, Pendulum};
+use libration::{AnySystem, Model, State, System};
 use libration_env::environments::{
-    AnyEnvironments, EnvironmentFloat, EnvironmentSettings, Selection, Task,
+    AnyEnvironments, EnvironmentFloat, EnvironmentSettings, Selection, Task as AnyTask,
 };
 
-/// Compiled environments of the engine, which know nothing of programs; none if the kernel is compiled for the other float only.
-///
-/// A kernel takes a second to compile: each system has half of the methods in one float and half of them in the other.
+/// The systems of the cases. A kernel takes a second to compile: one for each task and float serves all systems and integrators.
+#[derive(Clone, Copy)]
+enum Plant<T> {
+    Damped(DampedOscillator<T>),
+    Duffing(Duffing<T>),
+    Oscillator(Oscillator<T>),
+    Pendulum(Pendulum<T>),
+}
+
+impl<T: EnvironmentFloat> System<T, 1> for Plant<T> {
+    #[inline(always)]
+    fn acceleration(&self, state: &State<T, 1>) -> [T; 1] {
+        match self {
+            Plant::Damped(system) => system.acceleration(state),
+            Plant::Duffing(system) => system.acceleration(state),
+            Plant::Oscillator(system) => system.acceleration(state),
+            Plant::Pendulum(system) => system.acceleration(state),
+        }
+    }
+}
+
+/// Compiled environments of the engine, which know nothing of programs.
 pub(super) fn compiled<T: EnvironmentFloat>(
     settings: &EnvironmentSettings,
     which: Selection<'_>,
-) -> Option<Box<dyn AnyEnvironments<T>>> {
-    match (settings.system.any(), settings.task) {
-        (AnySystem::Oscillator(model), Task::Regulate(task)) => {
-            of_system::<T, _, _, _, true>(Model::<1>::on::<T>(&model), task, settings, which)
-        }
-        (AnySystem::DampedOscillator(model), Task::Regulate(task)) => {
-            of_system::<T, _, _, _, false>(Model::<1>::on::<T>(&model), task, settings, which)
-        }
-        (AnySystem::Pendulum(model), Task::SwingUp(task)) => {
-            of_system::<T, _, _, _, true>(Model::<1>::on::<T>(&model), task, settings, which)
-        }
-        (AnySystem::Duffing(model), Task::Track(task)) => {
-            of_system::<T, _, _, _, false>(Model::<1>::on::<T>(&model), task, settings, which)
-        }
+) -> Box<dyn AnyEnvironments<T>> {
+    let plant = match settings.system.any() {
+        AnySystem::DampedOscillator(model) => Plant::Damped(Model::<1>::on::<T>(&model)),
+        AnySystem::Duffing(model) => Plant::Duffing(Model::<1>::on::<T>(&model)),
+        AnySystem::Oscillator(model) => Plant::Oscillator(Model::<1>::on::<T>(&model)),
+        AnySystem::Pendulum(model) => Plant::Pendulum(Model::<1>::on::<T>(&model)),
         other => panic!("no case is {other:?}"),
+    };
+    match settings.task {
+        AnyTask::Regulate(task) => of_task::<T, _, _>(plant, task, settings, which),
+        AnyTask::SwingUp(task) => of_task::<T, _, _>(plant, task, settings, which),
+        AnyTask::Track(task) => of_task::<T, _, _>(plant, task, settings, which),
     }
 }
 
-fn of_system<T, S, K, const O: usize, const EVEN: bool>(
-    system: S,
-    task: K,
-    settings: &EnvironmentSettings,
-    which: Selection<'_>,
-) -> Option<Box<dyn AnyEnvironments<T>>>
-where
-    T: EnvironmentFloat,
-    S: System<T, 1> + Copy + Send + Sync + 'static,
-    K: libration::rl::Task<T, 1, O> + 'static,
-{
-    if const { (size_of::<T>() == 4) == EVEN } {
-        match settings.method {
-            Method::VelocityVerlet => {
-                Some(of_method(system, VelocityVerlet, task, settings, which))
-            }
-            Method::SymplecticEuler => {
-                Some(of_method(system, SymplecticEuler, task, settings, which))
-            }
-            _ => None,
-        }
-    } else {
-        match settings.method {
-            Method::Rk4 => Some(of_method(system, Rk4, task, settings, which)),
-            Method::Yoshida4 => Some(of_method(system, YOSHIDA4, task, settings, which)),
-            _ => None,
-        }
-    }
-}
-
-fn of_method<T, S, M, K, const O: usize>(
-    system: S,
-    method: M,
+fn of_task<T, K, const O: usize>(
+    plant: Plant<T>,
     task: K,
     settings: &EnvironmentSettings,
     ([first, len], seed, execution): Selection<'_>,
 ) -> Box<dyn AnyEnvironments<T>>
 where
     T: EnvironmentFloat,
-    S: System<T, 1> + Copy + Send + Sync + 'static,
-    M: Integrator + 'static,
-    K: libration::rl::Task<T, 1, O> + 'static,
+    K: Task<T, 1, O> + 'static,
 {
     let [q, v] = settings.start;
     let start = UniformStart(State { q: [q[0]], v: [v[0]] }, State { q: [q[1]], v: [v[1]] });
-    let noise = settings.noise;
-    let mut world = Environment::new(All(BaselineOnly(system)), method, settings.dt, task, start)
+    let (noise, method) = (settings.noise, settings.method);
+    let mut world = Environment::new(All(BaselineOnly(plant)), method, settings.dt, task, start)
         .substeps(settings.substeps)
         .autoreset(settings.autoreset)
         .delays(settings.delays)
