@@ -5,15 +5,28 @@ use libration::control::clock::{
     Correlated, Drifting, Gaussian, Jittered, LateTicks, MissedTicks, RandomWalk, Rates, Recorded,
     Sinusoidal, Skewed, Uniform,
 };
+use libration::control::controller::OpenLoop;
 use libration::control::{Clock, Jitter};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::SymplecticEuler;
 use libration::system::{BaselineOnly, Oscillator};
 
+use super::any_clock::AnyClock;
+
+/// What moves freely in the steps of a clock.
+pub(crate) fn free(
+    clock: AnyClock<'_>,
+) -> Setup<All<BaselineOnly<Oscillator<f64>>>, SymplecticEuler, OpenLoop, AnyClock<'_>> {
+    Setup::new(All(BaselineOnly(Oscillator { omega2: 0.0 })), SymplecticEuler).clock(clock)
+}
+
 /// The steps of some trajectories, in multiples of `Δt`: what moves freely goes as far as time does.
-fn ratios<C: Clock<f64>>(clock: C, trajectories: usize, steps: usize) -> Vec<Vec<f64>> {
-    let setup =
-        Setup::new(All(BaselineOnly(Oscillator { omega2: 0.0 })), SymplecticEuler).clock(clock);
+fn ratios(clock: impl Clock<f64>, trajectories: usize, steps: usize) -> Vec<Vec<f64>> {
+    ratios_of(AnyClock(&clock), trajectories, steps)
+}
+
+fn ratios_of(clock: AnyClock<'_>, trajectories: usize, steps: usize) -> Vec<Vec<f64>> {
+    let setup = free(clock);
     let starts = vec![State { q: [0.0], v: [1.0] }; trajectories];
     let mut all = Loops::new(setup, 1.0, 77, [0.0], &starts, Execution::serial()).unwrap();
     let mut last = vec![0.0; trajectories];
@@ -176,8 +189,7 @@ fn the_halves_of_a_pair_have_nothing_to_do_with_each_other() {
 #[test]
 fn what_begins_again_does_not_begin_alike() {
     let clock = Correlated { rms: 0.1, correlation: 0.9 };
-    let setup =
-        Setup::new(All(BaselineOnly(Oscillator { omega2: 0.0 })), SymplecticEuler).clock(clock);
+    let setup = free(AnyClock(&clock));
     let start = State { q: [0.0], v: [1.0] };
     let mut all = Loops::new(setup, 1.0, 77, [0.0], &[start; 3], Execution::serial()).unwrap();
     let mut first = Vec::new();

@@ -6,51 +6,58 @@ use libration::control::clock::{
     Recorded, Sinusoidal, Skewed, Uniform,
 };
 use libration::control::controller::{Pid, PidGains, Saturated, StateFeedback};
-use libration::control::delay::{Latencies, Order, Packets, RecordedLatencies, Schedule};
+use libration::control::delay::{Latencies, Order, Packets, RecordedLatencies};
 use libration::control::{Clock, Controller, Delay, Feedback, Jitter, Latency};
 use libration::ensemble::{All, Execution, Loops, Setup};
-use libration::integrator::Rk4;
+use libration::integrator::{Rk4, VelocityVerlet};
 use libration::system::{BaselineOnly, Oscillator};
 
-fn refused<C: Clock<f64>, L: Delay<f64>>(clock: C, delay: L, dt: f64, steps: u64) -> String {
-    let setup = Setup::new(All(BaselineOnly(Oscillator { omega2: 1.0 })), Rk4)
+use super::any_clock::AnyClock;
+use super::clocks::free;
+
+const STARTS: [State<f64, 1>; 2] = [State { q: [1.0], v: [0.0] }; 2];
+
+/// What is said of a clock in so many steps of `dt` seconds.
+fn of_clock_in(clock: impl Clock<f64>, dt: f64, steps: u64) -> String {
+    let made = Loops::new(free(AnyClock(&clock)), dt, 0, [0.0], &STARTS, Execution::serial());
+    made.and_then(|mut loops| loops.advance(steps)).unwrap_err().to_string()
+}
+
+/// What is said of a delay in so many steps.
+fn of_delay(delay: impl Delay<f64>, steps: u64) -> String {
+    let setup = Setup::new(All(BaselineOnly(Oscillator { omega2: 1.0 })), VelocityVerlet)
         .controller(StateFeedback::to_origin(Default::default()))
-        .clock(clock)
         .delay(delay);
-    let starts = [State { q: [1.0], v: [0.0] }; 2];
-    let made = Loops::new(setup, dt, 0, [0.0], &starts, Execution::serial());
+    let made = Loops::new(setup, 0.1, 0, [0.0], &STARTS, Execution::serial());
     made.and_then(|mut loops| loops.advance(steps)).unwrap_err().to_string()
 }
 
 #[test]
 fn records_are_never_made_longer_and_lists_are_of_the_right_length() {
-    let every = Schedule::EVERY_STEP;
-    let fixed = Fixed;
     assert_eq!(
-        refused(Recorded::once(&[1.0, 1.0]), every, 0.1, 3),
+        of_clock_in(Recorded::once(&[1.0, 1.0]), 0.1, 3),
         "the record of a clock or a delay has 2 steps; the run requires 3"
     );
-    let latencies = RecordedLatencies::new(&[0.0, 2.0]).unwrap();
     assert_eq!(
-        refused(fixed, latencies, 0.1, 5),
+        of_delay(RecordedLatencies::new(&[0.0, 2.0]).unwrap(), 5),
         "the record of a clock or a delay has 2 steps; the run requires 5"
     );
     assert_eq!(
-        refused(Rates(&[1.0]), every, 0.1, 1),
+        of_clock_in(Rates(&[1.0]), 0.1, 1),
         "there are 1 rates of clocks for 2 trajectories; there must be one each, or one for all"
     );
     let one = [Latency::of_steps(1.0).unwrap()];
     assert_eq!(
-        refused(fixed, Latencies::of_commands(&one), 0.1, 1),
+        of_delay(Latencies::of_commands(&one), 1),
         "there are 1 latencies for 2 trajectories; there must be one each, or one for all"
     );
     let two = [one[0]; 2];
     assert_eq!(
-        refused(fixed, Latencies::of_commands(&two).with_observations(&one), 0.1, 1),
+        of_delay(Latencies::of_commands(&two).with_observations(&one), 1),
         "the number of latencies of observations is 1; it must be that of the latencies of commands, or 0"
     );
     for dt in [0.0, -0.1, f64::NAN, f64::INFINITY] {
-        let error = refused(fixed, every, dt, 1);
+        let error = of_clock_in(Fixed, dt, 1);
         assert_eq!(
             error,
             format!(
@@ -85,7 +92,7 @@ fn time_stamps_become_steps_of_a_positive_length() {
 
 /// What is said of a clock before any step.
 fn of_clock(clock: impl Clock<f64>) -> String {
-    refused(clock, Schedule::EVERY_STEP, 0.1, 0)
+    of_clock_in(clock, 0.1, 0)
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod any_clock;
 mod bits;
 mod clocks;
 mod controllers;
