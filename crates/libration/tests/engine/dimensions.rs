@@ -2,8 +2,10 @@
 
 use half::{bf16, f16};
 use libration::system::Oscillator;
-use libration::{Float, Integrator, Method, Model, State, with_method};
+use libration::{Float, Method, Model, State};
 use proptest::prelude::*;
+
+use super::step_function::step_function;
 
 /// The bits, as far as `f64` can hold those of every float type: it can.
 fn bits<S: Float, const D: usize>(state: State<S, D>) -> Vec<u64> {
@@ -19,7 +21,8 @@ fn run<S: Float, const D: usize>(
 ) -> State<S, D> {
     let system = Model::<D>::on::<S>(&oscillator);
     let (start, dt) = (start.map(S::from_f64), S::from_f64(dt));
-    with_method!(method, |m| (0..100).fold(start, |state, _| m.step(&system, state, dt)))
+    let step = step_function(method, system, dt);
+    (0..100).fold(start, |state, _| step(state))
 }
 
 /// Three dimensions at once against one at a time.

@@ -2,7 +2,9 @@
 
 use half::{bf16, f16};
 use libration::system::{Oscillator, Pendulum};
-use libration::{Float, Integrator, Method, Model, State, with_method};
+use libration::{Float, Method, Model, State};
+
+use super::step_function::{StepFunction, step_function};
 
 /// Method, number type, and the hashes of the oscillator's and the pendulum's trajectory.
 const GOLDEN: &[(&str, &str, u64, u64)] = &[
@@ -63,13 +65,16 @@ fn fnv1a_gives_its_published_vectors() {
 fn hash<S: Float>(model: impl Model<1>, method: Method, q: f64, v: f64, dt: f64) -> u64 {
     let system = model.on::<S>();
     let (start, dt) = (State { q: [q], v: [v] }.map(S::from_f64), S::from_f64(dt));
-    with_method!(method, |m| {
-        let step = |&state: &State<S, 1>| Some(m.step(&system, state, dt));
-        let trajectory: Vec<_> = std::iter::successors(Some(start), step).take(STEPS + 1).collect();
-        let numbers = || trajectory.iter().flat_map(State::coordinates);
-        assert!(numbers().all(|x| x.is_finite()), "{} on {}", method.name(), S::NAME);
-        fnv1a(numbers().flat_map(|x| x.to_f64().to_bits().to_le_bytes()))
-    })
+    let step = step_function(method, system, dt);
+    hash_of(&step, start, method.name())
+}
+
+fn hash_of<S: Float>(step: &StepFunction<'_, S, 1>, start: State<S, 1>, method: &str) -> u64 {
+    let next = |&state: &State<S, 1>| Some(step(state));
+    let trajectory: Vec<_> = std::iter::successors(Some(start), next).take(STEPS + 1).collect();
+    let numbers = || trajectory.iter().flat_map(State::coordinates);
+    assert!(numbers().all(|x| x.is_finite()), "{method} on {}", S::NAME);
+    fnv1a(numbers().flat_map(|x| x.to_f64().to_bits().to_le_bytes()))
 }
 
 /// The default oscillator, and a pendulum that turns over.

@@ -18,5 +18,6 @@ mod numpy_parity;
 mod observers;
 mod random_expressions;
 mod simulation;
+mod step_function;
 mod timing;
 mod timing_extremes;

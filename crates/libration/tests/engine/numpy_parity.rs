@@ -9,7 +9,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use libration::system::Oscillator;
-use libration::{Float, Integrator, Method, Model, State, with_method};
+use libration::{Float, Method, Model, State};
+
+use super::step_function::step_function;
 
 /// Mass, stiffness, time step, initial position and velocity.
 type Setting = [f64; 5];
@@ -46,10 +48,9 @@ fn orbit<S: Float>(method: Method, [m, k, dt, q, v]: Setting, bits: fn(S) -> u64
     let system = Model::<1>::on::<S>(&oscillator);
     let (start, dt) = (State { q: [q], v: [v] }.map(S::from_f64), S::from_f64(dt));
     let bits = |state: State<S, 1>| [bits(state.q[0]), bits(state.v[0])];
-    with_method!(method, |integrator| {
-        let next = |&state: &State<S, 1>| Some(integrator.step(&system, state, dt));
-        std::iter::successors(Some(start), next).take(STEPS + 1).map(bits).collect()
-    })
+    let step = step_function(method, system, dt);
+    let next = |&state: &State<S, 1>| Some(step(state));
+    std::iter::successors(Some(start), next).take(STEPS + 1).map(bits).collect()
 }
 
 #[test]
