@@ -17,7 +17,7 @@ import libration
 from libration.policies import Linear
 
 PERIOD = 0.01  # s, between two commands
-GAINS = libration.PD(position=10.0, velocity=2.0)
+GAINS = libration.PD(kp=10.0, kd=2.0)
 SYSTEM = libration.System("oscillator", omega2=10.0)
 
 

@@ -105,7 +105,7 @@ def _pd_targets(system: EquationSystem, gains: PD, targets: Sequence[str] | None
             f"inner is {gains!r}, but it must be a dictionary of expressions: the system has {len(coordinates)} coordinates and "
             f"{len(system.inputs)} inputs"
         )
-    stiffness, damping = (number(f"{name} of inner", x, "finite") for name, x in (("position", gains.position), ("velocity", gains.velocity)))
+    stiffness, damping = (number(f"{name} of inner", x, "finite") for name, x in (("kp", gains.kp), ("kd", gains.kd)))
     targets = [f"target_{name}" for name in coordinates] if targets is None else targets
     commands = {u: f"{stiffness!r}*({target} - {q}) - {damping!r}*{q}'" for u, target, q in zip(system.inputs, targets, coordinates)}
     return {"targets": targets, "inner": commands}

@@ -363,7 +363,7 @@ class Environments(_native.Batch):
         policy: Policy,
         horizon: int,
         *,
-        log_probabilities: bool = False,
+        log_probs: bool = False,
         values: bool = False,
         out: Rollout | None = None,
     ) -> Rollout:
@@ -371,7 +371,7 @@ class Environments(_native.Batch):
 
         Parameters
         ----------
-        log_probabilities, values:
+        log_probs, values:
             Whether the rollout has arrays of log-probabilities of actions and of values, ``(horizon, num_envs)`` each.
         out:
             A rollout to overwrite; it also determines which arrays there are.
@@ -395,7 +395,7 @@ class Environments(_native.Batch):
         request = policy._request(observations, len(self.preset.actions))
         if out is None:
             horizon = count("horizon", horizon, 1, 2**40)
-            out = Rollout(self._memory(horizon, bool(log_probabilities), bool(values)))
+            out = Rollout(self._memory(horizon, bool(log_probs), bool(values)))
         elif not isinstance(out, Rollout):
             raise TypeError(f"out must be a Rollout, not {type(out).__name__}")
         elif out.rewards.shape != (horizon, self.num_envs):

@@ -85,25 +85,30 @@ class LogUniform:
 
 @dataclass(frozen=True)
 class PD:
-    """PD controller with the command ``-position·q - velocity·v``.
+    """PD controller with the command ``-kp·q - kd·v``.
 
     The command is an acceleration with gains in s⁻² and s⁻¹, or a force with gains in N/m and N·s/m for a system with ``m`` and ``k``.
     """
 
-    position: float
-    velocity: float
+    kp: float
+    """Gain of the position."""
+    kd: float
+    """Gain of the velocity."""
 
 
 @dataclass(frozen=True)
 class PID:
     """PID controller of the position, with a filter of the derivative and anti-windup by back-calculation."""
 
-    proportional: float
-    integral: float
-    derivative: float
+    kp: float
+    """Proportional gain."""
+    ki: float
+    """Integral gain."""
+    kd: float
+    """Derivative gain."""
     filter: float = 0.0
     """Time constant of the filter of the derivative, in s."""
-    most: float = math.inf
+    max_command: float = math.inf
     """Largest command, in m/s², or in N for a system with ``m`` and ``k``."""
     tracking: float = 1.0
     """Time constant of the anti-windup, in s."""
@@ -117,7 +122,7 @@ class LQR:
     same minimum only in the limit of short periods.
     """
 
-    weights: Sequence[float]
+    weights: Any
     """Weights of position², velocity² and command²; with ``inputs`` those of the states, a matrix or its diagonal."""
     inputs: Any = None
     """Weights of the inputs of a linear plant, a matrix or its diagonal."""
@@ -163,7 +168,7 @@ def gains(name: str, value: Any) -> list[float] | None:
     if value is None:
         return None
     if isinstance(value, PD):
-        value = (value.position, value.velocity)
+        value = (value.kp, value.kd)
     return numbers(name, value, 2)
 
 

@@ -22,8 +22,8 @@ __all__ = ["ReplayBuffer", "Sequences", "Transitions"]
 class Transitions:
     """Batch of ``B`` transitions."""
 
-    numbers: NDArray[np.uint64]
-    """Numbers for :meth:`ReplayBuffer.update_priorities`, ``(B,)``."""
+    indices: NDArray[np.uint64]
+    """Indices for :meth:`ReplayBuffer.update_priorities`, ``(B,)``."""
     observations: NDArray[Any]
     """Observations before the actions, ``(B, n)``."""
     actions: NDArray[Any]
@@ -44,8 +44,8 @@ class Transitions:
 class Sequences:
     """Batch of ``B`` sequences of ``T`` steps."""
 
-    numbers: NDArray[np.uint64]
-    """Numbers of the first transitions, ``(B,)``."""
+    indices: NDArray[np.uint64]
+    """Indices of the first transitions, ``(B,)``."""
     observations: NDArray[Any]
     """Observations before the actions, ``(B, T, n)``."""
     actions: NDArray[Any]
@@ -180,13 +180,13 @@ class ReplayBuffer:
         return drawn
 
     def update_priorities(
-        self, numbers: NDArray[np.uint64], priorities: ArrayLike, exponent: float = 0.6
+        self, indices: NDArray[np.uint64], priorities: ArrayLike, exponent: float = 0.6
     ) -> int:
         """Set priorities; transitions are drawn in proportion to ``priority ** exponent``.
 
         Parameters
         ----------
-        numbers:
+        indices:
             Numbers of drawn transitions, ``(B,)``.
         priorities:
             Non-negative priorities, such as absolute errors, ``(B,)``.
@@ -201,15 +201,15 @@ class ReplayBuffer:
         ValueError
             For a wrong shape, a priority that is negative or not finite, or a buffer without priorities.
         """
-        which, errors = np.asarray(numbers), np.asarray(priorities)
+        which, errors = np.asarray(indices), np.asarray(priorities)
         if which.dtype.kind not in "iu" or errors.dtype.kind not in "fiu":
             raise TypeError(
-                f"numbers have dtype {which.dtype} and priorities {errors.dtype}, but they must be whole numbers and real numbers"
+                f"indices have dtype {which.dtype} and priorities {errors.dtype}, but they must be whole numbers and real numbers"
             )
         if which.ndim != 1 or which.shape != errors.shape or (which < 0).any():
             raise ValueError(
-                f"numbers have shape {which.shape} and priorities {errors.shape}, but they must be (B,), and "
-                "numbers those that were drawn"
+                f"indices have shape {which.shape} and priorities {errors.shape}, but they must be (B,), and "
+                "indices those that were drawn"
             )
         exponent = number("exponent", exponent, "finite")
         which, errors = which.astype(np.uint64), errors.astype(np.float64)

@@ -34,8 +34,8 @@ class Rollout:
         self.terminated: NDArray[np.bool_] = arrays["terminated"]
         #: Whether the episode was truncated, ``(T, N)``.
         self.truncated: NDArray[np.bool_] = arrays["truncated"]
-        #: Log-probabilities of the actions, ``(T, N)``, with ``log_probabilities=True``.
-        self.log_probabilities: NDArray[Any] | None = arrays.get("log_probabilities")
+        #: Log-probabilities of the actions, ``(T, N)``, with ``log_probs=True``.
+        self.log_probs: NDArray[Any] | None = arrays.get("log_probabilities")
         #: Values of the observations, ``(T, N)``, with ``values=True``; the caller writes them.
         self.values: NDArray[Any] | None = arrays.get("values")
         #: Observations after the last step, ``(N, n)``.
@@ -56,7 +56,7 @@ class Rollout:
     def advantages(
         self,
         gamma: float = 0.99,
-        lam: float = 0.95,
+        gae_lambda: float = 0.95,
         *,
         last_values: ArrayLike,
         final_values: ArrayLike = (),
@@ -65,8 +65,8 @@ class Rollout:
 
         Parameters
         ----------
-        gamma, lam:
-            Discounts of rewards and of errors, from 0 to 1. With ``lam=1`` the returns are sums of discounted rewards.
+        gamma, gae_lambda:
+            Discounts of rewards and of errors, from 0 to 1. With ``gae_lambda=1`` the returns are sums of discounted rewards.
         last_values:
             Values of ``last_observations``, ``(N,)``.
         final_values:
@@ -79,7 +79,7 @@ class Rollout:
         """
         if self.values is None:
             raise ValueError("the rollout has no values; help: call rollout with values=True")
-        discounts = [number("gamma", gamma, "finite"), number("lam", lam, "finite")]
+        discounts = [number("gamma", gamma, "finite"), number("gae_lambda", gae_lambda, "finite")]
         last, final = (np.asarray(x, dtype=np.float64).ravel() for x in (last_values, final_values))
         found = self._memory._estimates(discounts[0], discounts[1], last.tolist(), final.tolist())
         advantages, returns = found

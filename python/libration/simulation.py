@@ -132,9 +132,9 @@ def simulate(
     steps: int,
     q: ArrayLike | None = None,
     v: ArrayLike | None = None,
-    float: str = "f64",
-    every: int = 1,
-    count: int | None = None,
+    dtype: Any = "float64",
+    save_every: int = 1,
+    num_trajectories: int | None = None,
     spread: float = 0.0,
     threads: int = 0,
     feedback: Any = None,
@@ -150,21 +150,21 @@ def simulate(
     ----------
     system:
         A name, a :class:`~libration.System`, an :class:`~libration.EquationSystem`, a :class:`~libration.CustomSystem` or a function
-        ``a(q, v)``. The last two accept ``integrator``, ``dt``, ``steps``, ``q``, ``v``, ``float`` and ``every`` only. The columns of a
+        ``a(q, v)``. The last two accept ``integrator``, ``dt``, ``steps``, ``q``, ``v``, ``dtype`` and ``save_every`` only. The columns of a
         system by equations have the names of its states.
     integrator:
         Name from :data:`~libration.INTEGRATORS` or :data:`~libration.IMPLICIT_INTEGRATORS`.
     dt:
         Time step in s.
     steps:
-        Number of steps, 1 to 2⁵³; ``every`` limits the number of rows.
+        Number of steps, 1 to 2⁵³; ``save_every`` limits the number of rows.
     q, v:
         Initial positions and velocities, a number or ``(dimension,)`` (default: those of the catalogue).
-    float:
-        Float type of every operation: ``"f64"``, ``"f32"``, ``"f16"`` or ``"bf16"``.
-    every:
+    dtype:
+        Float type of every operation: ``"float64"``, ``"float32"``, ``"float16"``, a NumPy type, or ``"bfloat16"``.
+    save_every:
         Distance of rows in steps; the first and the last step are always rows.
-    count, spread, threads:
+    num_trajectories, spread, threads:
         Number of trajectories, with starts from ``1 - spread`` to ``1 + spread`` times the start; number of threads (0: one per core).
     feedback:
         Gains of position and velocity, or a :class:`~libration.PD` (default: no loop). The command is an acceleration (gains in s⁻²
@@ -189,7 +189,7 @@ def simulate(
     system = known(system)
     if isinstance(system, CustomSystem):
         wrong = {
-            "count": count,
+            "num_trajectories": num_trajectories,
             "feedback": feedback,
             "latency": latency,
             "jitter": jitter,
@@ -202,21 +202,21 @@ def simulate(
         for name, value in {"spread": spread, "threads": threads, "seed": seed}.items():
             if value != 0:
                 raise ValueError(f"{name} is {value!r}, but it requires a system of the catalogue")
-        return _custom(system, integrator, dt, steps, q, v, float, every)
+        return _custom(system, integrator, dt, steps, q, v, _float_of(dtype), save_every)
     rows = {
         "steps": whole("steps", steps),
-        "float": text("float", float),
-        "every": whole("every", every, 0),
-        "count": None if count is None else whole("count", count, 0),
+        "float": _float_of(dtype),
+        "every": whole("save_every", save_every, 0),
+        "count": None if num_trajectories is None else whole("num_trajectories", num_trajectories, 0),
         "spread": number("spread", spread, "finite"),
         "threads": whole("threads", threads, 0),
         "seed": whole("seed", seed, 0),
         "time_stamps": coordinates("time_stamps", time_stamps),
     }
-    if count is None:
+    if num_trajectories is None:
         for name, value in {"spread": spread, "threads": threads}.items():
             if value != 0:
-                raise ValueError(f"{name} is {value!r}, but there is no count of trajectories; it requires count")
+                raise ValueError(f"{name} is {value!r}, but there is one trajectory; it requires num_trajectories")
     if isinstance(system, EquationSystem):
         for name, value in {"q": q, "v": v}.items():
             if value is not None:
@@ -236,6 +236,17 @@ def simulate(
     return Trajectory(columns, units, ended)
 
 
+_NAMES = {"float64": "f64", "float32": "f32", "float16": "f16", "bfloat16": "bf16"}
+
+
+def _float_of(dtype: Any) -> str:
+    """Return the engine's name of a float type."""
+    name = dtype if isinstance(dtype, str) else np.dtype(dtype).name if dtype is not None else None
+    if name not in _NAMES:
+        raise ValueError(f"dtype is {dtype!r}: {nearest(str(name), _NAMES)}")
+    return _NAMES[name]
+
+
 def _finite(all: Ensemble) -> bool:
     return bool(np.isfinite(all.q).all() and np.isfinite(all.v).all())
 
@@ -244,9 +255,9 @@ def _custom(
     system: CustomSystem, integrator: str, dt: Any, steps: Any, q: Any, v: Any, float: str, every: Any
 ) -> Trajectory:
     # Python takes minutes for this many steps.
-    steps, every = _whole_between("steps", steps, 1, 10**9), whole("every", every)
+    steps, every = _whole_between("steps", steps, 1, 10**9), whole("save_every", every)
     if float not in _FLOATS:
-        raise ValueError(f"float is {float!r}: {nearest(float, _FLOATS)}")
+        raise ValueError(f"dtype is {float!r}, but it must be float32 or float64 for a custom system")
     if q is None:
         raise ValueError("q is missing; a custom system has no default start")
     start = np.array([coordinates("q", q)])

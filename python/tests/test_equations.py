@@ -42,7 +42,7 @@ def test_trajectories_have_the_bits_of_the_catalogue(integrator, dtype):
 
 def test_columns_have_the_names_and_units_of_the_system():
     system = pendulum(start={"q": 1.0}, units={"q": "rad", "energy": "J"})
-    found = libration.simulate(system, integrator="rk4", dt=0.01, steps=4, count=3, spread=0.5)
+    found = libration.simulate(system, integrator="rk4", dt=0.01, steps=4, num_trajectories=3, spread=0.5)
     assert list(found) == ["trajectory", "step", "t", "q", "q'", "energy"]
     assert [found.units[name] for name in ("q", "q'", "energy")] == ["rad", "rad/s", "J"]
     assert found["q"][:3].tolist() == [0.5, 1.0, 1.5]

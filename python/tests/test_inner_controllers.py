@@ -103,7 +103,7 @@ def test_an_inner_controller_by_expressions_has_targets_of_its_own():
         ({"inner": {}, "targets": ["target"]}, ValueError, "`u` has no command"),
         ({"inner": {"u": "target + u"}, "targets": ["target"]}, ValueError, "unknown name `u`"),
         ({"inner": "target"}, TypeError, "inner must be a dictionary"),
-        ({"inner": PD("stiff", 1)}, TypeError, "position of inner must be a number"),
+        ({"inner": PD("stiff", 1)}, TypeError, "kp of inner must be a number"),
     ],
 )
 def test_wrong_inner_controllers_are_refused_by_name(given, error, text):

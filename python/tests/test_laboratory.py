@@ -34,7 +34,7 @@ def test_a_latency_that_theory_forbids_is_one_that_a_simulation_does_not_stand()
     # Where a command that arrives within a step splits it, as it does in the simulation.
     critical = analyze(SPRING, **loop).critical_latency_split_steps * 0.01
     for latency, stands in ((0.97 * critical, True), (1.03 * critical, False)):
-        path = libration.simulate(SPRING, **loop, latency=latency, steps=20_000, every=20_000)
+        path = libration.simulate(SPRING, **loop, latency=latency, steps=20_000, save_every=20_000)
         assert (path.energy[-1] < path.energy[0]) == stands
 
 

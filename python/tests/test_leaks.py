@@ -137,7 +137,7 @@ def test_rollouts_and_copies_leak_nothing():
     values = np.zeros(64)
 
     def work(_):
-        found = envs.rollout(Random(-1, 1), 20, values=True, log_probabilities=True)
+        found = envs.rollout(Random(-1, 1), 20, values=True, log_probs=True)
         found.values[:] = 0.0
         found.advantages(last_values=values, final_values=np.zeros(len(found.episodes["steps"])))
         found.transitions.sum()

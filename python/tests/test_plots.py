@@ -53,7 +53,7 @@ def test_a_trajectory_has_a_panel_for_each_unit_with_its_columns():
 
 def test_each_of_several_trajectories_is_a_line():
     for jitter in (None, 0.1):
-        path = libration.simulate(SPRING, integrator="rk4", dt=0.01, steps=50, count=3, spread=0.1, feedback=(10.0, 2.0), jitter=jitter)
+        path = libration.simulate(SPRING, integrator="rk4", dt=0.01, steps=50, num_trajectories=3, spread=0.1, feedback=(10.0, 2.0), jitter=jitter)
         axes = drawn(path.plot())
         assert axes[0].get_title() == f"3 trajectories of {path.t.max():.6g} s"
         for n, line in enumerate(axes[0].lines):
@@ -66,7 +66,7 @@ def test_a_trajectory_that_overflows_is_drawn_on_a_logarithmic_axis_and_its_head
     axes = drawn(path.plot())
     assert axes[0].get_title().endswith(f"not finite from t = {path.stopped['t']:g} s")
     assert [axis.get_yscale() for axis in axes] == ["log"] * 3 and axes[0].get_ylabel() == "|q0| (m)"
-    several = libration.simulate(SPRING, integrator="explicit-euler", dt=1.0, steps=1000, count=2, spread=0.1)
+    several = libration.simulate(SPRING, integrator="explicit-euler", dt=1.0, steps=1000, num_trajectories=2, spread=0.1)
     assert drawn(several.plot())[0].get_title().endswith("2 not finite in the end")
 
 
@@ -155,7 +155,7 @@ def test_tables_of_notebooks_are_short_escaped_and_without_external_resources(re
     hostile = "<script>alert(1)</script>"
     named = LinearPlant([[0.0, 1.0], [-1.0, -0.1]], [[0.0], [1.0]], inputs=[hostile])
     shown = [
-        libration.simulate(CART, integrator="rk4", dt=0.01, steps=1000, count=20)._repr_html_(),
+        libration.simulate(CART, integrator="rk4", dt=0.01, steps=1000, num_trajectories=20)._repr_html_(),
         libration.analyze(PLANT)._repr_html_(),
         libration.analyze(named)._repr_html_(),
         libration.advise(named, LQR([1.0, 1.0], [1.0]), period=0.1, latency=0.01)._repr_html_(),

@@ -22,7 +22,7 @@ def filled(steps=50, rollouts=3, horizon=20, **more):
 def test_what_is_drawn_is_what_was_inserted_and_the_oldest_is_gone():
     buffer, (seen, rewards, transitions) = filled()
     drawn = buffer.sample(500)
-    step, n = np.divmod(drawn.numbers.astype(int), 8)
+    step, n = np.divmod(drawn.indices.astype(int), 8)
     assert step.min() >= 10 and step.max() < 60 and transitions[step, n].all()
     np.testing.assert_array_equal(drawn.observations, seen[step, n])
     np.testing.assert_array_equal(drawn.rewards, rewards[step, n])
@@ -38,9 +38,9 @@ def test_what_is_drawn_is_what_was_inserted_and_the_oldest_is_gone():
 def test_a_draw_has_a_number_by_which_it_can_be_repeated():
     buffer, _ = filled()
     one, two = buffer.sample(64), buffer.sample(64)
-    assert (one.numbers != two.numbers).any()
+    assert (one.indices != two.indices).any()
     buffer.number = 0
-    np.testing.assert_array_equal(buffer.sample(64).numbers, one.numbers)
+    np.testing.assert_array_equal(buffer.sample(64).indices, one.indices)
 
 
 def test_what_ends_is_drawn_with_what_was_seen_last_and_nothing_counts_after_it():
@@ -52,7 +52,7 @@ def test_what_ends_is_drawn_with_what_was_seen_last_and_nothing_counts_after_it(
     rollout = envs.rollout(Random(-4.0, 4.0), 60)
     buffer.insert(rollout)
     drawn = buffer.sample(2000, gamma=0.5)
-    step, n = np.divmod(drawn.numbers.astype(int), 8)
+    step, n = np.divmod(drawn.indices.astype(int), 8)
     for name in ("actions", "terminated", "truncated"):
         np.testing.assert_array_equal(getattr(drawn, name), getattr(rollout, name)[step, n])
     assert drawn.terminated.any() and drawn.truncated.any()
@@ -66,7 +66,7 @@ def test_what_ends_is_drawn_with_what_was_seen_last_and_nothing_counts_after_it(
 def test_rewards_look_ahead_as_far_as_they_are_told():
     buffer, (_, rewards, _) = filled()
     drawn = buffer.sample(200, steps=3, gamma=0.5)
-    step, n = np.divmod(drawn.numbers.astype(int), 8)
+    step, n = np.divmod(drawn.indices.astype(int), 8)
     whole = drawn.discounts == 0.5**3
     assert whole.any() and not whole.all()
     of = [rewards[np.minimum(step + k, 59), n] * 0.5**k for k in range(3)]
@@ -77,7 +77,7 @@ def test_rewards_look_ahead_as_far_as_they_are_told():
 def test_sequences_are_stretches_of_one_environment():
     buffer, (seen, _, _) = filled()
     drawn = buffer.sample_sequences(40, 5)
-    step, n = np.divmod(drawn.numbers.astype(int), 8)
+    step, n = np.divmod(drawn.indices.astype(int), 8)
     assert drawn.observations.shape == (40, 5, 2) and drawn.actions.shape == (40, 5, 1)
     for t in range(5):
         on = drawn.mask[:, t]
@@ -87,10 +87,10 @@ def test_sequences_are_stretches_of_one_environment():
 
 def test_what_has_a_priority_of_zero_is_never_drawn():
     buffer, _ = filled(priorities=True)
-    everything = np.unique(buffer.sample(5000).numbers)
+    everything = np.unique(buffer.sample(5000).indices)
     assert buffer.update_priorities(everything, np.arange(len(everything)) % 2) == len(everything)
     drawn = buffer.sample(2000, correction=0.5)
-    assert set(drawn.numbers) <= set(everything[1::2])
+    assert set(drawn.indices) <= set(everything[1::2])
     assert drawn.weights.max() == 1.0
 
 

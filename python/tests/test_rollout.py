@@ -64,13 +64,13 @@ def test_a_network_answers_as_numpy_does():
 
 
 def test_random_actions_follow_from_the_seed_and_fill_their_interval():
-    found = made("Oscillator", 500).rollout(Random(-2.0, 1.0), 100, log_probabilities=True)
+    found = made("Oscillator", 500).rollout(Random(-2.0, 1.0), 100, log_probs=True)
     same = made("Oscillator", 700, threads=2).rollout(Random(-2.0, 1.0), 100)
     np.testing.assert_array_equal(found.actions, same.actions[:, :500])
     assert found.actions.min() < -1.99 and found.actions.max() > 0.99
     # The mean of 50 000 has a deviation of 3/√12/√50000 = 0.004.
     assert abs(found.actions.mean() + 0.5) < 0.02
-    np.testing.assert_allclose(found.log_probabilities, -np.log(3), rtol=1e-6)
+    np.testing.assert_allclose(found.log_probs, -np.log(3), rtol=1e-6)
 
 
 @pytest.mark.parametrize("before", ["steps", "rollout"])

@@ -24,7 +24,7 @@ def spring(q, v):
 
 
 def test_a_trajectory_has_named_columns_with_units_and_ends_where_the_exact_solution_does():
-    path = simulate(SPRING, integrator="exact", dt=0.1, steps=100, every=30)
+    path = simulate(SPRING, integrator="exact", dt=0.1, steps=100, save_every=30)
     assert list(path) == ["step", "t", "q0", "v0", "energy"]
     assert [path.units[name] for name in path] == ["1", "s", "m", "m/s", "J/kg"]
     np.testing.assert_array_equal(path["step"], [0, 30, 60, 90, 100])
@@ -76,10 +76,10 @@ def test_implicit_integrators_step_the_catalogue_and_equations_alike(integrator)
 
 
 def test_a_function_of_positions_and_velocities_is_a_system():
-    built_in = simulate(SPRING, integrator="rk4", dt=0.05, steps=90, every=40)
+    built_in = simulate(SPRING, integrator="rk4", dt=0.05, steps=90, save_every=40)
     own = CustomSystem(spring, energy=lambda q, v: ((v * v + 10.0 * q * q) / 2.0)[:, 0])
     for system in (spring, own):
-        path = simulate(system, integrator="rk4", dt=0.05, steps=90, every=40, q=1.0)
+        path = simulate(system, integrator="rk4", dt=0.05, steps=90, save_every=40, q=1.0)
         for name in ("step", "t", "q0", "v0"):
             np.testing.assert_array_equal(path[name], built_in[name])
         assert np.isnan(path.energy).all() == (system is spring)
@@ -154,16 +154,16 @@ def test_a_loop_is_late_and_jitters_as_it_is_told():
 
 
 def test_copies_start_around_the_start_and_say_which_they_are():
-    many = simulate(SPRING, integrator="leapfrog", dt=0.01, steps=5, every=5, count=3, spread=0.5)
+    many = simulate(SPRING, integrator="leapfrog", dt=0.01, steps=5, save_every=5, num_trajectories=3, spread=0.5)
     start = many["step"] == 0
     np.testing.assert_array_equal(many["trajectory"][start], [0, 1, 2])
     np.testing.assert_array_equal(many["q0"][start], [0.5, 1.0, 1.5])
     assert many.not_finite is None or many.not_finite["count"] == 0
 
 
-@pytest.mark.parametrize("float, dtype", [("f64", "f8"), ("f32", "f4"), ("f16", "f2"), ("bf16", "f4")])
+@pytest.mark.parametrize("float, dtype", [("float64", "f8"), (np.float32, "f4"), ("float16", "f2"), ("bfloat16", "f4")])
 def test_every_float_type_has_an_array_that_holds_it(float, dtype):
-    path = simulate(SPRING, integrator="rk4", dt=0.01, steps=3, float=float)
+    path = simulate(SPRING, integrator="rk4", dt=0.01, steps=3, dtype=float)
     assert path["q0"].dtype == np.dtype(dtype)
 
 
@@ -183,7 +183,7 @@ def test_a_step_beyond_the_limit_of_its_method_is_named_with_the_step_that_it_al
     # ω = √10: the limit 2 of ωΔt is at Δt = 0.63245.
     why = "ωΔt = 2.21 exceeds velocity-verlet's limit 2; choose dt below 0.632"
     assert simulate(SPRING, **given).stopped["reason"] == f"the state stopped being finite: {why}"
-    assert simulate(SPRING, count=2, **given).not_finite["reason"] == why
+    assert simulate(SPRING, num_trajectories=2, **given).not_finite["reason"] == why
     assert simulate(SPRING, **{**given, "dt": 0.632}).stopped is None
 
 
@@ -210,7 +210,7 @@ WRONG = [
     ({"q": "1"}, TypeError, "q"),
     ({"every": 0}, ValueError, "every"),
     ({"count": 0}, ValueError, "count"),
-    ({"float": "f8"}, ValueError, "f64"),
+    ({"dtype": "f8"}, ValueError, "float64"),
     ({"latency": 0.1}, ValueError, "feedback"),
     ({"latency": -0.1, "feedback": (1.0, 1.0)}, ValueError, "latency"),
     ({"feedback": (1.0,)}, ValueError, "feedback"),
@@ -281,7 +281,7 @@ def test_ctrl_c_ends_a_long_simulation():
         timer = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])
         timer.start()
         with pytest.raises(KeyboardInterrupt):
-            simulate("kepler", integrator="rk4", dt=1e-4, steps=10**9, every=10**8)
+            simulate("kepler", integrator="rk4", dt=1e-4, steps=10**9, save_every=10**8)
         timer.join()
         swings = Ensemble("kepler", integrator="rk4", dt=1e-4, q=np.ones((1000, 2)))
         timer = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])
@@ -302,9 +302,9 @@ SLOW = {"integrator": "suzuki4", "substeps": 100, "jitter": 0.1, "skew": 0.1, "d
     "long",
     [
         lambda: simulate(
-            "oscillator", integrator="rk4", dt=0.01, steps=10**9, every=10**9, feedback=(10.0, 2.0), latency=0.02
+            "oscillator", integrator="rk4", dt=0.01, steps=10**9, save_every=10**9, feedback=(10.0, 2.0), latency=0.02
         ),
-        lambda: simulate("pendulum", integrator="suzuki4", dt=0.01, steps=10**9, every=10**9, count=1),
+        lambda: simulate("pendulum", integrator="suzuki4", dt=0.01, steps=10**9, save_every=10**9, num_trajectories=1),
         lambda: Ensemble("pendulum", integrator="suzuki4", dt=0.01, q=[[0.5]]).advance(10**10),
         lambda: begun("Pendulum", 1, **SLOW).rollout(Random(-1.0, 1.0), 10**6),
         lambda: begun("Pendulum", 4096).rollout(WIDE, 300),
@@ -354,7 +354,7 @@ def test_a_force_that_is_another_each_time_ends_where_it_did():
         calls.append(1)
         return q * np.nan if len(calls) == 30 else -q
 
-    path = simulate(force, integrator="velocity-verlet", dt=0.01, steps=100, every=10, q=1.0)
+    path = simulate(force, integrator="velocity-verlet", dt=0.01, steps=100, save_every=10, q=1.0)
     assert path.stopped["reason"] == "the state is not finite"
     # It is not found again, so it is the row that was to be.
     assert path.stopped["step"] == path["step"][-1] + 10

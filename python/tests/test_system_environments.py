@@ -44,8 +44,8 @@ def test_environments_of_equations_have_the_bits_of_the_preset(dtype, mode):
         for wanted, found in zip(preset.step(actions)[:4], own.step(actions)[:4]):
             assert np.array_equal(wanted, found)
     for policy in (libration.policies.Linear([-5.0, -1.0], 0.1), libration.policies.Random(-2, 1)):
-        wanted, found = (e.rollout(policy, 80, log_probabilities=True) for e in (preset, own))
-        for name in ("observations", "actions", "rewards", "terminated", "truncated", "log_probabilities"):
+        wanted, found = (e.rollout(policy, 80, log_probs=True) for e in (preset, own))
+        for name in ("observations", "actions", "rewards", "terminated", "truncated", "log_probs"):
             assert np.array_equal(getattr(wanted, name), getattr(found, name)), name
         assert np.array_equal(wanted.last_observations, found.last_observations)
         assert len(wanted.episodes["returns"]) > 70

@@ -113,7 +113,7 @@ impl<T: Number, const O: usize> Store<T> for ReplayBuffer<T, O, 1> {
         });
         drawn.map_err(Raised::raised)?;
         let all = PyDict::new(py);
-        all.set_item("numbers", numbers)?;
+        all.set_item("indices", numbers)?;
         all.set_item("observations", seen)?;
         all.set_item("actions", actions)?;
         all.set_item("rewards", rewards)?;
@@ -148,7 +148,7 @@ impl<T: Number, const O: usize> Store<T> for ReplayBuffer<T, O, 1> {
         let seen = drawn.observation.into_flattened();
         let next = drawn.next_observation.into_flattened();
         let actions = drawn.action.into_flattened();
-        all.set_item("numbers", PyArray1::from_vec(py, drawn.number))?;
+        all.set_item("indices", PyArray1::from_vec(py, drawn.number))?;
         shaped("observations", PyArray1::from_vec(py, seen).into_any(), vec![len, steps, O])?;
         shaped("actions", PyArray1::from_vec(py, actions).into_any(), one)?;
         shaped("rewards", PyArray1::from_vec(py, drawn.reward).into_any(), rows.clone())?;
