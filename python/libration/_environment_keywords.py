@@ -116,6 +116,10 @@ class DuffingParameters(TypedDict, total=False):
     beta: Varied
 
 
+class Parameters(OscillatorParameters, DuffingParameters, RegulateParameters, total=False):
+    """Parameters of all systems of the catalogue and their tasks."""
+
+
 class OscillatorKeywords(EngineKeywords, StartKeywords, OscillatorParameters, RegulateParameters, RenderKeywords, total=False):
     """Keywords of the single environment."""
 
@@ -138,6 +142,14 @@ class PendulumVectorKeywords(PendulumKeywords, BatchKeywords, total=False):
 
 class DuffingVectorKeywords(DuffingKeywords, BatchKeywords, total=False):
     """Keywords of the vector environment."""
+
+
+class SingleKeywords(EngineKeywords, StartKeywords, TaskKeywords, Parameters, total=False):
+    """Keywords of single environments of any system of the catalogue, without ``render_mode``."""
+
+
+class VectorKeywords(SingleKeywords, BatchKeywords, total=False):
+    """Keywords of vector environments of any system of the catalogue, without ``render_mode``."""
 
 
 class CustomTaskKeywords(

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ._classic_systems import CLASSIC, ClassicSystem, system_of
 from ._settings import nearest
-from .envs import Env, VectorEnv
+from ._gymnasium_envs import Env, VectorEnv
 
 __all__ = [
     "AcrobotEnv",

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ._arrays import actions as read
 from ._environment_keywords import CustomTaskKeywords, Unpack
 from ._episode_numbers import largest
-from .envs import VectorEnv
+from ._gymnasium_envs import VectorEnv
 from .equations import EquationSystem
 
 __all__ = ["CustomTaskVectorEnv"]

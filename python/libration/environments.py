@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import copy
-from typing import TYPE_CHECKING, Any, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Mapping, Sequence, overload
 
 import numpy as np
 
 from . import _native
+from ._environment_keywords import Unpack, VectorKeywords
 from ._episode_states import episode_numbers, refuse_options, rows_of, start_of
 from ._keywords import check_keywords
 from ._preset_equations import has_varied, native_varied
@@ -112,6 +113,13 @@ class Environments(_native.Batch):
 
     _reset_needed: type[Exception] = RuntimeError
     _closed_error: type[Exception] = RuntimeError
+
+    @overload
+    def __init__(self, name: str, num_envs: int = 1, **given: Unpack[VectorKeywords]) -> None: ...
+
+    # A system by equations has parameters of any name.
+    @overload
+    def __init__(self, name: EquationSystem, num_envs: int = 1, **given: Any) -> None: ...
 
     def __init__(
         self,

@@ -18,6 +18,7 @@ from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
 from .custom import CustomTaskVectorEnv
+from ._presets import PRESETS
 from .envs import NAMESPACE, VectorEnv
 from .equations import EquationSystem
 
@@ -185,7 +186,7 @@ def _made(env: Any, num_envs: int | None, given: dict[str, Any]) -> Any:
     if isinstance(env, (str, type, EquationSystem)):
         options = {"num_envs": 1 if num_envs is None else num_envs, "autoreset_mode": "SameStep", **given}
         if isinstance(env, str):
-            made = gymnasium.make_vec(env if "/" in env else f"{NAMESPACE}/{env}-v0", **options)
+            made = gymnasium.make_vec(env if "/" in env else f"{NAMESPACE}/{PRESETS[env].id if env in PRESETS else env}", **options)
         elif isinstance(env, type):
             made = env(**options)
         else:

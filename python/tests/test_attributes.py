@@ -8,7 +8,7 @@ import types
 import gymnasium
 import numpy as np
 import pytest
-from common import AUTORESETS, NAMES
+from common import AUTORESETS, IDS, NAMES
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from gymnasium.wrappers import vector as wrappers
@@ -21,13 +21,13 @@ TASK = dict(dt=0.01, reward="-q^2", start={"q": (-1, 1)})
 
 
 def made(name="Pendulum", num_envs=3, **given):
-    return gymnasium.make_vec(f"libration/{name}-v0", num_envs, **given)
+    return gymnasium.make_vec(IDS[name], num_envs, **given)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_attributes_are_those_of_single_environments_side_by_side(name):
     ours = made(name, **GIVEN)
-    theirs = SyncVectorEnv([lambda: gymnasium.make(f"libration/{name}-v0", **GIVEN)] * 3)
+    theirs = SyncVectorEnv([lambda: gymnasium.make(IDS[name], **GIVEN)] * 3)
     ours.reset(seed=4)
     theirs.reset(seed=4)
     ours.step(np.ones(3))

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import libration
-from common import NAMES
+from common import IDS, NAMES
 from libration import _environment_keywords as keywords
 from libration import envs
 
@@ -53,7 +53,7 @@ def test_a_page_has_the_sections_of_gymnasium(name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_tables_of_a_page_are_the_spaces(name):
-    single, vector = gymnasium.make(f"libration/{name}-v0"), gymnasium.make_vec(f"libration/{name}-v0", 3)
+    single, vector = gymnasium.make(IDS[name]), gymnasium.make_vec(IDS[name], 3)
     for class_, env in ((f"{name}Env", single), (f"{name}VectorEnv", vector)):
         for title, kind in (("Action space", "action_space"), ("Observation space", "observation_space")):
             space = getattr(env, kind)
@@ -68,7 +68,10 @@ def test_tables_of_a_page_are_the_spaces(name):
 
 @pytest.mark.parametrize("class_", CLASSES)
 def test_a_page_has_each_argument(class_):
-    typed = set(getattr(keywords, class_.replace("VectorEnv", "VectorKeywords").replace("Env", "Keywords")).__optional_keys__)
+    kinds = [class_.replace("VectorEnv", "VectorKeywords").replace("Env", "Keywords")]
+    if class_.startswith("System"):
+        kinds = ["EngineKeywords", "TaskKeywords", "RenderKeywords", *["BatchKeywords"] * ("Vector" in class_)]
+    typed = set().union(*(getattr(keywords, kind).__optional_keys__ for kind in kinds))
     own = {"system"} if class_.startswith("System") else set()
     own |= {"num_envs"} if "Vector" in class_ else set()
     missing = (typed | own) - set(arguments(class_))

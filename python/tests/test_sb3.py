@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import libration
+from common import IDS
 
 # All that an environment draws: latencies, clocks and noise.
 UNSTEADY = dict(action_delay=(0.0, 0.05), substeps=50, jitter=0.05, skew=("uniform", 0.001), observation_noise=0.01)
@@ -101,8 +102,8 @@ def test_without_stable_baselines3_the_import_names_the_extra():
 @pytest.mark.parametrize(("name", "settings"), [("Pendulum", dict(max_episode_steps=40)), ("Oscillator", NEAR)])
 def test_steps_are_those_of_single_environments_side_by_side(sb3, name, settings, dtype):
     settings = {**UNSTEADY, **settings, "dtype": dtype}
-    ours = sb3.VecEnv(f"libration/{name}-v0", 6, **settings)
-    theirs = [gymnasium.make(f"libration/{name}-v0", **settings) for _ in range(6)]
+    ours = sb3.VecEnv(IDS[name], 6, **settings)
+    theirs = [gymnasium.make(IDS[name], **settings) for _ in range(6)]
     ours.seed(7)
     np.testing.assert_array_equal(ours.reset(), [one.reset(seed=7 + n)[0] for n, one in enumerate(theirs)])
     rng = np.random.default_rng(0)

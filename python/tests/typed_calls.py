@@ -44,6 +44,8 @@ def wrong_environments(cart: libration.EquationSystem) -> None:
     PendulumEnv(m=1.0, k=1.0)  # type: ignore[call-arg]
     PendulumEnv(action_delay="0.05")  # type: ignore[arg-type]
     PendulumVectorEnv(4, autoreset_mod="SameStep")  # type: ignore[call-arg]
+    libration.Environments("Oscillator", 4, action_dely=0.05)  # type: ignore[call-overload]
+    libration.VectorEnv("Oscillator", 4, action_dely=0.05)  # type: ignore[call-overload]
     PendulumVectorEnv("4")  # type: ignore[arg-type]
     OscillatorEnv(omega=10.0)  # type: ignore[call-arg]
     DuffingEnv(omega2=10.0)  # type: ignore[call-arg]
