@@ -179,17 +179,6 @@ impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {
         self.banked[l] + self.paid[l].to_f64()
     }
 
-    /// Restores the words of lanes without a running episode.
-    pub(super) fn restore_words(
-        &self,
-        words: [&mut Streams<LANES>; 3],
-        before: &[Streams<LANES>; 3],
-    ) {
-        for (words, before) in words.into_iter().zip(before) {
-            (0..LANES).filter(|&l| self.ended[l] != 0).for_each(|l| words.copy_lane(l, before));
-        }
-    }
-
     /// Updates `oldest` after episodes began.
     pub(super) fn settle(&mut self) {
         self.oldest = self.began.iter().copied().fold(u64::MAX, u64::min);
@@ -201,5 +190,16 @@ impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {
         (self.paid[l], self.banked[l]) = (as_it_was.paid[l], as_it_was.banked[l]);
         // Its time stands as well.
         self.began[l] = as_it_was.began[l] + 1;
+    }
+}
+
+/// Restores the words of lanes whose episodes had ended.
+pub(super) fn restore_words(
+    ended: &[u8; LANES],
+    words: [&mut Streams<LANES>; 3],
+    before: &[Streams<LANES>; 3],
+) {
+    for (words, before) in words.into_iter().zip(before) {
+        (0..LANES).filter(|&l| ended[l] != 0).for_each(|l| words.copy_lane(l, before));
     }
 }

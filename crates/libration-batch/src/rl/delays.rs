@@ -43,6 +43,9 @@ impl Delays {
 
     /// The latencies of observations and actions of an episode.
     pub(super) fn draw(&self, episode: Episode) -> [u32; 2] {
+        if [self.observation, self.action].iter().all(|[least, most]| least == most) {
+            return [self.observation[0], self.action[0]];
+        }
         let shares = uniform::shares::<2>(episode, Purpose::Delay, 0);
         let drawn = |[least, most]: [u32; 2], share: f64| {
             least + (share * (f64::from(most - least) + 1.0)) as u32

@@ -40,6 +40,9 @@ impl ErrorScale {
 
     /// The factors of the clock and of the sensor in an episode.
     pub(super) fn draw(&self, episode: Episode) -> [f64; 2] {
+        if [self.clock, self.sensor].iter().all(|[least, most]| least == most) {
+            return [self.clock[0], self.sensor[0]];
+        }
         // The first two numbers are latencies.
         let shares = uniform::shares::<2>(episode, Purpose::Delay, 2);
         let drawn = |[least, most]: [f64; 2], share| uniform::at((least, most), share);

@@ -5,7 +5,7 @@ use libration_core::random::Streams;
 use libration_core::{Float, System};
 use pulp::{Simd, WithSimd};
 
-use super::block::BlockOf;
+use super::block::{BlockOf, restore_words};
 use super::block_output::BlockOutput;
 use super::block_size::{LANES, TILE};
 use super::history::History;
@@ -143,7 +143,7 @@ where
                     let whole = ended == 0 && stood.is_none();
                     if !whole {
                         if let Some((stood, spoken)) = stood.as_ref().zip(spoken.as_ref()) {
-                            stood.restore_words([times, looks, acts], spoken);
+                            restore_words(&stood.ended, [times, looks, acts], spoken);
                         }
                         stepper.end(&site, block, stood.as_ref(), past!(), looks, &mut out);
                     }

@@ -147,8 +147,10 @@ pub(super) mod uniform {
         episode: Episode,
         ranges: &[[f64; 2]],
     ) -> impl Iterator<Item = T> {
-        ranges.iter().enumerate().map(move |(i, &[low, high])| {
-            at((low, high), episode.address(Purpose::Start, i).uniform()[0])
+        ranges.iter().enumerate().map(move |(i, &[low, high])| match low == high {
+            // The sum makes -0 what the product of the other arm makes of it.
+            true => T::from_f64(low + 0.0),
+            false => at((low, high), episode.address(Purpose::Start, i).uniform()[0]),
         })
     }
 

@@ -40,6 +40,9 @@ impl StartAddress {
 
     /// A draw from a distribution.
     pub fn draw(self, law: Jitter, purpose: Purpose) -> f64 {
+        if law.rms() == 0.0 {
+            return 0.0;
+        }
         let place = self.address(purpose);
         match law {
             Jitter::Gaussian(rms) => rms * place.gaussian()[0],

@@ -38,6 +38,8 @@ pub(super) struct BlockStep<'s, T> {
     observation: ProgramRows<'s, T>,
     verdict: ProgramRows<'s, T>,
     pub(super) seen: Vec<Row<T>>,
+    /// The observations after a step with which an episode ended.
+    pub(super) last: Vec<Row<T>>,
     pub(super) actions: Vec<Row<T>>,
     pub(super) log_probabilities: Row<T>,
     pub(super) rewards: Row<T>,
@@ -84,6 +86,7 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
             observation: programs.observation.rows(lanes, T::zero()),
             verdict: programs.verdict.rows(lanes, T::zero()),
             seen: rows(definition.observations()),
+            last: rows(definition.observations()),
             actions: rows(actions),
             log_probabilities: zeros,
             rewards: zeros,

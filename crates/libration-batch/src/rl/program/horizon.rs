@@ -11,7 +11,7 @@ use super::state::Beginning;
 use super::transitions::{Transitions, interleave};
 use super::{ProgramEnvironment, ProgramPolicy};
 use crate::ensemble::BatchFloat;
-use crate::rl::block::{LOST, TERMINATED, TRUNCATED};
+use crate::rl::block::{LOST, TERMINATED, TRUNCATED, restore_words};
 use crate::rl::block_size::LANES;
 use crate::rl::{Autoreset, EpisodeEnd, StepIndex};
 
@@ -109,9 +109,10 @@ impl<T: BatchFloat> Horizon<'_, T> {
         // What stands still is stepped with its neighbours, and put back.
         let stands = autoreset != Autoreset::SameStep && block.episodes.ended != [0; LANES];
         let stood = stands.then(|| Stood {
-            episodes: *block.episodes,
-            states: block.states.to_vec(),
-            words: [0, 1, 2].map(|i| *site.words[i]),
+            ended: block.episodes.ended,
+            words: self.draws(work).then(|| [0, 1, 2].map(|i| *site.words[i])),
+            held: (autoreset == Autoreset::Disabled)
+                .then(|| (*block.episodes, block.states.to_vec())),
         });
         let [times, looks, acts] = &mut site.words;
         if is_observed {
@@ -131,13 +132,19 @@ impl<T: BatchFloat> Horizon<'_, T> {
             }
         }
         if ended || stood.is_some() {
-            if let Some(stood) = &stood {
+            if let Some(Stood { ended, words: Some(before), .. }) = &stood {
                 let [times, looks, acts] = &mut site.words;
-                stood.episodes.restore_words([times, looks, acts], &stood.words);
+                restore_words(ended, [times, looks, acts], before);
             }
             self.end(work, site, block, stood.as_ref(), &mut cuts, ends);
         }
         cuts
+    }
+
+    /// Whether a step draws random words.
+    fn draws(&self, work: &BlockStep<'_, T>) -> bool {
+        let definition = work.definition;
+        definition.is_jittered() || definition.is_noisy() || self.policy.words() > 0
     }
 
     /// Records the ends of episodes, and begins the next ones.
@@ -154,30 +161,32 @@ impl<T: BatchFloat> Horizon<'_, T> {
         let substeps = u64::from(work.definition.substeps);
         let autoreset = work.definition.autoreset;
         // Those that go on will see the same again.
-        let seen = work.seen.clone();
-        work.observe(step + 1, block, &mut site.words[1].clone());
-        let last = core::mem::replace(&mut work.seen, seen);
+        core::mem::swap(&mut work.seen, &mut work.last);
+        if work.definition.is_noisy() {
+            work.observe(step + 1, block, &mut site.words[1].clone());
+        } else {
+            work.observe(step + 1, block, site.words[1]);
+        }
+        core::mem::swap(&mut work.seen, &mut work.last);
         for l in site.count..LANES {
             // Lanes that are no environments are never at an end.
             block.episodes.rest(l, step + 1);
         }
         for l in 0..site.count {
             let next = block.episodes.next(l);
-            if let Some(stood) = stood.filter(|stood| stood.episodes.ended[l] != 0) {
-                let flags = match autoreset {
-                    Autoreset::Disabled => stood.episodes.ended[l],
-                    Autoreset::SameStep | Autoreset::NextStep => 0,
-                };
+            if let Some(stood) = stood.filter(|stood| stood.ended[l] != 0) {
+                let flags = if stood.held.is_some() { stood.ended[l] } else { 0 };
                 work.rewards[l] = T::zero();
                 (work.overs[l], cuts[l]) = (flags & TERMINATED, (flags & TRUNCATED) / TRUNCATED);
-                if autoreset == Autoreset::Disabled {
-                    block.episodes.hold(&stood.episodes, l);
-                    block.states.iter_mut().zip(&stood.states).for_each(|(x, was)| x[l] = was[l]);
-                    let state = stood.states.iter().map(|row| row[l]);
-                    let steps = step * substeps..(step + 1) * substeps;
-                    work.history.hold(block.past, l, steps, state);
-                } else {
-                    self.beginning.begin(block, [environment + l, l], next, step + 1);
+                match &stood.held {
+                    Some((episodes, states)) => {
+                        block.episodes.hold(episodes, l);
+                        block.states.iter_mut().zip(states).for_each(|(x, was)| x[l] = was[l]);
+                        let state = states.iter().map(|row| row[l]);
+                        let steps = step * substeps..(step + 1) * substeps;
+                        work.history.hold(block.past, l, steps, state);
+                    }
+                    None => self.beginning.begin(block, [environment + l, l], next, step + 1),
                 }
                 continue;
             }
@@ -195,7 +204,7 @@ impl<T: BatchFloat> Horizon<'_, T> {
                 length: step + 1 - block.episodes.began[l],
                 lost,
             };
-            ends.push(end, last.iter().map(|row| row[l]));
+            ends.push(end, work.last.iter().map(|row| row[l]));
             match autoreset {
                 Autoreset::SameStep => {
                     self.beginning.begin(block, [environment + l, l], next, step + 1)
@@ -207,9 +216,12 @@ impl<T: BatchFloat> Horizon<'_, T> {
     }
 }
 
-/// A block before a step that some of its environments do not take.
+/// What a block was before a step that some of its environments do not take.
 struct Stood<T: Float> {
-    episodes: EpisodeBlock<T>,
-    states: Vec<Row<T>>,
-    words: [Streams<LANES>; 3],
+    /// Flags of the environments that do not take it.
+    ended: [u8; LANES],
+    /// The random words, where any are drawn.
+    words: Option<[Streams<LANES>; 3]>,
+    /// Episodes and states, where they stay as they were.
+    held: Option<(EpisodeBlock<T>, Vec<Row<T>>)>,
 }
