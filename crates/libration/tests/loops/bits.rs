@@ -14,6 +14,7 @@ use libration::system::{BaselineOnly, Oscillator, Pendulum};
 use libration::{Integrator, State, System};
 use proptest::prelude::*;
 
+use super::any_delay::AnyDelay;
 use super::single_loop::One;
 
 const GAINS: Feedback = Feedback { position: 3.0, velocity: 0.5 };
@@ -114,10 +115,19 @@ fn stirred() -> impl Clock<f32> {
     ((noise, LateTicks { probability: 0.2, by: 0.5 }), Drifting(Jitter::Uniform(1e-4)))
 }
 
+/// A pendulum on the other clocks, under the late force of another.
+fn stirred_pendulum()
+-> Setup<All<Pendulum<f32>>, VelocityVerlet, Force<Pendulum<f32>>, impl Clock<f32>, Schedule> {
+    Setup::new(All(Pendulum { omega2: 4.0 }), VelocityVerlet)
+        .controller(Force(Pendulum { omega2: 1.0 }))
+        .clock(stirred())
+        .delay(Schedule::late(Latency::of_steps(2.0).unwrap()))
+}
+
 #[test]
 fn bits_do_not_depend_on_threads_numbers_instructions_or_parts_whatever_the_clock() {
     same_bits_of(oscillator(SymplecticEuler).clock(shaken()));
-    same_bits_of(Setup::new(All(Pendulum { omega2: 4.0 }), VelocityVerlet).clock(stirred()));
+    same_bits_of(stirred_pendulum());
 }
 
 #[test]
@@ -129,12 +139,14 @@ fn bits_do_not_depend_on_threads_numbers_instructions_or_parts_whatever_the_dela
         same_bits_of(base.delay(Schedule::new(period, observation, action).unwrap()));
     }
     let table = RandomLatency::new(vec![(0.0, 0.5), (2.0, 0.25), (3.25, 0.25)], 0.5).unwrap();
-    same_bits_of(base.delay(Random(&table)));
+    same_bits_of(base.delay(AnyDelay::Random(Random(&table))));
     for order in [Order::NewestActs, Order::LastActs] {
-        same_bits_of(base.delay(Packets::new(&[0.3, 0.3, 0.2], order).unwrap()));
+        let packets = Packets::new(&[0.3, 0.3, 0.2], order).unwrap();
+        same_bits_of(base.delay(AnyDelay::Packets(packets)));
     }
     let record: Vec<f64> = (0..300).map(|n| f64::from(n % 7) / 2.0).collect();
-    same_bits_of(base.delay(RecordedLatencies::new(&record).unwrap()));
+    let record = RecordedLatencies::new(&record).unwrap();
+    same_bits_of(base.delay(AnyDelay::Recorded(record)));
 }
 
 #[test]
@@ -150,8 +162,7 @@ fn bits_do_not_depend_on_threads_numbers_instructions_or_parts_whatever_the_cont
         target: [0.25],
     });
     same_bits_of(oscillator(VelocityVerlet).controller(pid.unwrap()).delay(late));
-    let pendulum = Force(Pendulum { omega2: 1.0 });
-    same_bits_of(oscillator(VelocityVerlet).controller(pendulum).delay(late));
+    same_bits_of(stirred_pendulum());
     // A plant, a rate and a latency for each.
     let latencies: Vec<Latency> =
         (0..333).map(|n| Latency::of_steps(f64::from(n % 40) / 10.0).unwrap()).collect();
@@ -226,9 +237,9 @@ fn explicit_euler_is_symplectic_euler_with_the_force_one_step_late_bit_for_bit()
 
 #[test]
 fn loops_that_are_restored_go_on_bit_for_bit_and_one_that_is_reset_begins_anew() {
-    let setup = plain_oscillator(Rk4)
+    let setup = plain_oscillator(VelocityVerlet)
         .controller(StateFeedback::to_origin(GAINS))
-        .clock(Correlated { rms: 0.1, correlation: 0.9 })
+        .clock(shaken())
         .delay(Schedule::new(1.0, 0.5, 4.25).unwrap());
     let fresh = || Loops::new(setup, 0.1, 3, [0.5], &starts(100), Execution::serial()).unwrap();
     let mut whole = fresh();

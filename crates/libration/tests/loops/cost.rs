@@ -5,7 +5,7 @@ use libration::control::clock::{Jittered, Rates};
 use libration::control::controller::{Luenberger, Pid, PidGains, StateFeedback};
 use libration::control::delay::{Order, Packets};
 use libration::control::{Controller, Feedback, Jitter, Latency, LqrWeights, Schedule, WhiteNoise};
-use libration::ensemble::{All, Execution, Loops, Setup};
+use libration::ensemble::{All, Execution, Loops, MeanSquareError, Setup};
 use libration::integrator::Exact;
 use libration::random::{Address, Purpose};
 use libration::system::{BaselineOnly, Oscillator};
@@ -164,15 +164,10 @@ fn an_exact_loop_with_a_late_command_costs_what_fine_steps_measure() {
         let mut loops = Loops::new(setup, fine, 3, [0.0], &starts, Execution::serial()).unwrap();
         let steps = |seconds: f64| (seconds / dt) as u64 * u64::from(FINE);
         loops.advance(steps(40.0)).unwrap();
-        let mut costs = vec![0.0; COUNT];
-        let samples = steps(200.0);
-        for _ in 0..samples {
-            loops.advance(1).unwrap();
-            let all = loops.trajectories();
-            for (cost, (q, v)) in costs.iter_mut().zip(all.q(0).iter().zip(all.v(0))) {
-                *cost += (weights.position * q * q + weights.velocity * v * v) / samples as f64;
-            }
-        }
+        let squares = |range| MeanSquareError::new(range, |_, _| ORIGIN);
+        let observed = loops.observe(steps(200.0), 1, squares).unwrap();
+        let cost = |[q, v]: [f64; 2]| weights.position * q + weights.velocity * v;
+        let costs: Vec<_> = observed.iter().flat_map(MeanSquareError::means).map(cost).collect();
         agrees(&format!("exact, {dt}, {late}"), predicted, mean(&costs));
     }
 }

@@ -8,6 +8,8 @@ use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::VelocityVerlet;
 use libration::system::{BaselineOnly, Oscillator};
 
+use super::any_delay::AnyDelay;
+
 /// The command that acts in the end of each step, on something that moves freely with velocity 1 under a command that
 /// is its own position and too weak to move it: the time at which the command was computed, in steps.
 fn computed_at<L: Delay<f64>>(delay: L, trajectories: usize, steps: usize) -> Vec<Vec<f64>> {
@@ -144,12 +146,12 @@ fn a_random_latency_and_a_packet_may_take_a_part_of_a_step() {
         Setup::new(All(BaselineOnly(Oscillator { omega2: 0.0 })), VelocityVerlet).controller(to);
     let table = RandomLatency::new(vec![(0.25, 1.0)], 0.0).unwrap();
     let start = [State { q: [0.0_f64], v: [0.0] }];
-    let random = setup.delay(Random(&table));
+    let random = setup.delay(AnyDelay::Random(Random(&table)));
     let mut random = Loops::new(random, 1.0, 0, [0.0], &start, Execution::serial()).unwrap();
     random.advance(1).unwrap();
     let packets = Packets::new(&[1.0], Order::LastActs).unwrap();
     assert!(packets.longer_by(1.0).unwrap_err().to_string().contains("below 1"));
-    let packets = setup.delay(packets.longer_by(0.25).unwrap());
+    let packets = setup.delay(AnyDelay::Packets(packets.longer_by(0.25).unwrap()));
     let mut packets = Loops::new(packets, 1.0, 0, [0.0], &start, Execution::serial()).unwrap();
     packets.advance(1).unwrap();
     let velocities = [random.state(0), packets.state(0)].map(|state| state.unwrap().v[0]);
@@ -159,14 +161,15 @@ fn a_random_latency_and_a_packet_may_take_a_part_of_a_step() {
 #[test]
 fn recorded_latencies_are_followed_step_by_step() {
     let latencies = [0.0, 1.0, 1.5, 3.0, 0.0, 2.0];
-    let times = computed_at(RecordedLatencies::new(&latencies).unwrap(), 2, 6);
+    let recorded = AnyDelay::Recorded(RecordedLatencies::new(&latencies).unwrap());
+    let times = computed_at(recorded, 2, 6);
     assert_eq!(times[1], [0.0, 0.0, 1.0, 0.0, 4.0, 3.0]);
 }
 
 #[test]
 fn random_latencies_follow_their_table_and_hold() {
     let table = RandomLatency::new(vec![(0.0, 0.5), (2.0, 0.3), (3.0, 0.2)], 0.75).unwrap();
-    let times = computed_at(Random(&table), 64, 1000);
+    let times = computed_at(AnyDelay::Random(Random(&table)), 64, 1000);
     let (mut counts, mut stays) = ([0.0_f64; 4], 0.0);
     for times in &times {
         let latencies: Vec<usize> =
@@ -186,8 +189,11 @@ fn random_latencies_follow_their_table_and_hold() {
 #[test]
 fn packets_overtake_each_other_by_the_rule_that_is_stated() {
     let probabilities = [0.4, 0.2, 0.2];
-    let newest = computed_at(Packets::new(&probabilities, Order::NewestActs).unwrap(), 64, 500);
-    let last = computed_at(Packets::new(&probabilities, Order::LastActs).unwrap(), 64, 500);
+    let packets = |probabilities: &[f64], order| {
+        AnyDelay::Packets(Packets::new(probabilities, order).unwrap())
+    };
+    let newest = computed_at(packets(&probabilities, Order::NewestActs), 64, 500);
+    let last = computed_at(packets(&probabilities, Order::LastActs), 64, 500);
     let goes_back = |times: &Vec<f64>| times.windows(2).any(|pair| pair[1] < pair[0]);
     assert!(!newest.iter().any(goes_back));
     assert!(last.iter().all(goes_back));
@@ -201,8 +207,8 @@ fn packets_overtake_each_other_by_the_rule_that_is_stated() {
     assert!((share(&newest, 0.0) - 0.4).abs() < 0.012);
     assert!((share(&newest, 1.0) - 0.76).abs() < 0.012);
     // Nothing is lost where the probabilities are all.
-    let sure = computed_at(Packets::new(&[0.0, 1.0], Order::NewestActs).unwrap(), 1, 5);
+    let sure = computed_at(packets(&[0.0, 1.0], Order::NewestActs), 1, 5);
     assert_eq!(sure[0], [BEFORE, 0.0, 1.0, 2.0, 3.0]);
-    let lost = computed_at(Packets::new(&[0.0], Order::NewestActs).unwrap(), 1, 5);
+    let lost = computed_at(packets(&[0.0], Order::NewestActs), 1, 5);
     assert_eq!(lost[0], [BEFORE; 5]);
 }

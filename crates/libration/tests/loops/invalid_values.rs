@@ -13,6 +13,7 @@ use libration::integrator::{Rk4, VelocityVerlet};
 use libration::system::{BaselineOnly, Oscillator};
 
 use super::any_clock::AnyClock;
+use super::any_delay::AnyDelay;
 use super::clocks::free;
 
 const STARTS: [State<f64, 1>; 2] = [State { q: [1.0], v: [0.0] }; 2];
@@ -39,7 +40,7 @@ fn records_are_never_made_longer_and_lists_are_of_the_right_length() {
         "the record of a clock or a delay has 2 steps; the run requires 3"
     );
     assert_eq!(
-        of_delay(RecordedLatencies::new(&[0.0, 2.0]).unwrap(), 5),
+        of_delay(AnyDelay::Recorded(RecordedLatencies::new(&[0.0, 2.0]).unwrap()), 5),
         "the record of a clock or a delay has 2 steps; the run requires 5"
     );
     assert_eq!(

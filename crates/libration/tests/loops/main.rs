@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod any_clock;
+mod any_delay;
 mod bits;
 mod clocks;
 mod controllers;
