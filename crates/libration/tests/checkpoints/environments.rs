@@ -21,6 +21,10 @@ use super::{executions, refused};
 
 const COUNT: usize = 150;
 
+/// One for all tests: environments are compiled for each policy.
+const POLICY: GaussianExploration<Linear<2, 1>, 1> =
+    GaussianExploration { policy: Linear { weights: [[-3.0, 0.5]], bias: [0.25] }, sigma: [2.0] };
+
 /// With all that an environment can remember.
 fn world(autoreset: Autoreset) -> impl World<f32, 2, 1> {
     let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.01, bound: 1.5 };
@@ -47,13 +51,9 @@ type Told = (Vec<f32>, Vec<f32>, Vec<f32>, Vec<u8>, Vec<(usize, usize, f64, u64)
 
 /// What they do in so many steps.
 fn told<E: World<f32, 2, 1>>(all: &mut Environments<f32, E, 2, 1>, steps: usize) -> Told {
-    let policy = GaussianExploration {
-        policy: Linear { weights: [[-3.0, 0.5]], bias: [0.25] },
-        sigma: [2.0],
-    };
     let mut rollout =
         Rollout::new(Plan::new(steps, all.len()).truncated().log_probabilities()).unwrap();
-    all.rollout(policy, &mut rollout).unwrap();
+    all.rollout(POLICY, &mut rollout).unwrap();
     let ends = rollout.finals().iter();
     let ends = ends.map(|end| (end.step, end.environment, end.episode_return, end.length));
     let flags = [rollout.terminated(), rollout.truncated()].concat();
@@ -125,9 +125,8 @@ fn a_replay_buffer_goes_on_bit_for_bit() {
     let mut all = Environments::new(world(Autoreset::SameStep), COUNT, 9, serial.clone()).unwrap();
     let (mut whole, mut other) = (make(), make());
     let mut insert = |into: [Option<&mut ReplayBuffer<f32, 2, 1>>; 2]| {
-        let policy = Linear { weights: [[-3.0, 0.5]], bias: [0.25] };
         let mut rollout = Rollout::new(Plan::new(7, COUNT).truncated()).unwrap();
-        all.rollout(policy, &mut rollout).unwrap();
+        all.rollout(POLICY, &mut rollout).unwrap();
         let mut next = vec![0.0; 2 * COUNT];
         all.observe(&mut next).unwrap();
         for replay in into.into_iter().flatten() {
