@@ -78,12 +78,17 @@ fn environments_go_on_bit_for_bit_wherever_they_are_taken_up() {
         let expected = told(&mut whole, 200);
         assert!(autoreset == Autoreset::Disabled || expected.4.len() > COUNT);
         for execution in executions() {
-            let mut other = make(execution);
-            told(&mut other, 31);
-            other.restore(&state).unwrap();
-            assert!(other.to_bytes() == state);
-            assert!(told(&mut other, 200) == expected, "{autoreset:?}");
-            assert!(other.to_bytes() == whole.to_bytes(), "{autoreset:?}");
+            // At another step, and at the same step in other episodes.
+            for after in [31, 100] {
+                let mut other = make(execution.clone());
+                told(&mut other, 43);
+                other.reset(&[true; COUNT]).unwrap();
+                told(&mut other, after);
+                other.restore(&state).unwrap();
+                assert!(other.to_bytes() == state);
+                assert!(told(&mut other, 200) == expected, "{autoreset:?} {after}");
+                assert!(other.to_bytes() == whole.to_bytes(), "{autoreset:?} {after}");
+            }
         }
     }
 }
