@@ -8,6 +8,7 @@ mod examples;
 mod instructions;
 mod processor_time;
 mod python;
+mod release;
 mod report;
 mod scratch;
 mod suites;
@@ -36,7 +37,7 @@ enum Action {
     With(fn(&[String]) -> Outcome),
 }
 
-const TASKS: [Task; 11] = [
+const TASKS: [Task; 12] = [
     Task {
         name: "ci",
         summary: "all of the below up to `report`, with format, lints and documentation",
@@ -81,6 +82,11 @@ const TASKS: [Task; 11] = [
         name: "report",
         summary: "a quick `libration lab` and its files checked",
         action: Action::Plain(report::run),
+    },
+    Task {
+        name: "release",
+        summary: "a source distribution and a Linux wheel of the Python package, checked and tried",
+        action: Action::Plain(release::run),
     },
     Task {
         name: "torture",
