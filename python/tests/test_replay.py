@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from libration import Environments, ReplayBuffer
+from libration import Environments, ReplayBuffer, Uniform
 from libration.policies import Random
 
 
@@ -129,3 +129,21 @@ def test_a_rollout_of_other_environments_is_refused():
         envs = Environments("Oscillator", 8, dtype="float64")
         envs.reset(seed=0)
         buffer.insert(envs.rollout(Random(-1.0, 1.0), 51))
+
+
+@pytest.mark.parametrize("given", [{"jitter": 0.1}, {"omega2": Uniform(10, 20)}, {"action_delay": 0.0333}])
+def test_a_buffer_takes_rollouts_of_environments_with_noise_or_parameters_that_vary(given):
+    envs = Environments("Pendulum", 8, max_episode_steps=10, autoreset_mode="SameStep", **given)
+    envs.reset(seed=0)
+    rollout = envs.rollout(Random(-1.0, 1.0), 32)
+    buffer = ReplayBuffer(envs, steps=40)
+    buffer.insert(rollout)
+    drawn = buffer.sample(2000)
+    step, n = np.divmod(drawn.indices.astype(int), 8)
+    np.testing.assert_array_equal(drawn.observations, rollout.observations[step, n])
+    np.testing.assert_array_equal(drawn.rewards, rollout.rewards[step, n])
+    np.testing.assert_array_equal(drawn.truncated, rollout.truncated[step, n])
+    ends = {(s, e): seen for s, e, seen in zip(rollout.episodes["steps"], rollout.episodes["environments"], rollout.episodes["final_observations"])}
+    assert drawn.truncated.sum() > 100
+    for k in np.flatnonzero(drawn.truncated)[:50]:
+        np.testing.assert_array_equal(drawn.next_observations[k], ends[step[k], n[k]])

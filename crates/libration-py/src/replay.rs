@@ -3,7 +3,7 @@
 use bytemuck::cast_slice_mut;
 use libration::ensemble::Execution;
 use libration::replay::{Capacity, Columns, Draw, Lookahead, ReplayBuffer, ReplayError, Sequences};
-use libration::rl::{EnvironmentError, Rollout};
+use libration::rl::{EnvironmentError, ProgramRollout, Rollout};
 use libration_env::environments::AnyRollout;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -77,11 +77,16 @@ impl<T: Number, const O: usize> Store<T> for ReplayBuffer<T, O, 1> {
 
     fn insert(&mut self, tensors: &mut dyn AnyRollout<T>, next: &[T]) -> Result<(), ReplayError> {
         let found = tensors.sizes()[0];
-        let Some(rollout) = tensors.as_any().downcast_mut::<Rollout<T, O, 1>>() else {
-            let name = "numbers that an environment of the rollout shows";
-            return Err(EnvironmentError::Shape { name, found, wanted: O }.into());
-        };
-        ReplayBuffer::insert(self, rollout, next, &Execution::serial())
+        let serial = Execution::serial();
+        if let Some(rollout) = tensors.as_any().downcast_mut::<Rollout<T, O, 1>>() {
+            return ReplayBuffer::insert(self, rollout, next, &serial);
+        }
+        // Environments with noise or with parameters that vary are programs.
+        if let Some(rollout) = tensors.as_any().downcast_mut::<ProgramRollout<T>>() {
+            return ReplayBuffer::insert(self, &rollout.to_sized::<O, 1>()?, next, &serial);
+        }
+        let name = "numbers that an environment of the rollout shows";
+        Err(EnvironmentError::Shape { name, found, wanted: O }.into())
     }
 
     fn sample<'py>(&self, py: Python<'py>, request: SampleRequest) -> PyResult<Bound<'py, PyDict>> {

@@ -130,6 +130,24 @@ impl<T: Float + Pod> ProgramRollout<T> {
         EpisodeEnds { ends, observations: self.last.clone() }
     }
 
+    /// A copy with numbers of observations and actions that are known at compile time, as replay buffers take it.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Shape`] for other numbers; [`EnvironmentError::OutOfMemory`].
+    pub fn to_sized<const O: usize, const D: usize>(
+        &self,
+    ) -> Result<Rollout<T, O, D>, EnvironmentError> {
+        EnvironmentError::shape("observed numbers of the rollout", self.sizes[0], O)?;
+        EnvironmentError::shape("actions of the rollout", self.sizes[1], D)?;
+        let finals = self.transitions.finals().iter().zip(self.last.chunks(O.max(1)));
+        let finals = finals.map(|(end, last)| {
+            let EpisodeEnd { step, environment, episode_return, length, lost, .. } = *end;
+            let observation = core::array::from_fn(|i| last[i]);
+            EpisodeEnd { step, environment, observation, episode_return, length, lost }
+        });
+        Rollout::with(&self.transitions, [&self.observation, &self.action], finals.collect())
+    }
+
     /// A range of its rows, to be written.
     pub(super) fn rows(&mut self, rows: &core::ops::Range<usize>) -> Transitions<'_, T> {
         let Plan { horizon, environments, layout, .. } = self.transitions.plan();
