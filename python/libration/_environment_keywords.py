@@ -77,6 +77,7 @@ class TaskKeywords(TypedDict, total=False):
     targets: Sequence[str] | None
     inner: PD | Mapping[str, str] | None
     inner_period: float | None
+    chunk: tuple[int, int] | None
 
 
 class RenderKeywords(TypedDict, total=False):

@@ -56,7 +56,7 @@ def native_varied(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
     of_system = CATALOGUE[preset.system]
     taken = {*of_system, *preset.costs}
     refuse_others(parameters, taken, [*SMALLEST_OPTIONS, *taken])
-    for name in TASK_OPTIONS:
+    for name in (*TASK_OPTIONS, "chunk"):
         if given[name] is not None:
             raise TypeError(f"{name} belongs to environments of a System, not to {preset.name!r}")
     mass = {"m", "k"} & set(parameters)

@@ -220,6 +220,7 @@ OPTIONS = (
     "targets",
     "inner",
     "inner_period",
+    "chunk",
     "dtype",
     "threads",
     "copy",
@@ -248,7 +249,7 @@ def native(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
     of_system = CATALOGUE[preset.system]
     taken = set(of_system) | set(preset.costs)
     refuse_others(parameters, taken, set(OPTIONS) | taken)
-    for name in TASK_OPTIONS:
+    for name in (*TASK_OPTIONS, "chunk"):
         if given.pop(name) is not None:
             raise TypeError(f"{name} belongs to environments of a System, not to {preset.name!r}")
     system = {name: parameters[name] for name in of_system if name in parameters}

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from typing import Any, Mapping, Sequence
 
 from ._episode_numbers import each, episode_number, largest_commands, scaled_law
-from ._settings import OPTIONS, TASK_OPTIONS, common, count, ends, is_several, law, number, refuse_others
+from ._settings import OPTIONS, TASK_OPTIONS, common, count, ends, is_several, law, number, positive, refuse_others
 from ._toml import text_of
 from .equations import EquationSystem
 from .perturbations import PD
@@ -64,6 +65,11 @@ def native_equations(
     text = None
     if isinstance(task["inner"], PD):
         task |= _pd_targets(system, task["inner"], task["targets"])
+    if (chunk := given.pop("chunk")) is not None:
+        task |= _chunk(system, chunk, task, own, positive("dt", given["dt"]))
+        given["dt"] *= chunk[1]
+        if is_several(given["max_action"]):
+            given["max_action"] = [*given["max_action"]] * chunk[0]
     if any(value is not None for value in task.values()):
         text = _task(system, task, own)
     seen, levels = (own["observe"], own["actions"]) if own else (list(system.states), [])
@@ -109,6 +115,36 @@ def _pd_targets(system: EquationSystem, gains: PD, targets: Sequence[str] | None
     targets = [f"target_{name}" for name in coordinates] if targets is None else targets
     commands = {u: f"{stiffness!r}*({target} - {q}) - {damping!r}*{q}'" for u, target, q in zip(system.inputs, targets, coordinates)}
     return {"targets": targets, "inner": commands}
+
+
+def _chunk(
+    system: EquationSystem, chunk: Any, task: Mapping[str, Any], own: Mapping[str, Any] | None, dt: float
+) -> dict[str, Any]:
+    """Return the keys of a task whose actions are chunks: ``(H, s)`` commands for periods of ``dt``, of which ``s`` are used."""
+    if not is_several(chunk) or len(chunk) != 2:
+        raise ValueError(f"chunk is {chunk!r}, but it must be two integers (H, s): of H actions s are used")
+    length, used = count("length of chunk", chunk[0], 1, 1000), count("used actions of chunk", chunk[1], 1, 1000)
+    if used > length:
+        raise ValueError(f"chunk is {chunk!r}, but its second number must be at most its first")
+    if task["actions"] is not None or (own and own["actions"]):
+        raise TypeError("chunk is given, but discrete actions have no chunks")
+    table = own or {"targets": [], "inner": {}}
+    targets = task["targets"] if task["targets"] is not None else table["targets"]
+    inner = task["inner"] if task["inner"] is not None else table["inner"]
+    names = list(targets) or list(system.inputs)
+    inner = inner or {name: name for name in names}
+    # The command of a time: that of its period, and the last one behind the end. A thousandth of a period is no intended difference.
+    commands = {}
+    for name in names:
+        text = f"{name}_{length - 1}"
+        for i in reversed(range(length - 1)):
+            text = f"if(age < {(i + 1 - 1e-3) * dt!r}, {name}_{i}, {text})"
+        commands[name] = text
+    pattern = re.compile("|".join(rf"(?<![A-Za-z0-9_'])({re.escape(name)})(?![A-Za-z0-9_'(])" for name in names))
+    chosen = {u: pattern.sub(lambda found: f"({commands[found.group()]})", text) for u, text in inner.items()}
+    period = task["inner_period"] if task["inner_period"] is not None else table.get("inner_period")
+    numbered = [f"{name}_{i}" for i in range(length) for name in names]
+    return {"targets": numbered, "inner": chosen, "inner_period": dt if period is None else period}
 
 
 def _task(system: EquationSystem, task: Mapping[str, Any], own: Mapping[str, Any] | None) -> str:

@@ -87,6 +87,11 @@ class Environments(_native.Batch):
         targets of the coordinates, ``kp·(target - q) - kd·q'``; or an expression of the state and of ``targets``, names of actions, for each
         input. It samples every ``inner_period`` seconds (default: every step of the integrator), of which ``dt`` is a whole multiple.
         Latencies and ``max_action`` are those of the targets.
+    chunk:
+        ``(H, s)`` for a policy that answers with a chunk of ``H`` actions, one for each ``dt``, of which ``s`` are used: a step of the
+        environment takes ``s·dt``, and an action has ``H`` numbers for each input or target, time by time. ``action_delay`` is the time that
+        the policy needs to answer. The chunk before is in effect until then; of a chunk that arrives late, the actions whose time has passed are
+        left out.
     threads:
         Number of threads (0: one per core). The results are independent of it.
     copy:
@@ -148,6 +153,7 @@ class Environments(_native.Batch):
         targets: Sequence[str] | None = None,
         inner: PD | Mapping[str, str] | None = None,
         inner_period: float | None = None,
+        chunk: tuple[int, int] | None = None,
         dtype: DTypeLike = "float32",
         threads: int = 1,
         copy: bool = True,
@@ -186,6 +192,7 @@ class Environments(_native.Batch):
             "targets": targets,
             "inner": inner,
             "inner_period": inner_period,
+            "chunk": chunk,
             "dtype": _name_of(dtype),
             "threads": threads,
             "copy": copy,

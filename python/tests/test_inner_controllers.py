@@ -109,3 +109,59 @@ def test_an_inner_controller_by_expressions_has_targets_of_its_own():
 def test_wrong_inner_controllers_are_refused_by_name(given, error, text):
     with pytest.raises(error, match=text):
         arm(dt=0.02, **given)
+
+
+CART = System(acceleration={"x": "u"}, inputs=["u"], task={"reward": "-x^2", "start": {"x": (-1, 1)}})
+
+
+@pytest.mark.parametrize(("used", "delay"), [(3, 0.0), (3, 0.08), (1, 0.12), (3, 0.2), (6, 0.05)])
+def test_a_chunk_gives_the_command_of_each_time_and_leaves_out_what_has_passed(used, delay):
+    """Six actions for 50 ms each, of which some are used before the next chunk takes over, ``delay`` after its observation."""
+    dt, length = 0.05, 6
+    envs = Environments(CART, 2, dt=dt, chunk=(length, used), action_delay=delay, integrator="rk4", dtype="float64")
+    envs.reset(seed=0)
+    x, v = envs.states[0]
+    rng = np.random.default_rng(0)
+    chunks = rng.normal(size=(8, length))
+    for chunk in chunks:
+        envs.step(np.tile(chunk, (2, 1)))
+    # Time in steps of 5 ms, of which all periods and delays are multiples: the chunk of the latest observation that has been answered.
+    tick = 0.005
+    for n in range(round(8 * used * dt / tick)):
+        time = n * tick
+        answered = int(np.floor((time - delay) / (used * dt) + 1e-9))
+        command = 0.0
+        if answered >= 0:
+            index = int(np.floor((time - answered * used * dt) / dt + 1e-9))
+            command = chunks[answered][min(index, length - 1)]
+        x, v = x + v * tick + command * tick**2 / 2, v + command * tick
+    np.testing.assert_allclose(envs.states[0], [x, v], rtol=0, atol=1e-12)
+
+
+def test_chunks_of_targets_are_those_of_an_inner_controller():
+    given = {"dt": 0.02, "inner": PD(40.0, 6.0), "inner_period": 0.01}
+    chunks, single = arm(chunk=(3, 2), **given), arm(**given)
+    assert chunks.preset.actions == ("target_q_0", "target_q_1", "target_q_2") and chunks.substeps == 4
+    chunks.reset(seed=1), single.reset(seed=1)
+    rng = np.random.default_rng(0)
+    for _ in range(20):
+        actions = rng.normal(size=(3, 3))
+        chunks.step(actions)
+        single.step(actions[:, :1]), single.step(actions[:, 1:2])
+        assert np.array_equal(chunks.states, single.states)
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "text"),
+    [
+        ({"chunk": 3}, ValueError, r"chunk is 3, but it must be two integers"),
+        ({"chunk": (2, 3)}, ValueError, "its second number must be at most its first"),
+        ({"chunk": (0, 0)}, ValueError, "length of chunk is 0"),
+        ({"chunk": (3, 1), "actions": [0.0, 1.0]}, TypeError, "discrete actions have no chunks"),
+    ],
+)
+def test_wrong_chunks_are_refused(given, error, text):
+    with pytest.raises(error, match=text):
+        arm(dt=0.02, **given)
+    with pytest.raises(TypeError, match="chunk belongs to environments of a System"):
+        Environments("Pendulum", 2, chunk=(3, 1))

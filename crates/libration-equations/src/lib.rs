@@ -10,15 +10,18 @@ mod equations;
 mod error;
 mod expression;
 mod function;
+mod inner_controller;
 mod parser;
 mod parser_input;
 mod program;
 mod program_builder;
+mod projection;
 mod recording;
 mod resolver;
 mod step_program;
 mod step_trace;
 mod task;
+mod task_scope;
 
 pub use definitions::{Definitions, MAX_DEFINITIONS, MAX_DEGREES, MAX_EXPRESSIONS};
 pub use dynamics::Dynamics;

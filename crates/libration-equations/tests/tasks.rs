@@ -63,12 +63,13 @@ fn an_inner_controller_gives_each_input_from_states_and_targets() {
     let definitions = TaskDefinitions {
         reward: "goal".into(),
         targets: vec!["goal".into()],
-        inner: pairs(&[("w", "g"), ("u", "k*(goal - x) - x'")]),
+        inner: pairs(&[("w", "g + 100*age"), ("u", "k*(goal - x) - x'")]),
         ..TaskDefinitions::default()
     };
     let task = task(&definitions).unwrap();
-    // Positions and velocities, the parameter, the targets.
-    assert_eq!(run(&task.inner.unwrap(), &[0.5, 0.25, 7.0, 3.0]), [2.0 * 2.5 - 0.25, 7.0]);
+    // Positions and velocities, the parameter, the targets, and their age.
+    let found = run(&task.inner.unwrap(), &[0.5, 0.25, 7.0, 3.0, 0.5]);
+    assert_eq!(found, [2.0 * 2.5 - 0.25, 57.0]);
     assert_eq!(run(&task.verdict, &[0.5, 0.25, 3.0, 7.0, 8.0, 0.0, 1.5])[0], 3.0);
     assert_eq!(task.targets, 1);
 }

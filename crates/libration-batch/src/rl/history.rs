@@ -124,6 +124,12 @@ impl History {
         rows[ring(now, self.actions) * self.commands..][..actions.len()].copy_from_slice(actions);
     }
 
+    /// How many actions ago the action was given that is in effect in a substep.
+    #[inline(always)]
+    pub(super) fn periods(&self, latency: u32, substep: u64) -> usize {
+        (u64::from(latency).saturating_sub(substep) as usize).div_ceil(self.substeps)
+    }
+
     /// The actions that are in effect in a substep of step `now`.
     #[inline(always)]
     pub(super) fn effective<T: Copy>(
@@ -136,8 +142,7 @@ impl History {
     ) {
         let rows = &past.as_chunks::<LANES>().0[self.states * self.coordinates..];
         let now = ring(now, self.actions);
-        let age = |latency: u32| u64::from(latency).saturating_sub(substep) as usize;
-        let age = |latency: u32| age(latency).div_ceil(self.substeps);
+        let age = |latency: u32| self.periods(latency, substep);
         if same(latencies) {
             let place = back(now, age(latencies[0]), self.actions);
             held.copy_from_slice(&rows[place * self.commands..][..held.len()]);

@@ -200,7 +200,7 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
                 self.draw_lengths([now, substeps, substep], block.episodes, words);
             }
             if substep % u64::from(self.definition.inner_steps) == 0 {
-                self.control(block.states, block.numbers);
+                self.control(substep, block);
             }
             self.integrate(block.states, block.numbers);
         }
@@ -233,15 +233,20 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
         }
     }
 
-    /// Computes the commands of the inner controller, if there is one.
-    fn control(&mut self, states: &[Row<T>], numbers: &[Row<T>]) {
+    /// Computes the commands of the inner controller, if there is one, at the beginning of a substep.
+    fn control(&mut self, substep: u64, block: &BlockState<'_, T>) {
         let Some(inner) = &mut self.inner else { return };
+        if inner.reads_last() {
+            let within = self.definition.time_of(substep as u32);
+            for (age, &late) in self.times.iter_mut().zip(&block.episodes.delays[1]) {
+                let periods = self.history.periods(late, substep);
+                *age = T::from_f64(periods as f64 * self.span + within);
+            }
+        }
         let held = if self.history.delays_actions() { &self.held } else { &self.commands };
-        let parameters = &numbers[..self.definition.parameters.len()];
-        let input = |i: usize| {
-            row_of([states, parameters], i)
-                .unwrap_or_else(|| &held[i - states.len() - parameters.len()])
-        };
+        let parameters = &block.numbers[..self.definition.parameters.len()];
+        let rows = [&*block.states, parameters, held];
+        let input = |i: usize| row_of(rows, i).unwrap_or(&self.times);
         inner.run(input, &mut self.inner_commands, self.instructions);
     }
 

@@ -73,8 +73,7 @@ pub struct ProgramEnvironment {
     /// Steps of the integrator for which a command of the inner controller of the task is held; at least 1, and without effect where there
     /// is none. Each action begins with a new command.
     pub inner_steps: u32,
-    /// The values that a command can have, in ascending order: each becomes the nearest one, of two as near the larger. Empty for
-    /// commands of any value.
+    /// The values of commands, ascending: an action becomes the nearest, of two as near the larger. Empty for any value.
     pub levels: Vec<f64>,
     /// The parameters of the system that vary: its last inputs, which are no actions.
     pub parameters: Vec<EpisodeNumber>,
@@ -165,9 +164,14 @@ impl ProgramEnvironment {
 
     /// The time from action to action, in seconds.
     pub(super) fn period(&self) -> f64 {
+        self.time_of(self.substeps)
+    }
+
+    /// The time from an action to the beginning of a substep, in seconds.
+    pub(super) fn time_of(&self, substep: u32) -> f64 {
         match self.lengths.as_slice() {
-            [] => self.dt * f64::from(self.substeps),
-            lengths => lengths.iter().sum(),
+            [] => self.dt * f64::from(substep),
+            lengths => lengths[..substep as usize].iter().sum(),
         }
     }
 
@@ -189,8 +193,8 @@ impl ProgramEnvironment {
 
     /// Checks what the [world](ProgramEnvironment::world) does not have, for so many environments.
     pub(super) fn check<T: Float>(&self, len: usize) -> Result<(), EnvironmentError> {
-        let degrees = self.dynamics.degrees();
-        let (inputs, parameters) = (self.dynamics.inputs(), self.parameters.len());
+        let (degrees, inputs) = (self.dynamics.degrees(), self.dynamics.inputs());
+        let parameters = self.parameters.len();
         let allowed = degrees.min(Self::MAX_DEGREES);
         EnvironmentError::shape("degrees of freedom of an environment", degrees, allowed)?;
         EnvironmentError::shape("inputs of the system", inputs, inputs.max(parameters + 1))?;
@@ -217,7 +221,7 @@ impl ProgramEnvironment {
             (
                 "inputs of the inner controller",
                 self.task.inner.as_ref().map_or(0, most),
-                2 * degrees + parameters + actions,
+                2 * degrees + parameters + actions + 1,
             ),
             (
                 "inputs of the projection",

@@ -61,6 +61,11 @@ pub(super) struct ProgramRows<'p, T> {
 }
 
 impl<T: MachineFloat> ProgramRows<'_, T> {
+    /// See [`RowProgram::reads_last`].
+    pub(super) fn reads_last(&self) -> bool {
+        self.program.reads_last()
+    }
+
     /// Runs the program and writes the lanes of its outputs, as many as there are.
     pub(super) fn run<'a>(
         &mut self,

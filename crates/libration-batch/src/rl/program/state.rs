@@ -30,7 +30,7 @@ impl Programs {
         let uniform = definition.is_even().then_some(dt);
         let observed = coordinates + definition.parameters.len() + 1;
         let (projection, actions) = (task.projection.as_ref(), definition.actions());
-        let controlled = coordinates + definition.parameters.len() + actions;
+        let controlled = coordinates + definition.parameters.len() + actions + 1;
         let judged = 2 * coordinates + actions + definition.parameters.len() + 1;
         Programs {
             step: RowProgram::new(step.program(), dt + 1, uniform),
