@@ -32,14 +32,14 @@ def actions(given: Any, shape: Sequence[int], dtype: str) -> np.ndarray:
             f"actions have dtype {array.dtype}, but they must be real numbers: "
             f"an array of {dtype} is read without a copy"
         )
-    allowed = [tuple(shape)] + [(shape[0],)] * (shape[1] == 1)
+    allowed = [tuple(shape)] + [(shape[0],)] * (shape[1] == 1) + [(shape[1],)] * (shape[0] == 1 < shape[1])
     if array.shape not in allowed:
         raise ValueError(
             f"actions have shape {array.shape}, but it must be {' or '.join(map(str, allowed))}"
         )
     # Values too large for the dtype become infinite; the engine rejects them.
     with np.errstate(over="ignore"):
-        return array.astype(dtype, order="C")
+        return array.reshape(shape if shape[1] > 1 else array.shape).astype(dtype, order="C")
 
 
 def choices(given: Any, num_envs: int, levels: list[float], dtype: str) -> np.ndarray:

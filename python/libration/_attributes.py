@@ -6,7 +6,7 @@ import math
 from typing import Any, Iterable
 
 from ._presets import Preset
-from ._settings import nearest, shown
+from ._settings import TASK_OPTIONS, nearest, shown
 from .environments import Environments
 from .equations import EquationSystem
 
@@ -15,7 +15,7 @@ SETTABLE = "render_mode"
 
 _OF_ALL = ("num_envs", "autoreset_mode", "threads", "copy", "buffers")
 _OF_PRESET = ("dt", "max_action", "start_position", "start_velocity")
-_OF_TASK = ("observe", "reward", "terminated", "start")
+_OF_TASK = TASK_OPTIONS
 
 
 def keywords_of(envs: Environments) -> dict[str, Any]:

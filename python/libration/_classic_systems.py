@@ -35,6 +35,10 @@ class ClassicSystem:
     dtype: str = "float64"
     """Float type in which Gymnasium computes the motion."""
     max_action: float = inf
+    """Largest action in the action space."""
+    charges_more: bool = False
+    """Whether the reward is that of actions beyond the action space."""
+    reward_threshold: float | None = None
     rounds_start: bool = False
     """Whether Gymnasium rounds starts to ``float32``."""
 
@@ -52,6 +56,7 @@ _THETA = 12 * 2 * pi / 360
 
 _CARTPOLE = ClassicSystem(
     id="CartPole-v1",
+    reward_threshold=475.0,
     integrator="explicit-euler",
     dt=0.02,
     max_episode_steps=500,
@@ -110,6 +115,7 @@ _CAR_LIMITS = ((-1.2, 0.6), (-0.07, 0.07))
 
 _MOUNTAIN_CAR = ClassicSystem(
     id="MountainCar-v0",
+    reward_threshold=-110.0,
     integrator="symplectic-euler",
     dt=1.0,
     max_episode_steps=200,
@@ -138,7 +144,7 @@ _MOUNTAIN_CAR_CONTINUOUS = ClassicSystem(
     dt=1.0,
     max_episode_steps=999,
     system={
-        "acceleration": {"x": "u*power - 0.0025*cos(3*x)"},
+        "acceleration": {"x": "max(-1, min(1, u))*power - 0.0025*cos(3*x)"},
         "parameters": {"power": 0.0015, "goal_velocity": 0.0},
         "inputs": ["u"],
         "task": {**_CAR, "reward": f"if({_REACHED}, 100, 0) - u^2*0.1", "terminated": [_REACHED]},
@@ -149,6 +155,8 @@ _MOUNTAIN_CAR_CONTINUOUS = ClassicSystem(
     limits=_CAR_LIMITS,
     dtype="float32",
     max_action=1.0,
+    charges_more=True,
+    reward_threshold=90.0,
 )
 
 
@@ -160,6 +168,7 @@ _ABOVE = "-cos(theta1) - cos(theta2 + theta1) > 1"
 
 _ACROBOT = ClassicSystem(
     id="Acrobot-v1",
+    reward_threshold=-100.0,
     integrator="rk4",
     dt=0.2,
     max_episode_steps=500,

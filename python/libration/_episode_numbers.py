@@ -46,12 +46,14 @@ def episode_number(name: str, value: Any, num_envs: int, allowed: str = "finite"
 
 
 def largest_commands(value: Any, inputs: int, num_envs: int) -> list[Request]:
-    """Return the largest command of each input: one for all, one for each, or an array ``(num_envs, inputs)``."""
+    """Return the largest command of each input: one for all, one for each, or an array ``(num_envs, inputs)``, of one input ``(num_envs,)``."""
     value = math.inf if value is None else value
     if getattr(value, "ndim", 1) == 2:
         if value.shape != (num_envs, inputs):
             raise ValueError(f"max_action has shape {value.shape}, but it must be ({num_envs}, {inputs})")
         columns: Sequence[Any] = list(value.T)
+    elif inputs == 1 and getattr(value, "shape", None) == (num_envs,):
+        columns = [value]
     else:
         columns = each("max_action", value, inputs)
     return [episode_number("max_action", x, num_envs, "greater than 0", lambda x: x > 0) for x in columns]
@@ -76,7 +78,7 @@ def each(name: str, value: Any, length: int) -> Sequence[Any]:
 def scaled_law(name: str, value: Any) -> tuple[Any, list[float]]:
     """Return a law of errors, and the range of the factor of its standard deviation that each episode draws."""
     kind, std = ("gaussian", value) if isinstance(value, Uniform) else (None, value)
-    if is_several(value) and len(value) == 2 and isinstance(value[1], Uniform):
+    if is_several(value) and len(value) == 2 and isinstance(value[0], str) and isinstance(value[1], Uniform):
         kind, std = value
     if kind is None or std.ends is None:
         return value, [1.0, 1.0]

@@ -24,21 +24,36 @@ def refuse_options(options: Mapping[str, Any]) -> None:
             raise ValueError(f"options has {name!r} without {other!r}, but it must have both")
 
 
-def start_of(options: Mapping[str, Any], names: Sequence[str], num_envs: int) -> NDArray[np.float64] | None:
-    """Return states ``(num_envs, n)``, the ends of ranges of starts ``(2, n)``, or None where the options have neither."""
+def start_of(
+    options: Mapping[str, Any], names: Sequence[str], num_envs: int, which: NDArray[np.intp], dtype: Any
+) -> NDArray[np.float64] | None:
+    """Return states of the chosen environments, the ends of ranges of starts ``(2, n)``, or None where the options have neither."""
     if "state" in options:
-        return rows_of("options['state']", options["state"], names, num_envs)
+        return rows_of("options['state']", options["state"], names, num_envs, which, dtype)
     if "low" not in options:
         return None
-    low, high = (rows_of(f"options[{name!r}]", options[name], names, 1)[0] for name in ("low", "high"))
+    one = np.zeros(1, np.intp)
+    low, high = (rows_of(f"options[{name!r}]", _all_of_them(options[name], names), names, 1, one, dtype)[0] for name in ("low", "high"))
     if (low > high).any():
         i = int(np.argmax(low > high))
         raise ValueError(f"options has {names[i]} from {low[i]} to {high[i]}, but low must be at most high")
+    with np.errstate(over="ignore"):
+        width = (high - low).astype(dtype)
+    if not np.isfinite(width).all():
+        i = int(np.argmin(np.isfinite(width)))
+        raise ValueError(f"options has {names[i]} from {low[i]} to {high[i]}, but the distance must be finite")
     return np.stack([low, high])
 
 
-def rows_of(name: str, value: Any, names: Sequence[str], rows: int) -> NDArray[np.float64]:
-    """Return a finite number for each row and state."""
+def _all_of_them(value: Any, names: Sequence[str]) -> Any:
+    """Return a number for each state where there is one for all."""
+    return np.full(len(names), value) if not isinstance(value, Mapping) and np.ndim(value) == 0 else value
+
+
+def rows_of(
+    name: str, value: Any, names: Sequence[str], rows: int, which: NDArray[np.intp], dtype: Any
+) -> NDArray[np.float64]:
+    """Return the chosen rows of numbers of states, finite in the float type of the environments."""
     if isinstance(value, Mapping):
         for key in value:
             if key not in names:
@@ -50,15 +65,16 @@ def rows_of(name: str, value: Any, names: Sequence[str], rows: int) -> NDArray[n
     array = np.asarray(value)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} has dtype {array.dtype}, but it must have real numbers")
-    try:
-        all_rows = np.broadcast_to(array.astype(np.float64), (rows, len(names)))
-    except ValueError:
-        allowed = f"({len(names)},)" if rows == 1 else f"({rows}, {len(names)})"
-        raise ValueError(f"{name} has shape {array.shape}, but it must be {allowed}: {', '.join(names)}") from None
-    if not np.isfinite(all_rows).all():
-        n, i = np.argwhere(~np.isfinite(all_rows))[0]
-        raise ValueError(f"{name} has {all_rows[n, i]} for {names[i]}, but it must be finite")
-    return all_rows
+    if array.shape not in ((len(names),), (rows, len(names))):
+        allowed = f"({len(names)},)" if rows == 1 else f"({len(names)},) or ({rows}, {len(names)})"
+        raise ValueError(f"{name} has shape {array.shape}, but it must be {allowed}: {', '.join(names)}")
+    chosen = np.broadcast_to(array.astype(np.float64), (rows, len(names)))[which]
+    with np.errstate(over="ignore"):
+        finite = np.isfinite(chosen.astype(dtype))
+    if not finite.all():
+        n, i = np.argwhere(~finite)[0]
+        raise ValueError(f"{name} has {chosen[n, i]} for {names[i]}, but it must be finite in {np.dtype(dtype).name}")
+    return chosen
 
 
 def episode_numbers(settings: Mapping[str, Any], inputs: Sequence[str], drawn: NDArray[Any]) -> dict[str, NDArray[Any]]:

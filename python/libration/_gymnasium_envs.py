@@ -108,6 +108,9 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
             self._np_random_seed = -1
         return self._begin(seeds, options)
 
+    def _checked_render_mode(self, render_mode: str | None) -> str | None:
+        return _render_mode(self._arguments[0], render_mode)
+
     def render(self) -> tuple[np.ndarray, ...] | None:
         """Return one picture per environment, ``(300, 300, 3)`` of ``uint8``, if ``render_mode`` is ``"rgb_array"``."""
         if self.render_mode is None:
@@ -148,7 +151,14 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
             return self.call(name)
         if name == "state":
             return tuple(self.states)
+        if name == "parameters":
+            table = self.parameters
+            return tuple({key: float(values[n]) for key, values in table.items()} for n in range(self.num_envs))
         keywords = keywords_of(self)
+        given = keywords.get(name)
+        if name in self.parameters and np.shape(given) == (self.num_envs,):
+            # One for each environment.
+            return tuple(given)
         if name == "metadata":
             value = {key: one for key, one in self.metadata.items() if key != "autoreset_mode"}
         elif name in ("observation_space", "action_space"):
@@ -183,7 +193,7 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
             raise refused(name, values, keywords_of(self))
         if any(value != each[0] for value in each):
             raise ValueError(f"{name} is {values!r}, but it must be the same for all environments")
-        self.render_mode = _render_mode(self._arguments[0], each[0])
+        self.render_mode = self._checked_render_mode(each[0])
 
     def close_extras(self, **kwargs: Any) -> None:
         self._close()
@@ -243,6 +253,9 @@ class Env(gymnasium.Env):
             info |= _single({"parameters": infos["parameters"]})
         return observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), info
 
+    def _checked_render_mode(self, render_mode: str | None) -> str | None:
+        return _render_mode(self._all._arguments[0], render_mode)
+
     def render(self) -> np.ndarray | None:
         if self.render_mode is None:
             gymnasium.logger.warn("render was called, but render_mode is None: nothing is drawn")
@@ -285,7 +298,7 @@ class Env(gymnasium.Env):
         if name in keywords or name == "state":
             raise refused(name, value, keywords)
         if name == SETTABLE:
-            value = _render_mode(self._all._arguments[0], value)
+            value = self._checked_render_mode(value)
         return super().set_wrapper_attr(name, value, force=force)
 
     def _keywords(self) -> dict[str, Any]:

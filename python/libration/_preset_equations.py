@@ -5,11 +5,13 @@ The expressions compute the operations of the compiled environments: a parameter
 
 from __future__ import annotations
 
+import numbers
+from math import inf
 from typing import Any, Mapping
 
-from ._episode_numbers import is_varied
+from ._episode_numbers import episode_number, is_varied
 from ._presets import Preset
-from ._settings import CATALOGUE, TASK_OPTIONS, ends, refuse_others
+from ._settings import CATALOGUE, TASK_OPTIONS, count, ends, refuse_others
 from ._tasks import SMALLEST_OPTIONS, native_equations
 from .equations import EquationSystem
 
@@ -72,8 +74,14 @@ def native_varied(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
     starts = {state: ends(name, starts[state]) for state, name in (("q", "start_position"), ("q'", "start_velocity"))}
     task = dict(_TASKS[preset.task])
     costs = dict(preset.costs)
+    above = {name: parameters[name] for name in ("m", "k", "bound") if name in parameters}
+    num_envs = count("num_envs", given["num_envs"], 1, 2**40)
+    for name, value in above.items():
+        kind, ends_of = episode_number(name, value, num_envs, "greater than 0", lambda x: x > 0)
+        if name != "bound" and max(ends_of) == inf:
+            raise ValueError(f"{name} is {value!r}, but it must be finite")
     bound = parameters.get("bound", costs.get("bound"))
-    if isinstance(bound, float) and bound == float("inf"):
+    if isinstance(bound, numbers.Real) and bound == inf:
         # No comparison ends an episode.
         task["terminated"] = []
         costs.pop("bound")

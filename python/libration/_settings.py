@@ -126,10 +126,12 @@ def _steps(seconds: tuple[float, float], dt: float) -> list[int] | None:
     return whole if near else None
 
 
-def inner_count(dt: float, inner_period: float | None, substeps: int | None) -> int:
-    """Return how many periods of the inner controller there are between two actions."""
+def inner_count(dt: float, inner_period: float | None, substeps: int | None, used: int = 1) -> int:
+    """Return how many periods of the inner controller there are between two actions, at least the number of used actions of a chunk."""
     if inner_period is None:
-        return 1
+        if substeps is not None and substeps % used:
+            raise ValueError(f"substeps is {substeps}, but it must be a multiple of the {used} used actions of a chunk")
+        return used
     period = positive("inner_period", inner_period)
     parts = _steps((dt, dt), period)
     if parts is None or not 1 <= parts[0] <= MOST_SUBSTEPS:
@@ -164,22 +166,32 @@ def parts(dt: float, named: dict[str, tuple[float, float]]) -> tuple[list[float]
     return lengths, steps
 
 
+def equal_steps(
+    dt: float, tried: Iterable[int], named: dict[str, tuple[float, float]]
+) -> tuple[int, dict[str, list[int]]] | None:
+    """Return the first of these numbers of equal steps for which latencies are whole steps, and latencies in these steps."""
+    for parts in tried:
+        found = {name: _steps(seconds, dt / parts) for name, seconds in named.items()}
+        steps = {name: late for name, late in found.items() if late is not None}
+        if len(steps) == len(named):
+            return parts, steps
+    return None
+
+
 def delays(
     dt: float, substeps: int | None, named: dict[str, tuple[float, float]], multiple: int = 1
 ) -> tuple[int, dict[str, list[int]]]:
     """Return the number of substeps, and latencies in substeps."""
     tried = range(multiple, MOST_SUBSTEPS + 1, multiple) if substeps is None else (substeps,)
-    for parts in tried:
-        found = {name: _steps(seconds, dt / parts) for name, seconds in named.items()}
-        steps = {name: late for name, late in found.items() if late is not None}
-        if len(steps) == len(named):
-            for name, (_, most) in steps.items():
-                if most > 4096:
-                    raise ValueError(
-                        f"{name} is {named[name][1]!r} s, which is {most} steps of {dt / parts:g} s, "
-                        "but it must be at most 4096 of them"
-                    )
-            return parts, steps
+    if (equal := equal_steps(dt, tried, named)) is not None:
+        parts, steps = equal
+        for name, (_, most) in steps.items():
+            if most > 4096:
+                raise ValueError(
+                    f"{name} is {named[name][1]!r} s, which is {most} steps of {dt / parts:g} s, "
+                    "but it must be at most 4096 of them"
+                )
+        return equal
     alone = [
         name
         for name, seconds in named.items()
@@ -301,7 +313,7 @@ def refuse_others(given: Iterable[str], taken: Container[str], known: Iterable[s
             raise TypeError(f"unexpected keyword argument {name!r}: {nearest(name, known)}")
 
 
-def common(given: dict[str, Any], inner_period: float | None = None) -> dict[str, Any]:
+def common(given: dict[str, Any], inner_period: float | None = None, used: int = 1) -> dict[str, Any]:
     """Return the settings that environments of all systems have."""
     dt = positive("dt", given["dt"])
     substeps = given["substeps"]
@@ -314,15 +326,19 @@ def common(given: dict[str, Any], inner_period: float | None = None) -> dict[str
         for name in ("observation_delay", "action_delay")
     }
     late = {name: ends(name, value, least=0.0) for name, value in stated.items()}
-    asked, periods = substeps, inner_count(dt, inner_period, substeps)
-    substeps, late_steps = delays(dt, substeps, late, periods)
+    asked, periods = substeps, inner_count(dt, inner_period, substeps, used)
     lengths: list[float] = []
-    if asked is None and substeps > MANY_SUBSTEPS and periods == 1 and (split := parts(dt, late)) is not None:
+    split = None
+    if asked is None and periods == 1 and equal_steps(dt, range(1, MANY_SUBSTEPS + 1), late) is None:
+        split = parts(dt, late)
+    if split is not None:
         # A few long steps that begin where latencies end take the place of many that are equal.
         lengths, late_steps = split
         substeps = len(lengths)
-    if asked is None and substeps > max(MANY_SUBSTEPS, periods):
-        warn_of(substeps, dt, late)
+    else:
+        substeps, late_steps = delays(dt, substeps, late, periods)
+        if asked is None and substeps > max(MANY_SUBSTEPS, periods):
+            warn_of(substeps, dt, late)
     limit = given["max_episode_steps"]
     # -1 is Gymnasium's word for no limit.
     unlimited = isinstance(limit, numbers.Real) and limit in (math.inf, -1)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Mapping, Sequence
 
 from ._episode_numbers import each, episode_number, largest_commands, scaled_law
-from ._settings import OPTIONS, TASK_OPTIONS, common, count, ends, is_several, law, number, positive, refuse_others
+from ._settings import OPTIONS, TASK_OPTIONS, common, count, ends, inner_count, is_several, law, number, positive, refuse_others
 from ._toml import text_of
 from .equations import EquationSystem
 from .perturbations import PD
@@ -65,9 +65,19 @@ def native_equations(
     text = None
     if isinstance(task["inner"], PD):
         task |= _pd_targets(system, task["inner"], task["targets"])
-    if (chunk := given.pop("chunk")) is not None:
-        task |= _chunk(system, chunk, task, own, positive("dt", given["dt"]))
-        given["dt"] *= chunk[1]
+    inner = task["inner"] if task["inner"] is not None else own["inner"] if own else {}
+    if not isinstance(inner, Mapping):
+        raise TypeError(f"inner must be a dictionary, not {type(inner).__name__}")
+    period = task["inner_period"] if task["inner_period"] is not None or not own else own["inner_period"]
+    if inner and period is None:
+        raise TypeError("inner_period is required with inner: the time in s between samples of the controller")
+    chunk, used = given.pop("chunk"), 1
+    if chunk is not None:
+        dt = positive("dt", given["dt"])
+        task |= _chunk(system, chunk, task, own, dt)
+        inner_count(dt, period, None)
+        used = chunk[1]
+        given["dt"] = dt * used
         if is_several(given["max_action"]):
             given["max_action"] = [*given["max_action"]] * chunk[0]
     if any(value is not None for value in task.values()):
@@ -84,8 +94,7 @@ def native_equations(
     constants = {name: values[0] for name, (_, values) in numbers.items() if name not in varied}
     given["jitter"], clock = scaled_law("jitter", given["jitter"])
     given["observation_noise"], sensor = scaled_law("observation_noise", given["observation_noise"])
-    inner_period = task["inner_period"] if task["inner_period"] is not None or not own else own["inner_period"]
-    settings = common(given, inner_period)
+    settings = common(given, period if inner else None, used)
     if clock[0] != clock[1] and settings["skew"][1] > 0:
         raise ValueError(f"skew is {given['skew']!r}, but it must be 0 where each episode draws its jitter")
     if levels and given["max_action"] not in (None, math.inf):
@@ -113,6 +122,8 @@ def _pd_targets(system: EquationSystem, gains: PD, targets: Sequence[str] | None
         )
     stiffness, damping = (number(f"{name} of inner", x, "finite") for name, x in (("kp", gains.kp), ("kd", gains.kd)))
     targets = [f"target_{name}" for name in coordinates] if targets is None else targets
+    if len(targets) != len(coordinates):
+        raise ValueError(f"targets is {targets!r}, but it must have a name for each coordinate: {', '.join(coordinates)}")
     commands = {u: f"{stiffness!r}*({target} - {q}) - {damping!r}*{q}'" for u, target, q in zip(system.inputs, targets, coordinates)}
     return {"targets": targets, "inner": commands}
 
@@ -142,9 +153,7 @@ def _chunk(
         commands[name] = text
     pattern = re.compile("|".join(rf"(?<![A-Za-z0-9_'])({re.escape(name)})(?![A-Za-z0-9_'(])" for name in names))
     chosen = {u: pattern.sub(lambda found: f"({commands[found.group()]})", text) for u, text in inner.items()}
-    period = task["inner_period"] if task["inner_period"] is not None else table.get("inner_period")
-    numbered = [f"{name}_{i}" for i in range(length) for name in names]
-    return {"targets": numbered, "inner": chosen, "inner_period": dt if period is None else period}
+    return {"targets": [f"{name}_{i}" for i in range(length) for name in names], "inner": chosen}
 
 
 def _task(system: EquationSystem, task: Mapping[str, Any], own: Mapping[str, Any] | None) -> str:
@@ -152,6 +161,9 @@ def _task(system: EquationSystem, task: Mapping[str, Any], own: Mapping[str, Any
     empty: dict[str, Any] = {"observe": list(system.states), "reward": None, "terminated": [], "start": {}, "project": {}, "inner": {}}
     own = {**empty, "actions": [], "targets": [], "inner_period": None, **(own or {})}
     table = {name: own[name] if value is None else value for name, value in task.items()}
+    if task["inner"] is not None and not task["inner"] and task["inner_period"] is None:
+        # What samples nothing has no period.
+        table["inner_period"] = None
     if table["reward"] is None:
         raise TypeError("reward is required: an expression, as in reward='-x^2 - 0.01*u^2'")
     if not isinstance(table["reward"], str):

@@ -17,7 +17,7 @@ from ._settings import number
 from ._toml import text_of
 from .equations import EquationSystem
 from .linear import linear_request, plant_of, tolerance_table
-from .perturbations import LQR, PD, PID, Controller, Observer, law, numbers
+from .perturbations import LQR, PD, PID, Controller, Observer, file_table, law, numbers
 from .perturbations import latency as _latency
 from .systems import System, known
 
@@ -641,8 +641,8 @@ def _controller(controller: Any) -> dict[str, Any]:
     if not isinstance(controller, (PID, LQR, Observer)):
         if not isinstance(controller, PD):
             controller = PD(*numbers("controller", controller, 2))
-        return {"pd": {name: number(name, gain, "a number") for name, gain in vars(controller).items()}}
-    for name, value in vars(controller).items():
+        return {"pd": {name: number(name, gain, "a number") for name, gain in file_table(controller).items()}}
+    for name, value in file_table(controller).items():
         if name in several and value is not None:
             table[name] = numbers(name, value, several[name])
         elif value is not None:

@@ -100,29 +100,37 @@ def check_environments_match(
     TypeError, ValueError
         For an invalid argument, and for spaces that differ.
     """
-    for name, value in (("steps", steps), *((f"seeds[{i}]", seed) for i, seed in enumerate(seeds))):
+    if isinstance(seeds, (str, bytes)) or not hasattr(seeds, "__iter__"):
+        raise TypeError(f"seeds is {seeds!r}, but it must be a list of integers")
+    all_seeds = list(seeds)
+    for name, value in (("steps", steps), *((f"seeds[{i}]", seed) for i, seed in enumerate(all_seeds))):
         if isinstance(value, bool) or not isinstance(value, (int, np.integer)):
             raise TypeError(f"{name} is {value!r}, but it must be an integer")
         if value < (name == "steps"):
             raise ValueError(f"{name} is {value}, but it must be at least {int(name == 'steps')}")
-    if not seeds:
+    if not all_seeds:
         raise ValueError("seeds is empty, but it must have at least one seed")
     for name, tolerance in (("tolerance_ulps", tolerance_ulps), ("reward_tolerance", reward_tolerance)):
         if not (isinstance(tolerance, (int, float)) and tolerance >= 0):
             raise ValueError(f"{name} is {tolerance!r}, but it must be a number of at least 0")
-    envs = [_made(each) for each in (first, second)]
-    names = tuple(_name(env) for env in envs)
-    for space in ("observation_space", "action_space"):
-        own, other = (getattr(env, space) for env in envs)
-        if own != other:
-            raise ValueError(f"{space} of {names[0]} is {own}, of {names[1]} {other}, but they must be equal")
-    run = _Run(envs, (tolerance_ulps, reward_tolerance), sample)
-    for seed in seeds:
-        run.seed(int(seed), int(steps))
-    for env, given in zip(envs, (first, second)):
-        if env is not given:
-            env.close()
-    return run.result((names[0], names[1]), int(steps), tuple(int(seed) for seed in seeds))
+    if first is second and isinstance(first, gymnasium.Env):
+        raise ValueError("first and second are the same environment, but they must be two")
+    envs: list[gymnasium.Env] = []
+    try:
+        envs += (_made(each) for each in (first, second))
+        names = (_name(envs[0]), _name(envs[1]))
+        for space in ("observation_space", "action_space"):
+            own, other = (getattr(env, space) for env in envs)
+            if own != other:
+                raise ValueError(f"{space} of {names[0]} is {own}, of {names[1]} {other}, but they must be equal")
+        run = _Run(envs, (tolerance_ulps, reward_tolerance), sample)
+        for seed in all_seeds:
+            run.seed(int(seed), int(steps))
+    finally:
+        for env, given in zip(envs, (first, second)):
+            if env is not given:
+                env.close()
+    return run.result(names, int(steps), tuple(int(seed) for seed in all_seeds))
 
 
 class _Run:
@@ -170,9 +178,19 @@ class _Run:
         if own.shape != other.shape or own.dtype != other.dtype:
             return self.found(f"{place}: observations are {own.dtype}{own.shape} and {other.dtype}{other.shape}")
         self.count += 1
-        self.equal += bool(np.array_equal(own, other, equal_nan=own.dtype.kind == "f"))
-        self.largest = np.maximum(self.largest, np.maximum(np.abs(own), np.abs(other)))
-        self.apart = np.maximum(self.apart, np.abs(own.astype(np.float64) - other.astype(np.float64)))
+        if np.array_equal(own, other, equal_nan=own.dtype.kind == "f"):
+            self.equal += 1
+            return False
+        if own.dtype.kind != "f":
+            i = int(np.argmax((own != other).ravel()))
+            return self.found(f"{place}: observation[{i}] is {own.flat[i]!r} and {other.flat[i]!r}")
+        # Numbers that are equal, also if they are not finite, are not apart.
+        same = (own == other) | (np.isnan(own) & np.isnan(other))
+        with np.errstate(invalid="ignore"):
+            apart = np.where(same, 0.0, np.abs(own.astype(np.float64) - other.astype(np.float64)))
+        size = np.maximum(np.abs(own), np.abs(other))
+        self.largest = np.maximum(self.largest, np.where(np.isfinite(size), size, 0))
+        self.apart = np.maximum(self.apart, apart)
         ulps = self.ulps(own.dtype)
         if (~(ulps <= self.tolerance)).any():
             i = int(np.argmax(~(ulps <= self.tolerance)))
@@ -180,10 +198,11 @@ class _Run:
         return False
 
     def ulps(self, dtype: Any) -> np.ndarray:
+        """Return the largest difference of each number in ulps; none where all were equal."""
         if np.dtype(dtype).kind != "f":
-            return np.asarray(self.apart, np.float64).ravel()
+            return np.zeros(1)
         spacing = np.spacing(np.asarray(self.largest, dtype)).astype(np.float64)
-        return (self.apart / spacing).ravel()
+        return np.ravel(self.apart / spacing)
 
     def rewarded(self, pair: Sequence[float], place: str) -> bool:
         own, other = pair
@@ -205,7 +224,7 @@ class _Run:
             seeds=seeds,
             observation_ulps=tuple(float(x) for x in ulps),
             reward_difference=self.reward[1] / self.reward[0],
-            equal_observations=self.equal / self.count,
+            equal_observations=self.equal / max(1, self.count),
             difference=self.difference,
         )
 

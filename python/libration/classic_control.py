@@ -6,7 +6,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+import math
+from typing import Any, Mapping
 
 import gymnasium
 import numpy as np
@@ -16,7 +17,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from ._classic_systems import CLASSIC, ClassicSystem, system_of
-from ._settings import nearest
+from ._settings import nearest, number
 from ._gymnasium_envs import Env, VectorEnv
 
 __all__ = [
@@ -35,44 +36,82 @@ __all__ = [
 STARTS = ("libration", "gymnasium")
 
 
-def _with_defaults(classic: ClassicSystem, given: dict[str, Any]) -> dict[str, Any]:
+def _with_defaults(classic: ClassicSystem, starts: Any, given: dict[str, Any]) -> dict[str, Any]:
     """Return keywords of the engine with the twin's constants where nothing else is given."""
-    own = {"integrator": classic.integrator, "dt": classic.dt, "max_action": classic.max_action, "dtype": classic.dtype}
-    return {**own, **given}
-
-
-def _checked(starts: Any) -> str:
     if starts not in STARTS:
         raise ValueError(f"starts is {starts!r}: {nearest(str(starts), STARTS)}")
-    return starts
+    if starts == "gymnasium" and given.get("start") is not None:
+        raise TypeError("start is given, but starts='gymnasium' has the starts of Gymnasium")
+    most = math.inf if classic.charges_more else classic.max_action
+    return {"integrator": classic.integrator, "dt": classic.dt, "max_action": most, "dtype": classic.dtype, **given}
 
 
-def _seen(classic: ClassicSystem, noisy: bool) -> Box:
+def _classic(name: str) -> ClassicSystem:
+    if name not in CLASSIC:
+        raise ValueError(f"unknown environment {name!r}: {nearest(str(name), CLASSIC)}")
+    return CLASSIC[name]
+
+
+def _seen(classic: ClassicSystem, settings: Any, given: dict[str, Any], own: Box) -> Box:
+    """Return the observation space: that of Gymnasium, unless keywords change what is observed or how far it goes."""
+    if given.get("observe") is not None or given.get("project") is not None:
+        return Box(np.float32(own.low), np.float32(own.high), dtype=np.float32)
     low, high = (np.array(ends, np.float32) for ends in zip(*classic.limits))
-    if noisy:
+    if any(std > 0 for _, std in settings["subject"]["noise"]):
         low, high = np.full_like(low, -np.inf), np.full_like(high, np.inf)
     return Box(low, high, dtype=np.float32)
 
 
-def _action_space(classic: ClassicSystem, space: Any) -> Any:
-    return space if isinstance(space, Discrete) else Box(np.float32(space.low), np.float32(space.high), dtype=np.float32)
+def _action_space(classic: ClassicSystem, given: dict[str, Any], space: Any) -> Any:
+    if isinstance(space, Discrete):
+        return space
+    if classic.charges_more and given.get("max_action") is None:
+        return Box(-classic.max_action, classic.max_action, space.shape, np.float32)
+    return Box(np.float32(space.low), np.float32(space.high), dtype=np.float32)
 
 
-def _is_noisy(settings: Any) -> bool:
-    return any(std > 0 for _, std in settings["subject"]["noise"])
+def _bounds(classic: ClassicSystem, options: dict[str, Any]) -> dict[str, Any]:
+    """Take the ends of starts out of options of Gymnasium, and return the keywords of :func:`_draw`."""
+    names = ("x_init", "y_init") if classic.name == "Pendulum" else ("low", "high")
+    given = {name: number(f"options[{name!r}]", options.pop(name), "finite") for name in names if name in options}
+    if given and "state" in options:
+        raise ValueError(f"options has 'state' and {next(iter(given))!r}, but it must have one of them")
+    if classic.name == "Pendulum":
+        for name, value in given.items():
+            if value < 0:
+                raise ValueError(f"options[{name!r}] is {value}, but it must be at least 0")
+    elif given and (low := given.get("low", classic.start[0])) > (high := given.get("high", classic.start[1])):
+        raise ValueError(f"options has low = {low} and high = {high}, but low must be at most high")
+    return given
 
 
-def _draw(classic: ClassicSystem, generator: np.random.Generator, options: dict[str, Any] | None) -> NDArray[np.float64]:
+def _ranges(classic: ClassicSystem, options: dict[str, Any]) -> dict[str, Any]:
+    """Return options of the engine for those of Gymnasium, whose numbers are for the states that it draws."""
+    options = dict(options)
+    if classic.name != "Pendulum" and any(np.ndim(options.get(name, ())) != 0 or isinstance(options.get(name), Mapping) for name in ("low", "high")):
+        return options
+    given = _bounds(classic, options)
+    if not given:
+        return options
+    states = system_of(classic.name).states
+    if classic.name == "Pendulum":
+        high = {"theta": given.get("x_init", np.pi), "theta'": given.get("y_init", 1.0)}
+        low = {name: -value for name, value in high.items()}
+    else:
+        ends = (given.get("low", classic.start[0]), given.get("high", classic.start[1]))
+        low, high = ({name: end if name in classic.drawn else 0.0 for name in states} for end in ends)
+    return {**options, "low": low, "high": high}
+
+
+def _draw(classic: ClassicSystem, generator: np.random.Generator, given: dict[str, Any]) -> NDArray[np.float64]:
     """Return the state from which Gymnasium's environment starts, in the order of the system's states."""
-    options = options or {}
     states = dict.fromkeys(system_of(classic.name).states, 0.0)
     if classic.name == "Pendulum":
-        high = np.array([options.get("x_init", np.pi), options.get("y_init", 1.0)])
+        high = np.array([given.get("x_init", np.pi), given.get("y_init", 1.0)])
         drawn = generator.uniform(low=-high, high=high)
     else:
-        low, high = options.get("low", classic.start[0]), options.get("high", classic.start[1])
-        size = (4,) if len(classic.drawn) == 4 else (1,)
-        drawn = generator.uniform(low=low, high=high, size=size)
+        low, high = given.get("low", classic.start[0]), given.get("high", classic.start[1])
+        drawn = generator.uniform(low=low, high=high, size=(len(classic.drawn),))
     if classic.rounds_start:
         drawn = drawn.astype(np.float32)
     states.update(zip(classic.drawn, drawn.astype(np.float64)))
@@ -87,8 +126,10 @@ class _Picture:
         self._env: Any = gymnasium.make(classic.id, render_mode="rgb_array").unwrapped
         self._env.reset(seed=0)
 
-    def __call__(self, state: NDArray[Any]) -> NDArray[np.uint8]:
+    def __call__(self, state: NDArray[Any], action: Any = None) -> NDArray[np.uint8]:
         self._env.state = state[self._places].astype(np.float64)
+        # The arrow of the torque.
+        self._env.last_u = action
         return self._env.render()
 
     def close(self) -> None:
@@ -112,44 +153,57 @@ class ClassicVectorEnv(VectorEnv):
     """
 
     def __init__(self, name: str, num_envs: int = 1, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
-        self._classic, self._starts = CLASSIC[name], _checked(starts)
+        self._classic, self._starts = _classic(name), starts
         given.setdefault("max_episode_steps", self._classic.max_episode_steps)
-        super().__init__(system_of(name), num_envs, **_with_defaults(self._classic, given))
+        super().__init__(system_of(name), num_envs, **_with_defaults(self._classic, starts, given))
         self._given = {"num_envs": num_envs, "starts": starts, "render_mode": render_mode, **given}
-        self.render_mode = _render_mode(render_mode)
+        self.render_mode = self._checked_render_mode(render_mode)
         self._picture: _Picture | None = None
         self.metadata = {**self.metadata, "render_modes": ["rgb_array"], "render_fps": _FPS[self._classic.name]}
-        self.single_observation_space = _seen(self._classic, _is_noisy(self._settings))
-        self.single_action_space = _action_space(self._classic, self.single_action_space)
+        self.single_observation_space = _seen(self._classic, self._settings, given, self.single_observation_space)
+        self.single_action_space = _action_space(self._classic, given, self.single_action_space)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self._generators: list[np.random.Generator | None] = [None] * self.num_envs
         self._ended = np.zeros(self.num_envs, bool)
 
+    def _checked_render_mode(self, render_mode: str | None) -> str | None:
+        return _render_mode(render_mode)
+
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
-        if self._starts == "libration":
-            observations, infos = super().reset(seed=seed, options=options)
-            return observations.astype(np.float32), infos
         options = dict(options or {})
-        bounds: dict[str, Any] = {name: options.pop(name) for name in ("low", "high", "x_init", "y_init") if name in options}
+        if self._starts == "libration":
+            observations, infos = super().reset(seed=seed, options=_ranges(self._classic, options))
+            return observations.astype(np.float32), infos
+        bounds = _bounds(self._classic, options)
+        if "low" in options or "high" in options:
+            raise ValueError("options has ends of ranges, but those of Gymnasium's Pendulum are 'x_init' and 'y_init'")
+        # The first reset begins all environments, also those outside the mask.
+        first = self._seeder is None
         observations, infos = super().reset(seed=seed, options=options)
-        mask = options.get("reset_mask", np.ones(self.num_envs, bool))
+        mask = np.ones(self.num_envs, bool) if first else options.get("reset_mask", np.ones(self.num_envs, bool))
         for n, one in enumerate(self._seeds(seed)):
             if mask[n] and (one is not None or self._generators[n] is None):
                 self._generators[n] = np_random(one)[0]
         self._ended[mask] = False
-        if "state" not in options:
-            observations = self._start(mask, bounds)
+        drawn = mask if "state" not in options else mask & ~options.get("reset_mask", mask)
+        if drawn.any():
+            observations = self._start(drawn, bounds)
         return observations.astype(np.float32), infos
 
-    def _start(self, mask: NDArray[np.bool_], options: dict[str, Any]) -> np.ndarray:
+    def _start(self, mask: NDArray[np.bool_], bounds: dict[str, Any]) -> np.ndarray:
         """Put environments at starts of Gymnasium."""
-        states = self.states.astype(np.float64)
+        states = np.zeros((self.num_envs, len(system_of(self._classic.name).states)))
         for n in np.flatnonzero(mask):
             generator = self._generators[n]
             assert generator is not None, "every environment was reset"
-            states[n] = _draw(self._classic, generator, options)
+            states[n] = _draw(self._classic, generator, bounds)
         return super().set_state(states, mask)
+
+    def rollout(self, policy: Any, horizon: int, **given: Any) -> Any:
+        if self._starts == "gymnasium":
+            raise ValueError("starts is 'gymnasium', but rollout requires starts='libration': NumPy draws the starts of Gymnasium between steps")
+        return super().rollout(policy, horizon, **given)
 
     def set_state(self, states: Any, mask: np.ndarray | None = None) -> np.ndarray:
         return super().set_state(states, mask).astype(np.float32)
@@ -198,26 +252,42 @@ class ClassicEnv(Env):
     """Single environment of a twin of Gymnasium's classic control; see :class:`ClassicVectorEnv`."""
 
     def __init__(self, name: str, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
-        self._classic, self._starts = CLASSIC[name], _checked(starts)
-        super().__init__(system_of(name), **_with_defaults(self._classic, given))
-        self.render_mode = _render_mode(render_mode)
+        self._classic, self._starts = _classic(name), starts
+        super().__init__(system_of(name), **_with_defaults(self._classic, starts, given))
+        self.render_mode = self._checked_render_mode(render_mode)
         self._picture: _Picture | None = None
+        self._action: Any = None
         self.metadata = {"render_modes": ["rgb_array"], "render_fps": _FPS[self._classic.name]}
-        self.observation_space = _seen(self._classic, _is_noisy(self._all._settings))
-        self.action_space = _action_space(self._classic, self.action_space)
+        self.observation_space = _seen(self._classic, self._all._settings, given, self.observation_space)
+        self.action_space = _action_space(self._classic, given, self.action_space)
+
+    def _checked_render_mode(self, render_mode: str | None) -> str | None:
+        return _render_mode(render_mode)
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Surfaces of Pygame cannot be copied.
+        return {**self.__dict__, "_picture": None}
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
-        if self._starts == "libration" or "state" in (options or {}):
-            observation, info = super().reset(seed=seed, options=options)
+        options, self._action = dict(options or {}), None
+        if self._starts == "libration":
+            observation, info = super().reset(seed=seed, options=_ranges(self._classic, options))
             return observation.astype(np.float32), info
-        observation, info = super().reset(seed=seed)
-        return self.set_state(_draw(self._classic, self.np_random, options)), info
+        bounds = _bounds(self._classic, options)
+        if "low" in options or "high" in options:
+            raise ValueError("options has ends of ranges, but those of Gymnasium's Pendulum are 'x_init' and 'y_init'")
+        observation, info = super().reset(seed=seed, options=options)
+        if "state" in options:
+            return observation.astype(np.float32), info
+        return self.set_state(_draw(self._classic, self.np_random, bounds)), info
 
     def set_state(self, state: Any) -> np.ndarray:
         return super().set_state(state).astype(np.float32)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         observation, reward, terminated, truncated, info = super().step(action)
+        if self.render_mode is not None and not isinstance(self.action_space, Discrete):
+            self._action = float(np.clip(np.ravel(action)[0], -self._classic.max_action, self._classic.max_action))
         return observation.astype(np.float32), reward, terminated, truncated, info
 
     def render(self) -> np.ndarray | None:
@@ -225,7 +295,7 @@ class ClassicEnv(Env):
             return super().render()
         if self._picture is None:
             self._picture = _Picture(self._classic)
-        return self._picture(self.state)
+        return self._picture(self.state, self._action)
 
     def close(self) -> None:
         if (picture := self.__dict__.get("_picture")) is not None:
@@ -279,4 +349,5 @@ def register() -> None:
                 entry_point=f"libration.classic_control:{classic.name}Env",
                 vector_entry_point=f"libration.classic_control:{classic.name}VectorEnv",
                 max_episode_steps=classic.max_episode_steps,
+                reward_threshold=classic.reward_threshold,
             )

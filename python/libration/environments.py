@@ -85,7 +85,7 @@ class Environments(_native.Batch):
     inner, targets, inner_period:
         An inner controller between actions and inputs: ``PD(kp, kd)`` for a system with as many inputs as coordinates, whose actions are then
         targets of the coordinates, ``kp·(target - q) - kd·q'``; or an expression of the state and of ``targets``, names of actions, for each
-        input. It samples every ``inner_period`` seconds (default: every step of the integrator), of which ``dt`` is a whole multiple.
+        input. It samples every ``inner_period`` seconds, of which ``dt`` is a whole multiple.
         Latencies and ``max_action`` are those of the targets.
     chunk:
         ``(H, s)`` for a policy that answers with a chunk of ``H`` actions, one for each ``dt``, of which ``s`` are used: a step of the
@@ -201,6 +201,8 @@ class Environments(_native.Batch):
         }
         if not isinstance(copy, (bool, np.bool_)):
             raise TypeError(f"copy must be True or False, not {type(copy).__name__}")
+        if not isinstance(parameter_infos, (bool, np.bool_)):
+            raise TypeError(f"parameter_infos must be True or False, not {type(parameter_infos).__name__}")
         if copy and buffers is not None:
             raise TypeError("buffers is given, but it belongs to copy=False")
         self._arguments = (name, {**given, **parameters})
@@ -218,11 +220,6 @@ class Environments(_native.Batch):
         self.num_envs = self._settings["num_envs"]
         kept = 0 if copy else count("buffers", 2 if buffers is None else buffers, 1, 1_000_000)
         self._set_up(self._settings, kept)
-        if not isinstance(parameter_infos, (bool, np.bool_)):
-            raise TypeError(f"parameter_infos must be True or False, not {type(parameter_infos).__name__}")
-        if parameter_infos:
-            # Those who do not ask for them step without a function of Python.
-            setattr(self, "step", self._step_with_parameters)
 
     def reset(
         self,
@@ -265,8 +262,8 @@ class Environments(_native.Batch):
         options = {} if options is None else options
         refuse_options(options)
         mask = self._mask(options["reset_mask"]) if "reset_mask" in options else None
-        given = start_of(options, self._state_names(), self.num_envs)
         which = np.arange(self.num_envs) if mask is None else np.flatnonzero(mask)
+        given = start_of(options, self._state_names(), self.num_envs, which, self._settings["dtype"])
         if self._seeder is None:
             self._seeder = np.random.default_rng()
             fresh = self._seeder.integers(2**63, size=self.num_envs, dtype=np.uint64).tolist()
@@ -278,7 +275,7 @@ class Environments(_native.Batch):
             mask = None
         observations = self._reset(seeds, mask)
         if given is not None and "state" in options:
-            observations = self._set_states(given[which].tolist(), which.tolist())
+            observations = self._set_states(given.tolist(), which.tolist())
         elif given is not None:
             observations = self._start_within(given.T.tolist(), which.tolist())
         infos = self._parameter_infos() if self._settings["parameter_infos"] else {}
@@ -303,11 +300,11 @@ class Environments(_native.Batch):
             For states or a mask with a wrong shape or type, or numbers that are not finite. Without a ``reset``, Gymnasium's
             ``ResetNeeded``.
         """
-        which = np.arange(self.num_envs) if mask is None else np.flatnonzero(self._mask(mask))
+        which = np.arange(self.num_envs) if mask is None else np.flatnonzero(self._mask(mask, "mask"))
         if self._seeder is None:
             raise self._reset_needed("set_state was called before reset; expected reset first")
-        given = rows_of("states", states, self._state_names(), self.num_envs)
-        return self._set_states(given[which].tolist(), which.tolist())
+        given = rows_of("states", states, self._state_names(), self.num_envs, which, self._settings["dtype"])
+        return self._set_states(given.tolist(), which.tolist())
 
     def _state_names(self) -> tuple[str, ...]:
         name = self._arguments[0]
@@ -324,15 +321,19 @@ class Environments(_native.Batch):
 
     def _parameter_infos(self) -> dict[str, Any]:
         """Return the numbers of the episodes as Gymnasium's vector environments give dictionaries of single ones."""
-        all_of_them = np.ones(self.num_envs, dtype=np.bool_)
-        table: dict[str, Any] = {}
-        for name, values in self.parameters.items():
-            table |= {name: values, f"_{name}": all_of_them.copy()}
-        return {"parameters": table, "_parameters": all_of_them}
+        return {"parameters": _spread(self.parameters, self.num_envs), "_parameters": np.ones(self.num_envs, dtype=np.bool_)}
 
-    def _step_with_parameters(self, actions: Any) -> Any:
-        *results, infos = _native.Batch.step(self, actions)
-        return (*results, {**infos, **self._parameter_infos()})
+    def _told(self, results: Any, before: dict[str, np.ndarray]) -> tuple[Any, ...]:
+        """Return the results of a step with the numbers of the episodes, and of those before the step where they ended.
+
+        The engine calls it under ``parameter_infos``.
+        """
+        *others, infos = results
+        if "final_info" in infos:
+            ended = infos["_final_info"]
+            final = {"parameters": _spread(before, self.num_envs), "_parameters": ended.copy()}
+            infos = {**infos, "final_info": {**infos["final_info"], **final}}
+        return (*others, {**infos, **self._parameter_infos()})
 
     def _seeds(self, seed: Any) -> list[int | None]:
         if seed is None:
@@ -358,17 +359,17 @@ class Environments(_native.Batch):
                 seeds[n] = count(f"seed of environment {n}", one, 0, 2**64 - 1)
         return seeds
 
-    def _mask(self, mask: Any) -> np.ndarray:
+    def _mask(self, mask: Any, name: str = "options['reset_mask']") -> np.ndarray:
         if not isinstance(mask, np.ndarray):
-            raise TypeError(f"options['reset_mask'] must be a NumPy array, not {type(mask).__name__}")
+            raise TypeError(f"{name} must be a NumPy array, not {type(mask).__name__}")
         if mask.shape != (self.num_envs,):
             raise ValueError(
-                f"options['reset_mask'] has shape {mask.shape}, but it must be ({self.num_envs},)"
+                f"{name} has shape {mask.shape}, but it must be ({self.num_envs},)"
             )
         if mask.dtype != np.bool_:
-            raise TypeError(f"options['reset_mask'] has dtype {mask.dtype}, but it must be bool")
+            raise TypeError(f"{name} has dtype {mask.dtype}, but it must be bool")
         if not mask.any():
-            raise ValueError("options['reset_mask'] has no True, but it must have at least one")
+            raise ValueError(f"{name} has no True, but it must have at least one")
         # A byte of an array of ``bool`` need not be 0 or 1.
         return np.ascontiguousarray(mask).view(np.uint8) != 0
 
@@ -477,3 +478,11 @@ def _again(cls: Any, made_of: Any, state: Any, seeder: Any, extras: dict[str, An
     copy._seeder = seeder
     copy.__dict__.update(extras)
     return copy
+
+
+def _spread(values: Mapping[str, np.ndarray], num_envs: int) -> dict[str, Any]:
+    """Return arrays by name, each with the mask of the environments that have it."""
+    table: dict[str, Any] = {}
+    for name, array in values.items():
+        table |= {name: array, f"_{name}": np.ones(num_envs, dtype=np.bool_)}
+    return table

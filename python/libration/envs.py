@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, Mapping
 
 import gymnasium
+from gymnasium.error import DeprecatedEnv
 
 from ._dataset_environments import keywords_of_settings
 from ._environment_keywords import (
@@ -36,6 +37,8 @@ __all__ = [
 
 NAMESPACE = "libration"
 DATASET_ID = f"{NAMESPACE}/Dataset-v0"
+FORMER_ID = f"{NAMESPACE}/Pendulum-v0"
+"""``Pendulum-v1`` is a twin of Gymnasium's own pendulum, another environment."""
 
 
 def _vector_page(single: type[Env]) -> str:
@@ -116,6 +119,7 @@ class SystemEnv(Env):
     - `project`: expressions that replace states after each step of the integrator, by name.
     - `actions`: commands of discrete actions.
     - `inner`, `targets`, `inner_period`: a controller between actions and inputs.
+    - `chunk`: `(H, s)`, of whose `H` actions `s` are used.
     - `max_action` (`math.inf`): largest action, or one for each input.
     - Parameters of the system by name: a number, `Uniform(low, high)`, `LogUniform(low, high)`, `Gaussian(std, mean)`, or an array `(num_envs,)`.
 
@@ -423,11 +427,14 @@ class DuffingVectorEnv(VectorEnv):
         super().__init__("Duffing", num_envs, **given)
 
 
+def _renamed(**given: Any) -> Any:
+    raise DeprecatedEnv(f"{FORMER_ID} is {NAMESPACE}/PendulumSwingUp-v0 now; {NAMESPACE}/Pendulum-v1 is a twin of Gymnasium's Pendulum-v1")
+
+
 def register() -> None:
     """Register the environments with Gymnasium; the import of the package does this."""
     entries: dict[str, tuple[str, int | None]] = {preset.id: (preset.name, preset.max_episode_steps) for preset in PRESETS.values()}
-    # Its former identifier, of which Gymnasium says that it is out of date.
-    entries |= {"Pendulum-v0": entries["PendulumSwingUp-v0"], "System-v0": ("System", None)}
+    entries["System-v0"] = ("System", None)
     for id, (name, limit) in entries.items():
         known = f"{NAMESPACE}/{id}"
         if known not in gymnasium.registry:
@@ -437,5 +444,7 @@ def register() -> None:
                 vector_entry_point=f"libration.envs:{name}VectorEnv",
                 max_episode_steps=limit,
             )
+    if FORMER_ID not in gymnasium.registry:
+        gymnasium.register(id=FORMER_ID, entry_point=_renamed, vector_entry_point=_renamed)
     if DATASET_ID not in gymnasium.registry:
         gymnasium.register(id=DATASET_ID, entry_point="libration.envs:DatasetEnv")

@@ -16,7 +16,7 @@ from ._settings import number, positive, shown
 from ._toml import text_of
 from ._transfer_functions import of_object, polynomials
 from .operating_point import OperatingPoint, linearize
-from .perturbations import LQR, PID, Steps, law
+from .perturbations import LQR, PID, Steps, file_table, law
 
 __all__ = [
     "LQG",
@@ -527,8 +527,8 @@ def _pid(output: str, input: str, gains: PID) -> dict[str, Any]:
 
 
 def _gains(gains: PID) -> dict[str, Any]:
-    names = ("proportional", "integral", "derivative", "filter")
-    return {name: number(name, getattr(gains, name), "a number") for name in names}
+    table = file_table(gains)
+    return {name: number(name, table[name], "a number") for name in ("proportional", "integral", "derivative", "filter")}
 
 
 def _loop(timing: dict[str, Any]) -> dict[str, Any]:

@@ -146,6 +146,18 @@ class Observer:
 
 Controller = PD | PID | LQR | Observer
 
+FILE_KEYS = {
+    PD: {"kp": "position", "kd": "velocity"},
+    PID: {"kp": "proportional", "ki": "integral", "kd": "derivative", "max_command": "most"},
+}
+"""Keys that files have for fields of controllers, where they differ."""
+
+
+def file_table(controller: Any) -> dict[str, Any]:
+    """Return the fields of a controller by their keys in files."""
+    keys = FILE_KEYS.get(type(controller), {})
+    return {keys.get(name, name): value for name, value in vars(controller).items()}
+
 
 def law(name: str, value: Any) -> tuple[str, float] | None:
     """Return a distribution in the format of the engine."""

@@ -206,8 +206,8 @@ def simulate(
     rows = {
         "steps": whole("steps", steps),
         "float": _float_of(dtype),
-        "every": whole("save_every", save_every, 0),
-        "count": None if num_trajectories is None else whole("num_trajectories", num_trajectories, 0),
+        "every": whole("save_every", save_every),
+        "count": None if num_trajectories is None else whole("num_trajectories", num_trajectories),
         "spread": number("spread", spread, "finite"),
         "threads": whole("threads", threads, 0),
         "seed": whole("seed", seed, 0),

@@ -213,3 +213,98 @@ def test_the_command_compares_registered_environments(capsys):
         with pytest.raises(SystemExit) as exit:
             main(wrong)
         assert exit.value.code == 2
+
+
+def test_a_lost_twin_hinders_no_other(recwarn):
+    envs = gymnasium.make_vec("libration/CartPole-v1", 2, starts="gymnasium")
+    envs.reset(seed=0)
+    envs.set_state(np.array([[0.0, 0.5, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]]))
+    assert envs.step(np.array([0, 0]))[2].tolist() == [True, False]
+    envs.set_state(np.array([[0.0] * 4, [1e308, 0.0, 1e308, 1e308]]), np.array([False, True]))
+    assert envs.step(np.array([0, 0]))[2].tolist() == [False, True]
+
+
+def test_the_first_reset_with_a_mask_begins_all():
+    envs = gymnasium.make_vec("libration/CartPole-v1", 3, starts="gymnasium", autoreset_mode="SameStep")
+    envs.reset(options={"reset_mask": np.array([True, False, False])})
+    for _ in range(60):
+        assert envs.observation_space.contains(envs.step(np.zeros(3, int))[0])
+
+
+def test_parameter_infos_leave_the_steps_of_twins():
+    given = {"starts": "gymnasium", "autoreset_mode": "SameStep", "max_episode_steps": 3, "length": libration.Uniform(0.4, 0.6)}
+    one, other = (gymnasium.make_vec("libration/CartPole-v1", 2, parameter_infos=tells, **given) for tells in (False, True))
+    one.reset(seed=0), other.reset(seed=0)
+    for _ in range(7):
+        results = [env.step(np.array([0, 1])) for env in (one, other)]
+        assert np.array_equal(results[0][0], results[1][0]) and results[1][0].dtype == np.float32
+    assert "parameters" in results[1][4]
+
+
+def test_actions_beyond_the_space_cost_what_they_cost_in_gymnasium():
+    for id, action in (("MountainCarContinuous-v0", 3.0), ("Pendulum-v1", 5.0)):
+        other, own = gymnasium.make(id), twin(id)
+        other.reset(seed=0), own.reset(seed=0)
+        rewards = [env.step(np.array([action]))[1] for env in (other, own)]
+        assert abs(rewards[0] - rewards[1]) < 1e-6
+
+
+def test_options_of_gymnasium_have_their_meaning_with_starts_of_libration_too():
+    car = gymnasium.make_vec("libration/MountainCar-v0", 100)
+    car.reset(seed=0, options={"low": -0.5, "high": -0.45})
+    assert (car.states[:, 0] >= -0.5).all() and (car.states[:, 0] <= -0.45).all() and not car.states[:, 1].any()
+    pendulum = gymnasium.make_vec("libration/Pendulum-v1", 100)
+    pendulum.reset(seed=0, options={"x_init": 0.5, "y_init": 0.1})
+    assert (np.abs(pendulum.states) <= [0.5, 0.1]).all() and np.ptp(pendulum.states[:, 0]) > 0.9
+
+
+@pytest.mark.parametrize("starts", ["libration", "gymnasium"])
+@pytest.mark.parametrize("options", [{"lwo": 1}, {"x_init": 1.0}, {"state": [0.0] * 4, "low": 0.0}, {"low": 1.0, "high": 0.0}, {"low": np.nan}])
+def test_wrong_options_of_twins_are_refused_before_a_reset(starts, options):
+    envs, env = gymnasium.make_vec("libration/CartPole-v1", 2, starts=starts), gymnasium.make("libration/CartPole-v1", starts=starts)
+    for each in (envs, env):
+        each.reset(seed=0)
+        before = np.array(each.unwrapped.states if each is envs else each.unwrapped.state)
+        with pytest.raises(ValueError, match="options"):
+            each.reset(options=options)
+        assert np.array_equal(each.unwrapped.states if each is envs else each.unwrapped.state, before)
+
+
+def test_keywords_that_change_what_is_observed_change_the_space():
+    envs = gymnasium.make_vec("libration/CartPole-v1", 2, observe=["x", "100*theta"])
+    assert envs.single_observation_space.shape == (2,) and np.isinf(envs.single_observation_space.high).all()
+    assert envs.observation_space.contains(envs.reset(seed=0)[0])
+    with pytest.raises(TypeError, match="start is given"):
+        gymnasium.make_vec("libration/CartPole-v1", 2, starts="gymnasium", start={"x": 1.0})
+    envs = gymnasium.make_vec("libration/CartPole-v1", 2, starts="gymnasium")
+    envs.reset(seed=0)
+    with pytest.raises(ValueError, match="rollout requires starts='libration'"):
+        envs.rollout(libration.policies.Linear([0.0] * 4), 3)
+
+
+def test_the_former_name_of_the_swing_up_is_an_error_with_its_new_name():
+    for make in (gymnasium.make, gymnasium.make_vec):
+        with pytest.warns(DeprecationWarning), pytest.raises(gymnasium.error.DeprecatedEnv, match="PendulumSwingUp-v0"):
+            make("libration/Pendulum-v0")
+
+
+def test_integers_that_differ_are_differences():
+    class Cell(gymnasium.Env):
+        observation_space, action_space = gymnasium.spaces.Discrete(50), gymnasium.spaces.Discrete(2)
+
+        def __init__(self, cell):
+            self.cell = cell
+
+        def reset(self, *, seed=None, options=None):
+            return self.cell, {}
+
+        def step(self, action):
+            return self.cell, 0.0, False, False, {}
+
+    match = check_environments_match(Cell(7), Cell(8), steps=3, seeds=[0])
+    assert match.difference == "seed 0, reset: observation[0] is np.int64(7) and np.int64(8)"
+    assert check_environments_match(Cell(7), Cell(7), steps=3, seeds=range(2))
+    same = Cell(7)
+    for given in ({"second": same}, {"second": Cell(7), "seeds": 3}):
+        with pytest.raises((ValueError, TypeError)):
+            check_environments_match(same, given.pop("second"), **given)

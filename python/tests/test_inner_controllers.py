@@ -70,7 +70,7 @@ def test_a_loop_of_two_rates_grows_as_the_product_over_the_common_period(gain, g
 
 
 def test_targets_arrive_late_but_the_inner_controller_does_not():
-    late, timely = arm(2, dt=0.02, inner=PD(40.0, 6.0), action_delay=0.02), arm(2, dt=0.02, inner=PD(40.0, 6.0))
+    late, timely = arm(2, dt=0.02, inner=PD(40.0, 6.0), inner_period=0.01, action_delay=0.02), arm(2, dt=0.02, inner=PD(40.0, 6.0), inner_period=0.01)
     late.reset(seed=3), timely.reset(seed=3)
     late.step(np.ones((2, 1))), timely.step(np.zeros((2, 1)))
     assert np.array_equal(late.states, timely.states)
@@ -82,7 +82,7 @@ def test_an_inner_controller_by_expressions_has_targets_of_its_own():
     two = System(acceleration={"x": "a", "y": "b"}, inputs=["a", "b"])
     envs = Environments(
         two, 4, dt=0.02, reward="-(x - radius*cos(phase))^2", targets=["radius", "phase"],
-        inner={"a": "9*(radius*cos(phase) - x) - 3*x'", "b": "9*(radius*sin(phase) - y) - 3*y'"}, dtype="float64",
+        inner={"a": "9*(radius*cos(phase) - x) - 3*x'", "b": "9*(radius*sin(phase) - y) - 3*y'"}, inner_period=0.02, dtype="float64",
     )
     envs.reset(seed=0)
     for _ in range(600):
@@ -97,12 +97,14 @@ def test_an_inner_controller_by_expressions_has_targets_of_its_own():
         ({"inner": PD(1, 1), "inner_period": 0.003}, ValueError, "inner_period is 0.003 s, but dt = 0.02 s"),
         ({"inner": PD(1, 1), "inner_period": 0.01, "substeps": 3}, ValueError, "multiple of the 2 periods"),
         ({"inner_period": 0.01}, ValueError, "belongs to an inner controller"),
-        ({"inner": {"u": "target"}}, ValueError, "without targets"),
-        ({"inner": {"u": "q"}, "targets": ["q"]}, ValueError, "`q` is given twice"),
-        ({"inner": {"w": "target"}, "targets": ["target"]}, ValueError, "unknown name `w`"),
+        ({"inner": {"u": "target"}, "inner_period": 0.01}, ValueError, "without targets"),
+        ({"inner": {"u": "q"}, "targets": ["q"], "inner_period": 0.01}, ValueError, "`q` is given twice"),
+        ({"inner": {"w": "target"}, "targets": ["target"], "inner_period": 0.01}, ValueError, "unknown name `w`"),
         ({"inner": {}, "targets": ["target"]}, ValueError, "`u` has no command"),
-        ({"inner": {"u": "target + u"}, "targets": ["target"]}, ValueError, "unknown name `u`"),
+        ({"inner": {"u": "target + u"}, "targets": ["target"], "inner_period": 0.01}, ValueError, "unknown name `u`"),
         ({"inner": "target"}, TypeError, "inner must be a dictionary"),
+        ({"inner": PD(1, 1)}, TypeError, "inner_period is required with inner"),
+        ({"inner": PD(1, 1), "inner_period": 0.01, "targets": ["a", "b"]}, ValueError, "a name for each coordinate: q"),
         ({"inner": PD("stiff", 1)}, TypeError, "kp of inner must be a number"),
     ],
 )

@@ -366,7 +366,7 @@ MASKS = st.lists(st.booleans(), min_size=3, max_size=3).filter(any)
 RESETS = st.tuples(
     st.one_of(SEEDS, st.none(), st.lists(ONE_SEED, min_size=3, max_size=3), SEEDS.map(np.uint64)),
     st.one_of(
-        st.sampled_from([None, {}, {"other": 1}]),
+        st.sampled_from([None, {}]),
         st.one_of(
             MASKS.map(np.array),
             MASKS.map(lambda mask: np.repeat(mask, 2)[::2]),

@@ -93,7 +93,7 @@ def test_a_parameter_that_varies_is_what_moves_the_system():
 def test_an_array_gives_each_environment_its_number_in_all_episodes():
     values = np.linspace(1, 30, 20)
     common = {"dt": 0.01, "max_episode_steps": 3, "autoreset_mode": "SameStep", "dtype": "float64"}
-    envs = Environments(SPRING, 20, omega2=values, max_action=np.linspace(1, 2, 20)[:, None], **common)
+    envs = Environments(SPRING, 20, omega2=values, max_action=np.linspace(1, 2, 20), **common)
     envs.reset(seed=0)
     for _ in range(7):
         envs.step(np.zeros((20, 1)))
@@ -137,6 +137,9 @@ def test_copies_and_pickles_keep_the_numbers_of_the_episode():
         ({"jitter": Gaussian(0.1, mean=1.0)}, ValueError, "around zero"),
         ({"omega2": Uniform(1, 2), "m": 1.0, "k": 1.0}, TypeError, "omega2 is given with m and k"),
         ({"m": Uniform(1, 2)}, TypeError, "m is given alone"),
+        ({"bound": Uniform(-1, 1)}, ValueError, "an end of bound is -1.0"),
+        ({"bound": -1.0, "omega2": Uniform(1, 2)}, ValueError, "bound is -1.0"),
+        ({"m": 0.0, "k": 1.0, "effort_cost": Uniform(0, 1)}, ValueError, "m is 0.0"),
         ({"parameter_infos": 1}, TypeError, "parameter_infos must be True or False"),
     ],
 )
@@ -205,8 +208,11 @@ def test_an_episode_goes_on_from_the_state_that_is_set():
         ({"low": 0.0}, ValueError, "without 'high'"),
         ({"low": 1.0, "high": 0.0}, ValueError, "position from 1.0 to 0.0"),
         ({"state": [0, 0], "low": 0, "high": 1}, ValueError, "one of them"),
-        ({"state": [0, 0, 0]}, ValueError, r"shape \(3,\), but it must be \(2, 2\): position, velocity"),
+        ({"state": [0, 0, 0]}, ValueError, r"shape \(3,\), but it must be \(2,\) or \(2, 2\): position, velocity"),
         ({"state": [0, np.inf]}, ValueError, "inf for velocity"),
+        ({"state": [1e300, 0]}, ValueError, "1e\\+300 for position, but it must be finite in float32"),
+        ({"state": [0.5]}, ValueError, r"shape \(1,\)"),
+        ({"low": -1e38, "high": 3e38}, ValueError, "distance must be finite"),
         ({"state": {"position": 0}}, ValueError, "has no 'velocity'"),
         ({"state": {"position": 0, "speed": 0}}, ValueError, "'speed'"),
         ({"state": "top"}, TypeError, "real numbers"),
@@ -294,3 +300,31 @@ def test_a_data_set_of_a_system_with_projection_and_discrete_actions_replays(tmp
     )
     libration.datasets.write(tmp_path / "data", {"environments": 8, "steps": 40, "dt": 0.1}, system=system)
     assert libration.datasets.verify(tmp_path / "data", replay=True) == []
+
+
+@pytest.mark.parametrize("mode", ["NextStep", "SameStep", "Disabled"])
+def test_infos_tell_the_numbers_of_each_episode_and_of_the_one_that_ended(mode):
+    envs = Environments(SPRING, 4, dt=0.01, omega2=Uniform(1, 30), parameter_infos=True, max_episode_steps=3, autoreset_mode=mode, dtype="float64")
+    first = envs.reset(seed=0)[1]["parameters"]["omega2"]
+    for _ in range(3):
+        infos = envs.step(np.zeros((4, 1)))[4]
+    assert np.array_equal(infos["parameters"]["omega2"], envs.parameters["omega2"])
+    if mode == "SameStep":
+        assert np.array_equal(infos["final_info"]["parameters"]["omega2"], first) and infos["final_info"]["_parameters"].all()
+        assert not (infos["parameters"]["omega2"] == first).any()
+
+
+def test_single_environments_take_an_action_for_each_input():
+    gymnasium = pytest.importorskip("gymnasium")
+    two = System(acceleration={"a": "u1 - a", "b": "u2 - b"}, inputs=["u1", "u2"])
+    env = gymnasium.make("libration/System-v0", system=two, dt=0.05, reward="u1 - 2*u2", max_action=1.0)
+    env.reset(seed=0)
+    assert env.step(env.action_space.sample() * 0 + np.array([0.5, 0.25], np.float32))[1] == 0.0
+
+
+def test_a_state_that_is_not_finite_hinders_no_other_environment():
+    envs = Environments(SPRING, 2, dt=0.01, dtype="float64", autoreset_mode="Disabled")
+    envs.reset(seed=0)
+    states = np.array([[0.1, 0.2], [np.nan, 0.0]])
+    envs.set_state(states, np.array([True, False]))
+    assert envs.states[0].tolist() == [0.1, 0.2]

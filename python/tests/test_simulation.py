@@ -169,7 +169,7 @@ def test_every_float_type_has_an_array_that_holds_it(float, dtype):
 
 @pytest.mark.parametrize("every", [1, 7])
 def test_a_state_that_overflows_ends_a_trajectory_and_says_where(every):
-    given = {"integrator": "explicit-euler", "dt": 100.0, "steps": 1000, "every": every}
+    given = {"integrator": "explicit-euler", "dt": 100.0, "steps": 1000, "save_every": every}
     built_in, own = simulate(SPRING, **given), simulate(spring, q=1.0, **given)
     # A step multiplies by √(1 + ω²Δt²) = 316.2; 10^308 is 123 of them.
     assert abs(built_in.stopped["step"] - 123) <= 2
@@ -188,7 +188,7 @@ def test_a_step_beyond_the_limit_of_its_method_is_named_with_the_step_that_it_al
 
 
 def test_a_trajectory_may_have_as_many_steps_as_a_float_can_count():
-    given = {"integrator": "explicit-euler", "dt": 100.0, "every": 2**52}
+    given = {"integrator": "explicit-euler", "dt": 100.0, "save_every": 2**52}
     assert simulate(SPRING, steps=2**53, **given).stopped["step"] < 200
     with pytest.raises(ValueError, match="9007199254740992"):
         simulate(SPRING, steps=2**53 + 1, **given)
@@ -208,8 +208,8 @@ WRONG = [
     ({"q": [1.0, 2.0], "v": [0.0]}, ValueError, "equally many"),
     ({"q": math.inf}, ValueError, "q"),
     ({"q": "1"}, TypeError, "q"),
-    ({"every": 0}, ValueError, "every"),
-    ({"count": 0}, ValueError, "count"),
+    ({"save_every": 0}, ValueError, "save_every"),
+    ({"num_trajectories": 0}, ValueError, "num_trajectories"),
     ({"dtype": "f8"}, ValueError, "float64"),
     ({"latency": 0.1}, ValueError, "feedback"),
     ({"latency": -0.1, "feedback": (1.0, 1.0)}, ValueError, "latency"),
@@ -220,7 +220,7 @@ WRONG = [
     ({"time_stamps": [0.0, 0.1]}, ValueError, "steps"),
     ({"stesp": 3}, TypeError, "did you mean 'steps'"),
     ({"time_stamps": "abc"}, TypeError, "time_stamps"),
-    ({"spread": 0.5}, ValueError, "spread is 0.5, but there is no count"),
+    ({"spread": 0.5}, ValueError, "spread is 0.5, but there is one trajectory"),
     ({"feedback": np.array([1.0, 2.0, 3.0])}, ValueError, "feedback"),
     ({"feedback": b"ab"}, ValueError, "feedback"),
     ({"jitter": b"ab"}, TypeError, "jitter"),

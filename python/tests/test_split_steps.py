@@ -93,3 +93,10 @@ def test_split_steps_hold_for_presets_with_every_autoreset(tmp_path):
         assert np.array_equal(envs.reset(seed=3)[0][1:2], alone.reset(seed=4)[0])
         for _ in range(4):
             assert np.array_equal(envs.step(np.ones((3, 1), np.float32))[0][1:2], alone.step(np.ones((1, 1), np.float32))[0])
+
+
+@pytest.mark.parametrize(("dt", "delay"), [(0.05, 0.033333), (0.01, 0.012345), (0.05, 1e-8), (0.05, 10.0333)])
+def test_a_latency_may_be_any_part_of_a_period(dt, delay):
+    envs = Environments(SPRING, 1, dt=dt, reward="q", action_delay=delay)
+    assert envs.substeps == 2
+    envs.reset(seed=0), envs.step(np.zeros((1, 1)))

@@ -157,7 +157,7 @@ def test_an_environment_is_the_same_beside_any_number_of_others_and_on_any_numbe
         (dict(intergrator="rk4"), TypeError, "intergrator.*did you mean 'integrator'"),
         (dict(integrator="verlet"), ValueError, "unknown integrator `verlet`: did you mean `velocity-verlet`"),
         (dict(action_delay=-0.1), ValueError, "action_delay is -0.1, but it must be finite and at least 0"),
-        (dict(action_delay=np.pi), ValueError, "action_delay is 3.14.* but it must be whole steps"),
+        (dict(action_delay=(0.0, np.pi)), ValueError, "action_delay is from 0.0 to 3.14.* but it must be whole steps"),
         (dict(dt=0.0), ValueError, "dt is 0.0, but it must be finite and greater than 0"),
         (dict(dt="fast"), TypeError, "dt must be a number, not str"),
         (dict(jitter=("normal", 0.1)), ValueError, "law of jitter is 'normal'"),

@@ -66,11 +66,26 @@ impl Batch {
     /// Raises a `ValueError` for actions with a wrong shape or that are not finite, a `TypeError` for actions that are not real numbers, and a
     /// `RuntimeError` (Gymnasium's `ResetNeeded` and `ClosedEnvironmentError` in its environments) before the first `reset`, after the end
     /// of an episode under `"Disabled"`, and after `close`.
-    fn step<'py>(slf: &Bound<'py, Self>, actions: &Bound<'py, PyAny>) -> PyResult<Step<'py>> {
-        let mut guard = slf.get().inner.lock(slf.py())?;
+    fn step<'py>(
+        slf: &Bound<'py, Self>,
+        actions: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let py = slf.py();
+        let mut guard = slf.get().inner.lock(py)?;
+        let tells = open(slf, &mut guard)?.episodes.tells;
+        // A function of Python reads them, and takes the lock itself.
+        drop(guard);
+        let before = tells.then(|| slf.getattr("parameters")).transpose()?;
+        let mut guard = slf.get().inner.lock(py)?;
         let Inner { batch, episodes, .. } = open(slf, &mut guard)?;
         episodes.expect_action(slf)?;
-        with_batch!(batch, environments => step::take(slf.py(), &mut **environments, episodes, actions))
+        let results: Step<'py> = with_batch!(batch, environments => step::take(py, &mut **environments, episodes, actions))?;
+        drop(guard);
+        let results = results.into_pyobject(py)?;
+        match before {
+            Some(before) => Ok(slf.call_method1("_told", (results, before))?.cast_into()?),
+            None => Ok(results),
+        }
     }
 
     /// Accepts the arguments of a step and does nothing, for benchmarks.

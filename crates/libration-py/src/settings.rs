@@ -33,6 +33,7 @@ pub(crate) struct Settings {
     skew: (String, f64),
     /// Commands of discrete actions; empty for commands of any value.
     pub(crate) levels: Vec<f64>,
+    pub(crate) parameter_infos: bool,
     subject: Subject,
 }
 

@@ -33,6 +33,8 @@ pub(crate) struct EpisodeStates {
     pub(crate) substeps: usize,
     /// Commands of discrete actions; empty for commands of any value.
     levels: Vec<f64>,
+    /// Whether the infos of steps have the numbers of episodes.
+    pub(crate) tells: bool,
 }
 
 /// Arrays that a step fills: what is seen, paid, over and cut off.
@@ -67,6 +69,7 @@ impl EpisodeStates {
             shared: buffers > 0,
             substeps: settings.substeps as usize,
             levels: settings.levels.clone(),
+            tells: settings.parameter_infos,
         })
     }
 

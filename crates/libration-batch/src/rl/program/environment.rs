@@ -31,6 +31,7 @@ use crate::rl::{Autoreset, Delays, Environment, EnvironmentError, EpisodeNumber,
 ///     observe: vec!["x".into(), "x'".into()],
 ///     reward: "-x^2 - 0.01*u^2".into(),
 ///     terminated: vec!["abs(x) > 3".into()],
+///     ..TaskDefinitions::default()
 /// };
 /// let task = TaskPrograms::new(&task, &system, &equations)?;
 /// let environment = ProgramEnvironment {
