@@ -45,7 +45,7 @@ def amplitudes(latency: float, episodes: int = 1000, seconds: float = 8.0) -> np
         threads=0,
     )
     envs.reset(seed=0)
-    loop = Linear([-GAINS.position, -GAINS.velocity])
+    loop = Linear([-GAINS.kp, -GAINS.kd])
     seen = envs.rollout(loop, round(seconds / PERIOD)).observations.astype(np.float64)
     # Energy has no zero crossings, which a distance has.
     return np.sqrt((seen[..., 0] ** 2 + seen[..., 1] ** 2 / 10.0).mean(axis=1))

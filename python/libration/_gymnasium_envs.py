@@ -155,7 +155,7 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
             table = self.parameters
             return tuple({key: float(values[n]) for key, values in table.items()} for n in range(self.num_envs))
         keywords = keywords_of(self)
-        given = keywords.get(name)
+        given: Any = keywords.get(name)
         if name in self.parameters and np.shape(given) == (self.num_envs,):
             # One for each environment.
             return tuple(given)

@@ -146,7 +146,8 @@ def parts(dt: float, named: dict[str, tuple[float, float]]) -> tuple[list[float]
 
     A command arrives at the beginning of a step, and an observation shows the beginning of one.
     """
-    if dt / MOST_SUBSTEPS == 0 or any(low != high for low, high in named.values()):
+    # The number of periods may overflow; the engine keeps 4096 steps.
+    if any(low != high or not low <= 4096 * dt for low, high in named.values()):
         return None
     late = {name: divmod(low, dt) for name, (low, _) in named.items()}
     # The time within a period at which a command arrives, or that an observation shows; 1e-9 of a period is no intended fraction.

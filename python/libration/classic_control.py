@@ -52,7 +52,7 @@ def _classic(name: str) -> ClassicSystem:
     return CLASSIC[name]
 
 
-def _seen(classic: ClassicSystem, settings: Any, given: dict[str, Any], own: Box) -> Box:
+def _seen(classic: ClassicSystem, settings: Any, given: dict[str, Any], own: Any) -> Box:
     """Return the observation space: that of Gymnasium, unless keywords change what is observed or how far it goes."""
     if given.get("observe") is not None or given.get("project") is not None:
         return Box(np.float32(own.low), np.float32(own.high), dtype=np.float32)
