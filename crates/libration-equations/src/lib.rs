@@ -21,6 +21,7 @@ mod resolver;
 mod step_program;
 mod step_trace;
 mod task;
+mod task_definitions;
 mod task_scope;
 
 pub use definitions::{Definitions, MAX_DEFINITIONS, MAX_DEGREES, MAX_EXPRESSIONS};
@@ -34,4 +35,5 @@ pub use parser_input::MAX_LENGTH;
 pub use program::{Evaluation, Operation, Program, ValueId};
 pub use recording::Recorded;
 pub use step_program::StepProgram;
-pub use task::{TaskDefinitions, TaskPrograms};
+pub use task::TaskPrograms;
+pub use task_definitions::TaskDefinitions;

@@ -2,15 +2,14 @@
 
 use libration::ensemble::Execution;
 use libration::rl::{EnvironmentError, Plan};
-use libration_env::environments::AnyEnvironments;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
 
 use crate::any_batch::{AnyBatch, with_batch};
-use crate::array::{Array, Number, allocate, view_mut};
 use crate::checked_mutex::{CheckedGuard, CheckedMutex};
+use crate::episode_states::{episode_numbers, put_states, states};
 use crate::error::{Raised, value_error};
 use crate::policy::PolicyRequest;
 use crate::rollout::Memory;
@@ -164,20 +163,6 @@ impl Batch {
 
     /// Returns positions and velocities, `(num_envs, 2)`; of a system by equations its states.
     fn _states<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        fn states<'py, T: Number>(
-            py: Python<'py>,
-            environments: &dyn AnyEnvironments<T>,
-            len: usize,
-            places: &[usize],
-        ) -> PyResult<Bound<'py, PyAny>> {
-            let width = places.len();
-            let all: Bound<'py, Array<T, 2>> = allocate(py, [len, width])?;
-            for (n, row) in view_mut(&all).chunks_exact_mut(width).enumerate() {
-                let state = environments.state(n).unwrap_or_default();
-                row.iter_mut().zip(places).for_each(|(x, &place)| *x = state[place]);
-            }
-            Ok(all.into_any())
-        }
         let mut guard = slf.get().inner.lock(slf.py())?;
         let Inner { batch, episodes, places, .. } = open(slf, &mut guard)?;
         with_batch!(batch, environments => states(slf.py(), &**environments, episodes.len, places))
@@ -191,21 +176,9 @@ impl Batch {
     ) -> PyResult<Bound<'py, PyAny>> {
         let mut guard = slf.get().inner.lock(slf.py())?;
         let Inner { batch, episodes, places, .. } = open(slf, &mut guard)?;
-        fn put<T: Number>(
-            environments: &mut dyn AnyEnvironments<T>,
-            places: &[usize],
-            rows: impl Iterator<Item = (usize, Vec<f64>)>,
-        ) -> Result<(), EnvironmentError> {
-            for (n, row) in rows {
-                let mut state = environments.state(n).unwrap_or_default();
-                places.iter().zip(row).for_each(|(&place, x)| state[place] = T::from_f64(x));
-                environments.set_state(n, &state)?;
-            }
-            Ok(())
-        }
         with_batch!(batch, environments => {
             let rows = which.into_iter().zip(states);
-            put(&mut **environments, places, rows).map_err(Raised::raised)?;
+            put_states(&mut **environments, places, rows).map_err(Raised::raised)?;
             step::observe(slf.py(), &mut **environments, episodes)
         })
     }
@@ -237,21 +210,9 @@ impl Batch {
     /// Returns what is drawn of each episode, `(num_envs, n)`: parameters that vary, largest commands unless all are constants, latencies of
     /// observations and actions in steps of the integrator, and error scales of clock and sensor.
     fn _episode_numbers<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        fn numbers<'py, T: Number>(
-            py: Python<'py>,
-            environments: &dyn AnyEnvironments<T>,
-        ) -> PyResult<Bound<'py, PyAny>> {
-            let rows: Vec<Vec<T>> =
-                (0..environments.len()).filter_map(|n| environments.episode_numbers(n)).collect();
-            let width = rows.first().map_or(0, Vec::len);
-            let all: Bound<'py, Array<T, 2>> = allocate(py, [rows.len(), width])?;
-            let to = view_mut(&all).iter_mut();
-            to.zip(rows.iter().flatten()).for_each(|(to, &x)| *to = x);
-            Ok(all.into_any())
-        }
         let mut guard = slf.get().inner.lock(slf.py())?;
         let Inner { batch, .. } = open(slf, &mut guard)?;
-        with_batch!(batch, environments => numbers(slf.py(), &**environments))
+        with_batch!(batch, environments => episode_numbers(slf.py(), &**environments))
     }
 
     /// Returns the state, for environments with the same settings.

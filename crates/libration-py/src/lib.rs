@@ -11,6 +11,7 @@ mod catalogue;
 mod checked_mutex;
 mod datasets;
 mod energy;
+mod episode_states;
 mod equations;
 mod error;
 mod identify;

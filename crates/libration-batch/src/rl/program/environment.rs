@@ -59,7 +59,7 @@ pub struct ProgramEnvironment {
     pub dt: f64,
     /// Steps of the integrator for which an action is held; at least 1.
     pub substeps: u32,
-    /// The lengths of these steps in seconds, where they differ: latencies then are no whole parts of an action. Empty for steps of `dt`.
+    /// The lengths of these steps in seconds where they differ, so that latencies need not be whole parts; empty for steps of `dt`.
     pub lengths: Vec<f64>,
     /// The range of each position, then of each velocity, from which the start of an episode is drawn uniformly.
     pub start: Vec<[f64; 2]>,
@@ -71,8 +71,7 @@ pub struct ProgramEnvironment {
     pub delays: Delays,
     /// The largest command of each input, of either sign; the reward uses the saturated command. Infinite for no limit.
     pub saturation: Vec<EpisodeNumber>,
-    /// Steps of the integrator for which a command of the inner controller of the task is held; at least 1, and without effect where there
-    /// is none. Each action begins with a new command.
+    /// Steps of the integrator for which a command of an inner controller is held, at least 1. Each action begins with a new command.
     pub inner_steps: u32,
     /// The values of commands, ascending: an action becomes the nearest, of two as near the larger. Empty for any value.
     pub levels: Vec<f64>,
