@@ -37,9 +37,11 @@ def episode_number(name: str, value: Any, num_envs: int, allowed: str = "finite"
         return "gaussian", [float(value.mean), float(value.std)]
     if _has_values(value):
         values = value.tolist() if hasattr(value, "tolist") else list(value)
-        if len(values) != num_envs or (getattr(value, "ndim", 1) != 1):
+        # Elsewhere a pair is a range.
+        is_pair = isinstance(value, tuple) and len(values) == 2
+        if is_pair or len(values) != num_envs or (getattr(value, "ndim", 1) != 1):
             shape = getattr(value, "shape", (len(values),))
-            help = f"; help: Uniform({values[0]!r}, {values[1]!r})" if isinstance(value, tuple) and len(values) == 2 else ""
+            help = f"; help: Uniform({values[0]!r}, {values[1]!r})" if is_pair else ""
             raise ValueError(f"{name} has shape {shape}, but it must have a number for each environment: ({num_envs},){help}")
         return "each", [number(f"{name}[{n}]", x, allowed, holds) for n, x in enumerate(values)]
     return "constant", [number(name, value, allowed, holds)]

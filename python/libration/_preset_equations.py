@@ -9,9 +9,10 @@ import numbers
 from math import inf
 from typing import Any, Mapping
 
-from ._episode_numbers import episode_number, is_varied
+from . import _native
+from ._episode_numbers import episode_number, is_varied, scaled_law
 from ._presets import Preset
-from ._settings import CATALOGUE, TASK_OPTIONS, count, ends, refuse_others
+from ._settings import CATALOGUE, TASK_OPTIONS, count, ends, law, native, refuse_others
 from ._tasks import SMALLEST_OPTIONS, native_equations
 from .equations import EquationSystem
 
@@ -74,12 +75,8 @@ def native_varied(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
     starts = {state: ends(name, starts[state]) for state, name in (("q", "start_position"), ("q'", "start_velocity"))}
     task = dict(_TASKS[preset.task])
     costs = dict(preset.costs)
-    above = {name: parameters[name] for name in ("m", "k", "bound") if name in parameters}
     num_envs = count("num_envs", given["num_envs"], 1, 2**40)
-    for name, value in above.items():
-        kind, ends_of = episode_number(name, value, num_envs, "greater than 0", lambda x: x > 0)
-        if name != "bound" and max(ends_of) == inf:
-            raise ValueError(f"{name} is {value!r}, but it must be finite")
+    _check_ends(preset, given, num_envs)
     bound = parameters.get("bound", costs.get("bound"))
     if isinstance(bound, numbers.Real) and bound == inf:
         # No comparison ends an episode.
@@ -97,3 +94,14 @@ def native_varied(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
     given = {**given, **{name: value for name, value in defaults.items() if given[name] is None}}
     given |= {"start_position": None, "start_velocity": None, "parameters": parameters}
     return native_equations(system, given)[1]
+
+
+def _check_ends(preset: Preset, given: Mapping[str, Any], num_envs: int) -> None:
+    """Raise the errors that environments of constants have at the ends of all ranges."""
+    law("observation_noise", scaled_law("observation_noise", given["observation_noise"])[0])
+    numbers_of = {name: episode_number(name, value, num_envs, "a number", lambda x: True) for name, value in given["parameters"].items()}
+    for end in (min, max):
+        # Of a Gaussian distribution the mean.
+        constants = {name: values[0] if kind == "gaussian" else end(values) for name, (kind, values) in numbers_of.items()}
+        plain = {"parameters": constants, "num_envs": 1, "jitter": 0.0, "observation_noise": 0.0, "max_action": None}
+        _native.Batch()._set_up(native(preset, {**given, **plain, "action_delay": 0.0, "observation_delay": 0.0}), 0)

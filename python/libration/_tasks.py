@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 from typing import Any, Mapping, Sequence
 
-from ._episode_numbers import each, episode_number, largest_commands, scaled_law
+from ._episode_numbers import Request, each, episode_number, largest_commands, scaled_law
 from ._settings import OPTIONS, TASK_OPTIONS, common, count, ends, inner_count, is_several, law, number, positive, refuse_others
 from ._toml import text_of
 from .equations import EquationSystem
@@ -71,15 +71,17 @@ def native_equations(
     period = task["inner_period"] if task["inner_period"] is not None or not own else own["inner_period"]
     if inner and period is None:
         raise TypeError("inner_period is required with inner: the time in s between samples of the controller")
-    chunk, used = given.pop("chunk"), 1
+    chunk, used, length = given.pop("chunk"), 1, 1
     if chunk is not None:
+        if not inner and task["inner_period"] is not None:
+            raise TypeError("inner_period is given, but it belongs to an inner controller")
         dt = positive("dt", given["dt"])
         task |= _chunk(system, chunk, task, own, dt)
-        inner_count(dt, period, None)
-        used = chunk[1]
+        # That of the file is of a controller that the caller replaced.
+        own = {**own, "inner_period": None} if own and not inner else own
+        inner_count(dt, period if inner else None, None)
+        length, used = chunk
         given["dt"] = dt * used
-        if is_several(given["max_action"]):
-            given["max_action"] = [*given["max_action"]] * chunk[0]
     if any(value is not None for value in task.values()):
         text = _task(system, task, own)
     seen, levels = (own["observe"], own["actions"]) if own else (list(system.states), [])
@@ -104,7 +106,7 @@ def native_equations(
         "equations": (system.replace(**constants) if constants else system)._text,
         "task": text,
         "varied": list(varied.items()),
-        "saturation": largest_commands(given["max_action"], len(actions), num_envs),
+        "saturation": _of_each_time(largest_commands(given["max_action"], len(actions) // length, num_envs), length, given["max_action"]),
         "noise": [law("observation_noise", x) for x in _each_law(given["observation_noise"], len(seen))],
         "error_scale": [clock, sensor],
         "lengths": settings["lengths"],
@@ -142,18 +144,44 @@ def _chunk(
     table = own or {"targets": [], "inner": {}}
     targets = task["targets"] if task["targets"] is not None else table["targets"]
     inner = task["inner"] if task["inner"] is not None else table["inner"]
+    _check_targets(system, targets, inner)
     names = list(targets) or list(system.inputs)
     inner = inner or {name: name for name in names}
-    # The command of a time: that of its period, and the last one behind the end. A thousandth of a period is no intended difference.
-    commands = {}
-    for name in names:
-        text = f"{name}_{length - 1}"
-        for i in reversed(range(length - 1)):
-            text = f"if(age < {(i + 1 - 1e-3) * dt!r}, {name}_{i}, {text})"
-        commands[name] = text
+
+    def chosen(name: str, first: int, end: int) -> str:
+        """Return the command of a time within these periods, and the last one behind the end."""
+        if end - first == 1:
+            return f"{name}_{first}"
+        middle = (first + end) // 2
+        # A thousandth of a period is no intended difference.
+        return f"if(age < {(middle - 1e-3) * dt!r}, {chosen(name, first, middle)}, {chosen(name, middle, end)})"
+
+    commands = {name: chosen(name, 0, length) for name in names}
     pattern = re.compile("|".join(rf"(?<![A-Za-z0-9_'])({re.escape(name)})(?![A-Za-z0-9_'(])" for name in names))
-    chosen = {u: pattern.sub(lambda found: f"({commands[found.group()]})", text) for u, text in inner.items()}
-    return {"targets": [f"{name}_{i}" for i in range(length) for name in names], "inner": chosen}
+    texts = {u: pattern.sub(lambda found: f"({commands[found.group()]})", text) for u, text in inner.items()}
+    return {"targets": [f"{name}_{i}" for i in range(length) for name in names], "inner": texts}
+
+
+def _check_targets(system: EquationSystem, targets: Any, inner: Mapping[str, Any]) -> None:
+    """Check names of targets and expressions of an inner controller, of which chunks make others."""
+    if isinstance(targets, str) or not is_several(targets) or not all(isinstance(name, str) for name in targets):
+        raise TypeError(f"targets is {targets!r}, but it must be a list of names")
+    for name, text in inner.items():
+        if not isinstance(text, str):
+            raise TypeError(f"inner of {name} must be an expression, not {type(text).__name__}")
+    if bool(targets) != bool(inner):
+        raise ValueError("targets and inner are given alone, but they must be given together")
+    taken = {*system.states, *system.parameters, *system.inputs}
+    for i, name in enumerate(targets):
+        if name in taken or name in targets[:i]:
+            raise ValueError(f"targets has {name!r}, but it must be a name of its own")
+
+
+def _of_each_time(commands: list[Request], length: int, given: Any) -> list[Request]:
+    """Return the largest command of each time of a chunk."""
+    if length > 1 and any(kind not in ("constant", "each") for kind, _ in commands):
+        raise ValueError(f"max_action is {given!r}, but with a chunk it must be a number or one for each environment")
+    return commands * length
 
 
 def _task(system: EquationSystem, task: Mapping[str, Any], own: Mapping[str, Any] | None) -> str:

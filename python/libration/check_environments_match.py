@@ -8,12 +8,15 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
+import numbers
 import sys
 from dataclasses import dataclass
 from typing import Any, Callable, Mapping, Sequence
 
 import gymnasium
 import numpy as np
+from gymnasium.spaces import Box, Discrete, MultiBinary, MultiDiscrete
 
 __all__ = ["EnvironmentsMatch", "check_environments_match", "main"]
 
@@ -111,7 +114,7 @@ def check_environments_match(
     if not all_seeds:
         raise ValueError("seeds is empty, but it must have at least one seed")
     for name, tolerance in (("tolerance_ulps", tolerance_ulps), ("reward_tolerance", reward_tolerance)):
-        if not (isinstance(tolerance, (int, float)) and tolerance >= 0):
+        if isinstance(tolerance, bool) or not (isinstance(tolerance, numbers.Real) and tolerance >= 0):
             raise ValueError(f"{name} is {tolerance!r}, but it must be a number of at least 0")
     if first is second and isinstance(first, gymnasium.Env):
         raise ValueError("first and second are the same environment, but they must be two")
@@ -123,7 +126,10 @@ def check_environments_match(
             own, other = (getattr(env, space) for env in envs)
             if own != other:
                 raise ValueError(f"{space} of {names[0]} is {own}, of {names[1]} {other}, but they must be equal")
-        run = _Run(envs, (tolerance_ulps, reward_tolerance), sample)
+        if not isinstance(envs[0].observation_space, (Box, Discrete, MultiBinary, MultiDiscrete)):
+            kind = type(envs[0].observation_space).__name__
+            raise ValueError(f"observation_space of {names[0]} is a {kind}, but it must be an array; help: gymnasium.wrappers.FlattenObservation")
+        run = _Run(envs, (float(tolerance_ulps), float(reward_tolerance)), sample)
         for seed in all_seeds:
             run.seed(int(seed), int(steps))
     finally:
@@ -206,8 +212,12 @@ class _Run:
 
     def rewarded(self, pair: Sequence[float], place: str) -> bool:
         own, other = pair
-        self.reward = [max(self.reward[0], abs(own), abs(other)), max(self.reward[1], abs(own - other))]
-        if not self.reward[1] <= self.reward_tolerance * self.reward[0]:
+        if own == other or (math.isnan(own) and math.isnan(other)):
+            return False
+        apart = abs(own - other)
+        if math.isfinite(apart):
+            self.reward = [max(self.reward[0], abs(own), abs(other)), max(self.reward[1], apart)]
+        if not (math.isfinite(apart) and self.reward[1] <= self.reward_tolerance * self.reward[0]):
             return self.found(f"{place}: reward is {own!r} and {other!r}")
         return False
 

@@ -74,6 +74,9 @@ def _bounds(classic: ClassicSystem, options: dict[str, Any]) -> dict[str, Any]:
     """Take the ends of starts out of options of Gymnasium, and return the keywords of :func:`_draw`."""
     names = ("x_init", "y_init") if classic.name == "Pendulum" else ("low", "high")
     given = {name: number(f"options[{name!r}]", options.pop(name), "finite") for name in names if name in options}
+    if classic.rounds_start:
+        for name, value in given.items():
+            number(f"options[{name!r}]", value, "finite in float32", lambda x: bool(np.isfinite(np.float32(x))))
     if given and "state" in options:
         raise ValueError(f"options has 'state' and {next(iter(given))!r}, but it must have one of them")
     if classic.name == "Pendulum":
@@ -88,11 +91,13 @@ def _bounds(classic: ClassicSystem, options: dict[str, Any]) -> dict[str, Any]:
 def _ranges(classic: ClassicSystem, options: dict[str, Any]) -> dict[str, Any]:
     """Return options of the engine for those of Gymnasium, whose numbers are for the states that it draws."""
     options = dict(options)
-    if classic.name != "Pendulum" and any(np.ndim(options.get(name, ())) != 0 or isinstance(options.get(name), Mapping) for name in ("low", "high")):
+    if classic.name != "Pendulum" and any(np.ndim(options.get(name, 0.0)) != 0 or isinstance(options.get(name), Mapping) for name in ("low", "high")):
         return options
     given = _bounds(classic, options)
     if not given:
         return options
+    if "low" in options or "high" in options:
+        raise ValueError(f"options has {next(iter(given))!r} and ends of ranges, but it must have one of them")
     states = system_of(classic.name).states
     if classic.name == "Pendulum":
         high = {"theta": given.get("x_init", np.pi), "theta'": given.get("y_init", 1.0)}
@@ -181,14 +186,18 @@ class ClassicVectorEnv(VectorEnv):
         # The first reset begins all environments, also those outside the mask.
         first = self._seeder is None
         observations, infos = super().reset(seed=seed, options=options)
-        mask = np.ones(self.num_envs, bool) if first else options.get("reset_mask", np.ones(self.num_envs, bool))
+        everyone = np.ones(self.num_envs, bool)
+        mask = options.get("reset_mask", everyone)
         for n, one in enumerate(self._seeds(seed)):
-            if mask[n] and (one is not None or self._generators[n] is None):
+            if mask[n] and one is not None:
                 self._generators[n] = np_random(one)[0]
-        self._ended[mask] = False
-        drawn = mask if "state" not in options else mask & ~options.get("reset_mask", mask)
-        if drawn.any():
-            observations = self._start(drawn, bounds)
+            elif self._generators[n] is None:
+                self._generators[n] = np_random(None)[0]
+        self._ended[everyone if first else mask] = False
+        if "state" not in options:
+            observations = self._start(mask, bounds)
+        if first and not mask.all():
+            observations = self._start(~mask, {})
         return observations.astype(np.float32), infos
 
     def _start(self, mask: NDArray[np.bool_], bounds: dict[str, Any]) -> np.ndarray:

@@ -53,7 +53,8 @@ class Environments(_native.Batch):
         Time between two actions in s.
     substeps:
         Steps of the integrator between two actions, of equal length. Default: the smallest number up to 20 for which all latencies are whole
-        steps; else a step begins where each latency ends, and their lengths differ.
+        steps; else a step begins where each latency ends, and their lengths differ. With an inner controller or a chunk, and with latencies that
+        episodes draw, the smallest number up to 1000.
     action_delay, observation_delay:
         Latencies of actions and observations in s: a number, or a pair ``(low, high)``, from which each episode draws one.
     jitter:
@@ -284,7 +285,8 @@ class Environments(_native.Batch):
     def set_state(self, states: Any, mask: np.ndarray | None = None) -> np.ndarray:
         """Put environments at states, from which their episodes go on, and return the observations.
 
-        What an environment observes, and what acts on it, before its latencies are over is that of a beginning.
+        What an environment observes, and what acts on it, before its latencies are over is that of a beginning. An environment whose episode
+        is over keeps waiting for its reset.
 
         Parameters
         ----------
@@ -321,7 +323,8 @@ class Environments(_native.Batch):
 
     def _parameter_infos(self) -> dict[str, Any]:
         """Return the numbers of the episodes as Gymnasium's vector environments give dictionaries of single ones."""
-        return {"parameters": _spread(self.parameters, self.num_envs), "_parameters": np.ones(self.num_envs, dtype=np.bool_)}
+        all_of_them = np.ones(self.num_envs, dtype=np.bool_)
+        return {"parameters": _spread(self.parameters, all_of_them), "_parameters": all_of_them.copy()}
 
     def _told(self, results: Any, before: dict[str, np.ndarray]) -> tuple[Any, ...]:
         """Return the results of a step with the numbers of the episodes, and of those before the step where they ended.
@@ -331,7 +334,7 @@ class Environments(_native.Batch):
         *others, infos = results
         if "final_info" in infos:
             ended = infos["_final_info"]
-            final = {"parameters": _spread(before, self.num_envs), "_parameters": ended.copy()}
+            final = {"parameters": _spread(before, ended), "_parameters": ended.copy()}
             infos = {**infos, "final_info": {**infos["final_info"], **final}}
         return (*others, {**infos, **self._parameter_infos()})
 
@@ -480,9 +483,9 @@ def _again(cls: Any, made_of: Any, state: Any, seeder: Any, extras: dict[str, An
     return copy
 
 
-def _spread(values: Mapping[str, np.ndarray], num_envs: int) -> dict[str, Any]:
+def _spread(values: Mapping[str, np.ndarray], mask: np.ndarray) -> dict[str, Any]:
     """Return arrays by name, each with the mask of the environments that have it."""
     table: dict[str, Any] = {}
     for name, array in values.items():
-        table |= {name: array, f"_{name}": np.ones(num_envs, dtype=np.bool_)}
+        table |= {name: np.where(mask, array, array.dtype.type(0)), f"_{name}": mask.copy()}
     return table

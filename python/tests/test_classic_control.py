@@ -308,3 +308,41 @@ def test_integers_that_differ_are_differences():
     for given in ({"second": same}, {"second": Cell(7), "seeds": 3}):
         with pytest.raises((ValueError, TypeError)):
             check_environments_match(same, given.pop("second"), **given)
+
+
+def test_options_and_seeds_of_a_first_reset_with_a_mask_are_for_the_mask():
+    mask = np.array([True, False, False])
+    envs = [gymnasium.make_vec("libration/CartPole-v1", 3, starts="gymnasium") for _ in range(2)]
+    rows = [each.reset(seed=0, options={"low": 1.0, "high": 1.0, "reset_mask": mask})[0] for each in envs]
+    for row in rows:
+        assert (row[0] == 1.0).all() and (np.abs(row[1:]) <= 0.05).all()
+    assert not np.array_equal(rows[0][1:], rows[1][1:])
+
+
+def test_one_end_of_starts_is_enough_as_in_gymnasium():
+    envs = gymnasium.make_vec("libration/CartPole-v1", 200)
+    seen = envs.reset(seed=0, options={"low": 0.04})[0]
+    assert seen.min() >= np.float32(0.04) and seen.max() <= np.float32(0.05)
+    pendulum = gymnasium.make_vec("libration/Pendulum-v1", 2)
+    with pytest.raises(ValueError, match="one of them"):
+        pendulum.reset(seed=0, options={"low": -0.01, "high": 0.01, "x_init": 3.0})
+
+
+def test_rewards_that_are_not_finite_are_compared():
+    class Paid(gymnasium.Env):
+        observation_space, action_space = gymnasium.spaces.Box(-1, 1), gymnasium.spaces.Discrete(2)
+
+        def __init__(self, *rewards):
+            self.rewards = rewards
+
+        def reset(self, *, seed=None, options=None):
+            self.left = list(self.rewards)
+            return np.zeros(1, np.float32), {}
+
+        def step(self, action):
+            return np.zeros(1, np.float32), self.left.pop(0), False, False, {}
+
+    compare = lambda one, other: check_environments_match(Paid(*one), Paid(*other), steps=2, seeds=[0])
+    assert compare((np.nan, 1.0), (np.nan, 1.0)) and compare((-np.inf, 1.0), (-np.inf, 1.0))
+    for one, other in (((np.nan, 0.0), (0.0, 0.0)), ((-np.inf, 0.0), (0.0, 0.0)), ((-np.inf, 5.0), (-np.inf, 0.0))):
+        assert "reward" in compare(one, other).difference

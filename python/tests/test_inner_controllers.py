@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from libration import PD, Environments, System
+from libration import PD, Environments, System, Uniform
 from libration.policies import Linear
 
 ARM = System(
@@ -167,3 +167,39 @@ def test_wrong_chunks_are_refused(given, error, text):
         arm(dt=0.02, **given)
     with pytest.raises(TypeError, match="chunk belongs to environments of a System"):
         Environments("Pendulum", 2, chunk=(3, 1))
+
+
+def test_limits_of_a_chunk_are_those_of_each_time():
+    two = System(acceleration={"x": "a", "y": "b"}, inputs=["a", "b"])
+    given = {"dt": 0.1, "reward": "0", "chunk": (2, 1), "dtype": "float64"}
+    for most, limits in (([1.0, 5.0], [[1.0, 5.0]] * 3), (np.array([[1.0, 5.0], [2.0, 6.0], [3.0, 7.0]]), [[1.0, 5.0], [2.0, 6.0], [3.0, 7.0]])):
+        envs = Environments(two, 3, max_action=most, **given)
+        envs.reset(seed=0)
+        envs.step(np.full((3, 4), 100.0))
+        np.testing.assert_allclose(envs.states[:, 2:], 0.1 * np.array(limits))
+    with pytest.raises(ValueError, match="with a chunk it must be a number"):
+        Environments(two, 3, max_action=Uniform(1, 2), **given)
+
+
+def test_a_chunk_may_have_hundreds_of_actions():
+    envs = Environments(CART, 1, dt=0.01, chunk=(500, 400), dtype="float64", integrator="rk4")
+    envs.reset(seed=0)
+    envs.set_state([0.0, 0.0])
+    actions = np.arange(500.0)[None]
+    envs.step(actions)
+    # Velocities are the sums of the first 400 actions times 0.01 s.
+    np.testing.assert_allclose(envs.states[0, 1], 0.01 * actions[0, :400].sum(), rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("given", "text"),
+    [
+        ({"targets": ["m"], "inner": {"u": "-m*q"}, "inner_period": 0.02}, "'m', but it must be a name of its own"),
+        ({"inner": {"u": "-q"}, "inner_period": 0.02}, "must be given together"),
+        ({"targets": "ab", "inner": {"u": "a"}, "inner_period": 0.02}, "list of names"),
+        ({"inner_period": 0.02}, "belongs to an inner controller"),
+    ],
+)
+def test_targets_of_chunks_are_checked_as_without_chunks(given, text):
+    with pytest.raises((TypeError, ValueError), match=text):
+        arm(dt=0.02, chunk=(2, 1), **given)

@@ -137,9 +137,13 @@ def test_copies_and_pickles_keep_the_numbers_of_the_episode():
         ({"jitter": Gaussian(0.1, mean=1.0)}, ValueError, "around zero"),
         ({"omega2": Uniform(1, 2), "m": 1.0, "k": 1.0}, TypeError, "omega2 is given with m and k"),
         ({"m": Uniform(1, 2)}, TypeError, "m is given alone"),
-        ({"bound": Uniform(-1, 1)}, ValueError, "an end of bound is -1.0"),
+        ({"bound": Uniform(-1, 1)}, ValueError, "bound is -1.0, but it must be greater than 0"),
         ({"bound": -1.0, "omega2": Uniform(1, 2)}, ValueError, "bound is -1.0"),
-        ({"m": 0.0, "k": 1.0, "effort_cost": Uniform(0, 1)}, ValueError, "m is 0.0"),
+        ({"m": 0.0, "k": 1.0, "effort_cost": Uniform(0, 1)}, ValueError, "`m` is 0.0, but it must be"),
+        ({"omega2": Uniform(-2, -1)}, ValueError, "`omega2` is -2.0"),
+        ({"omega2": Uniform(1, 1e39)}, ValueError, "omega2"),
+        ({"omega2": -1.0, "action_delay": 0.00314159}, ValueError, "`omega2` is -1.0"),
+        ({"observation_noise": [0.1, 0.2], "omega2": Uniform(1, 2)}, ValueError, "observation_noise"),
         ({"parameter_infos": 1}, TypeError, "parameter_infos must be True or False"),
     ],
 )
@@ -310,7 +314,8 @@ def test_infos_tell_the_numbers_of_each_episode_and_of_the_one_that_ended(mode):
         infos = envs.step(np.zeros((4, 1)))[4]
     assert np.array_equal(infos["parameters"]["omega2"], envs.parameters["omega2"])
     if mode == "SameStep":
-        assert np.array_equal(infos["final_info"]["parameters"]["omega2"], first) and infos["final_info"]["_parameters"].all()
+        final = infos["final_info"]["parameters"]
+        assert np.array_equal(final["omega2"], first) and final["_omega2"].all() and infos["final_info"]["_parameters"].all()
         assert not (infos["parameters"]["omega2"] == first).any()
 
 
@@ -328,3 +333,14 @@ def test_a_state_that_is_not_finite_hinders_no_other_environment():
     states = np.array([[0.1, 0.2], [np.nan, 0.0]])
     envs.set_state(states, np.array([True, False]))
     assert envs.states[0].tolist() == [0.1, 0.2]
+
+
+def test_infos_of_ended_episodes_are_of_those_that_ended():
+    falling = System(acceleration={"x": "u"}, parameters={"g": 1.0}, inputs=["u"], task={"reward": "0", "terminated": ["x > 1"], "start": {"x": 0.0}})
+    envs = Environments(falling, 2, dt=0.1, g=Uniform(1, 2), parameter_infos=True, autoreset_mode="SameStep", dtype="float64")
+    envs.reset(seed=0)
+    drawn = envs.parameters["g"]
+    envs.set_state([0.0, 0.0])
+    envs.set_state([[2.0, 0.0], [0.0, 0.0]])
+    final = envs.step(np.zeros((2, 1)))[4]["final_info"]["parameters"]
+    assert final["g"].tolist() == [drawn[0], 0.0] and final["_g"].tolist() == [True, False]
