@@ -304,6 +304,9 @@ def test_a_data_set_of_a_system_with_projection_and_discrete_actions_replays(tmp
     )
     libration.datasets.write(tmp_path / "data", {"environments": 8, "steps": 40, "dt": 0.1}, system=system)
     assert libration.datasets.verify(tmp_path / "data", replay=True) == []
+    with pytest.raises(ValueError, match="discrete `actions` have commands of their own"):
+        settings = {"environments": 8, "steps": 40, "dt": 0.1, "system": {"equations": {"max_action": 0.5}}}
+        libration.datasets.write(tmp_path / "other", settings, system=system)
 
 
 @pytest.mark.parametrize("mode", ["NextStep", "SameStep", "Disabled"])

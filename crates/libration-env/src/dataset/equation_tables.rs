@@ -73,13 +73,13 @@ pub(super) fn equation_environment(
     }
     let dynamics = system.equations.dynamics().clone();
     let ideal = ProgramEnvironment::new(dynamics, task.programs.clone(), method, dt);
-    if table.max_action.is_some() && !task.levels.is_empty() {
-        let message = "`max_action` is given, but discrete `actions` have commands of their own";
-        return Err(Fault::new("system.equations.max_action", message));
-    }
     let most = table.max_action.clone().unwrap_or(Numbers::One(Number(f64::INFINITY)));
     let saturation =
         each("system.equations.max_action", most, actions.len(), |x| x > 0.0, "above 0")?;
+    if saturation.iter().any(|most| most.is_finite()) && !task.levels.is_empty() {
+        let message = "`max_action` is given, but discrete `actions` have commands of their own";
+        return Err(Fault::new("system.equations.max_action", message));
+    }
     let definition = ProgramEnvironment {
         start: task.start.clone(),
         saturation: saturation.into_iter().map(EpisodeNumber::from).collect(),
