@@ -67,7 +67,7 @@ pub(crate) fn run() -> Outcome {
     command::run(command::program(&tools).args(["-m", "auditwheel", "show"]).arg(&wheel))?;
     let mut tried = Vec::new();
     for interpreter in INTERPRETERS {
-        if command::silent(command::program(interpreter).arg("--version")).is_err() {
+        if command::output(command::program(interpreter).arg("--version")).is_err() {
             continue;
         }
         let name = format!("release-trial-{interpreter}");
