@@ -7,6 +7,8 @@ import re
 from dataclasses import dataclass
 from typing import Any, Mapping, Sequence
 
+import numpy as np
+
 from ._episode_numbers import Request, each, episode_number, largest_commands, scaled_law
 from ._settings import OPTIONS, TASK_OPTIONS, common, count, ends, inner_count, is_several, law, number, positive, refuse_others
 from ._toml import text_of
@@ -99,7 +101,7 @@ def native_equations(
     settings = common(given, period if inner else None, used)
     if clock[0] != clock[1] and settings["skew"][1] > 0:
         raise ValueError(f"skew is {given['skew']!r}, but it must be 0 where each episode draws its jitter")
-    if levels and given["max_action"] not in (None, math.inf):
+    if levels and given["max_action"] is not None and not (np.ndim(given["max_action"]) == 0 and given["max_action"] == math.inf):
         raise TypeError("max_action is given, but discrete actions have commands of their own")
     settings["levels"] = levels
     settings["subject"] = {

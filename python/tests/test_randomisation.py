@@ -347,3 +347,10 @@ def test_infos_of_ended_episodes_are_of_those_that_ended():
     envs.set_state([[2.0, 0.0], [0.0, 0.0]])
     final = envs.step(np.zeros((2, 1)))[4]["final_info"]["parameters"]
     assert final["g"].tolist() == [drawn[0], 0.0] and final["_g"].tolist() == [True, False]
+
+
+@pytest.mark.parametrize("most", [1.0, Uniform(1, 2), np.ones(3)])
+def test_a_largest_command_of_discrete_actions_is_refused(most):
+    system = System(acceleration={"x": "u"}, inputs=["u"])
+    with pytest.raises(TypeError, match="max_action is given, but discrete actions"):
+        Environments(system, 3, dt=0.1, reward="0", actions=[-1.0, 1.0], max_action=most)
