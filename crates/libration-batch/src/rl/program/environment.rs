@@ -239,9 +239,9 @@ impl ProgramEnvironment {
                 outputs,
                 inputs - parameters,
             )?;
-            let (steps, allowed) = (f64::from(self.inner_steps), "at least 1");
-            ensure("steps of the inner controller", steps, allowed, |steps| steps >= 1.0)?;
         }
+        let (steps, allowed) = (f64::from(self.inner_steps), "at least 1");
+        ensure("steps of the inner controller", steps, allowed, |steps| steps >= 1.0)?;
         if let Some(projection) = &self.task.projection {
             let outputs = projection.outputs().len();
             EnvironmentError::shape("outputs of the projection", outputs, 2 * degrees)?;

@@ -2,6 +2,7 @@
 
 mod cases;
 mod compiled;
+mod faults;
 
 use cases::{CASES, Case, SETTINGS, Setting};
 use compiled::compiled;
