@@ -16,6 +16,8 @@ from .equations import EquationSystem
 from .perturbations import PD
 
 SMALLEST_OPTIONS = [name for name in OPTIONS if name not in ("start_position", "start_velocity")]
+_ARGUMENTS = {*OPTIONS, "name", "self", "system"}
+"""Names that no parameter of the system of an environment can have, since the environment takes them."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,7 @@ def native_equations(
     """
     given = dict(given)
     parameters = given.pop("parameters")
+    _check_parameter_names(system)
     refuse_others(parameters, system.parameters, [*SMALLEST_OPTIONS, *system.parameters])
     for name in ("start_position", "start_velocity"):
         if given[name] is not None:
@@ -95,6 +98,7 @@ def native_equations(
     num_envs = count("num_envs", given["num_envs"], 1, 2**40)
     numbers = {name: episode_number(name, value, num_envs) for name, value in parameters.items()}
     varied = {name: number for name, number in numbers.items() if number[0] != "constant"}
+    _check_varied_names(varied)
     constants = {name: values[0] for name, (_, values) in numbers.items() if name not in varied}
     given["jitter"], clock = scaled_law("jitter", given["jitter"])
     given["observation_noise"], sensor = scaled_law("observation_noise", given["observation_noise"])
@@ -114,6 +118,24 @@ def native_equations(
         "lengths": settings["lengths"],
     }
     return EquationPreset(system.name, tuple(seen), actions, tuple(levels)), settings
+
+
+def _check_parameter_names(system: EquationSystem) -> None:
+    for name in system.parameters:
+        if name in _ARGUMENTS:
+            raise ValueError(
+                f"the system {system.name!r} has a parameter {name!r}, but {name!r} is a keyword of environments; "
+                f"help: give the parameter another name, such as '{name}_'"
+            )
+
+
+def _check_varied_names(varied: Mapping[str, Request]) -> None:
+    for name in varied:
+        if name.startswith("_"):
+            raise ValueError(
+                f"the parameter {name!r} varies, but Gymnasium's infos take names that begin with '_' for masks; "
+                f"help: give the parameter another name, such as '{name.lstrip('_') or 'p'}'"
+            )
 
 
 def _pd_targets(system: EquationSystem, gains: PD, targets: Sequence[str] | None) -> dict[str, Any]:

@@ -354,3 +354,19 @@ def test_a_largest_command_of_discrete_actions_is_refused(most):
     system = System(acceleration={"x": "u"}, inputs=["u"])
     with pytest.raises(TypeError, match="max_action is given, but discrete actions"):
         Environments(system, 3, dt=0.1, reward="0", actions=[-1.0, 1.0], max_action=most)
+
+
+@pytest.mark.parametrize("name", ["jitter", "actions", "dt", "num_envs", "render_mode", "name", "system"])
+def test_a_parameter_with_the_name_of_a_keyword_is_refused_by_name(name):
+    system = System(acceleration={"q": f"-{name}*q + u"}, parameters={name: 10.0}, inputs=["u"])
+    with pytest.raises(ValueError, match=rf"the system 'system' has a parameter '{name}', but .* keyword of environments; help: .*'{name}_'"):
+        Environments(system, dt=0.01, reward="-q^2")
+
+
+def test_a_parameter_that_varies_is_no_mask_of_infos():
+    system = System(acceleration={"q": "-_k*q + u"}, parameters={"_k": 10.0}, inputs=["u"])
+    for value in (Uniform(1, 2), np.array([1.0, 2.0])):
+        with pytest.raises(ValueError, match=r"parameter '_k' varies, but .* masks; help: .*'k'"):
+            Environments(system, 2, dt=0.01, reward="-q^2", _k=value)
+    envs = Environments(system, 2, dt=0.01, reward="-q^2", _k=3.0)
+    assert envs.reset(seed=0)[1] == {}
