@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Sequence
+from typing import Any, Callable, Sequence
+
+import numpy as np
 
 from ._settings import is_several, number
 from .perturbations import Gaussian, LogUniform, Uniform
@@ -45,6 +47,20 @@ def episode_number(name: str, value: Any, num_envs: int, allowed: str = "finite"
             raise ValueError(f"{name} has shape {shape}, but it must have a number for each environment: ({num_envs},){help}")
         return "each", [number(f"{name}[{n}]", x, allowed, holds) for n, x in enumerate(values)]
     return "constant", [number(name, value, allowed, holds)]
+
+
+def check_float_type(name: str, request: Request, dtype: str, allowed: str = "finite", holds: Callable[[Any], Any] = np.isfinite) -> None:
+    """Raise a ValueError for a number that its rounding to the float type does not allow."""
+    kind, values = request
+    if dtype not in ("float32", "float64"):
+        return
+    if kind == "log-uniform":
+        allowed, holds = "finite and greater than 0", lambda x: 0 < x < math.inf
+    with np.errstate(over="ignore", under="ignore"):
+        rounded = np.array(values).astype(dtype)
+    for value, own in zip(values, rounded):
+        if not holds(own):
+            raise ValueError(f"{name} is {value!r}, but it must be {allowed} in {dtype}")
 
 
 def largest_commands(value: Any, inputs: int, num_envs: int) -> list[Request]:

@@ -9,7 +9,7 @@ from typing import Any, Mapping, Sequence
 
 import numpy as np
 
-from ._episode_numbers import Request, each, episode_number, largest_commands, scaled_law
+from ._episode_numbers import Request, check_float_type, each, episode_number, largest_commands, scaled_law
 from ._settings import OPTIONS, TASK_OPTIONS, common, count, ends, inner_count, is_several, law, number, positive, refuse_others
 from ._toml import text_of
 from .equations import EquationSystem
@@ -18,6 +18,8 @@ from .perturbations import PD
 SMALLEST_OPTIONS = [name for name in OPTIONS if name not in ("start_position", "start_velocity")]
 _ARGUMENTS = {*OPTIONS, "name", "self", "system"}
 """Names that no parameter of the system of an environment can have, since the environment takes them."""
+_MOST_VARIED = 64
+"""Most numbers of an environment that vary: parameters, and the largest command of each action if one of them varies."""
 
 
 @dataclass(frozen=True)
@@ -108,11 +110,17 @@ def native_equations(
     if levels and given["max_action"] is not None and not (np.ndim(given["max_action"]) == 0 and given["max_action"] == math.inf):
         raise TypeError("max_action is given, but discrete actions have commands of their own")
     settings["levels"] = levels
+    saturation = _of_each_time(largest_commands(given["max_action"], len(actions) // length, num_envs), length, given["max_action"])
+    _check_varied_count(varied, saturation)
+    for name, request in varied.items():
+        check_float_type(name, request, settings["dtype"])
+    for request in saturation:
+        check_float_type("max_action", request, settings["dtype"], "greater than 0", lambda x: x > 0)
     settings["subject"] = {
         "equations": (system.replace(**constants) if constants else system)._text,
         "task": text,
         "varied": list(varied.items()),
-        "saturation": _of_each_time(largest_commands(given["max_action"], len(actions) // length, num_envs), length, given["max_action"]),
+        "saturation": saturation,
         "noise": [law("observation_noise", x) for x in _each_law(given["observation_noise"], len(seen))],
         "error_scale": [clock, sensor],
         "lengths": settings["lengths"],
@@ -136,6 +144,15 @@ def _check_varied_names(varied: Mapping[str, Request]) -> None:
                 f"the parameter {name!r} varies, but Gymnasium's infos take names that begin with '_' for masks; "
                 f"help: give the parameter another name, such as '{name.lstrip('_') or 'p'}'"
             )
+
+
+def _check_varied_count(varied: Mapping[str, Request], saturation: Sequence[Request]) -> None:
+    commands = len(saturation) if any(kind != "constant" for kind, _ in saturation) else 0
+    if (found := len(varied) + commands) > _MOST_VARIED:
+        raise ValueError(
+            f"{found} numbers vary, {len(varied)} parameters and {commands} largest actions, but it must be at most {_MOST_VARIED}; "
+            "help: give some of them one number for all environments"
+        )
 
 
 def _pd_targets(system: EquationSystem, gains: PD, targets: Sequence[str] | None) -> dict[str, Any]:
