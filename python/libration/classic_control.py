@@ -16,9 +16,12 @@ from gymnasium.utils.seeding import np_random
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
+from ._attributes import keywords_of
+from ._classic_attributes import ClassicAttributes
 from ._classic_systems import CLASSIC, ClassicSystem, system_of
 from ._settings import nearest, number
 from ._gymnasium_envs import Env, VectorEnv
+from .environments import Environments
 
 __all__ = [
     "AcrobotEnv",
@@ -141,7 +144,7 @@ class _Picture:
         self._env.close()
 
 
-class ClassicVectorEnv(VectorEnv):
+class ClassicVectorEnv(ClassicAttributes, VectorEnv):
     """Vector environment of a twin of Gymnasium's classic control.
 
     Parameters
@@ -157,6 +160,8 @@ class ClassicVectorEnv(VectorEnv):
         Keywords of :class:`libration.Environments`, such as ``action_delay``, ``jitter`` and ``skew``, and parameters of the system.
     """
 
+    _is_vector = True
+
     def __init__(self, name: str, num_envs: int = 1, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
         self._classic, self._starts = _classic(name), starts
         given.setdefault("max_episode_steps", self._classic.max_episode_steps)
@@ -171,9 +176,23 @@ class ClassicVectorEnv(VectorEnv):
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self._generators: list[np.random.Generator | None] = [None] * self.num_envs
         self._ended = np.zeros(self.num_envs, bool)
+        self._is_made = True
 
     def _checked_render_mode(self, render_mode: str | None) -> str | None:
         return _render_mode(render_mode)
+
+    def _batch(self) -> VectorEnv:
+        return self
+
+    def get_attr(self, name: str) -> tuple[Any, ...]:
+        if name in self._table() and name not in keywords_of(self):
+            return tuple(self._value(name, n) for n in range(self.num_envs))
+        return super().get_attr(name)
+
+    def set_attr(self, name: str, values: Any) -> None:
+        if name not in keywords_of(self):
+            self._refuse(name, values)
+        super().set_attr(name, values)
 
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
         options = dict(options or {})
@@ -257,7 +276,7 @@ class ClassicVectorEnv(VectorEnv):
         return cls(name, **given) if cls is ClassicVectorEnv else cls(**given)
 
 
-class ClassicEnv(Env):
+class ClassicEnv(ClassicAttributes, Env):
     """Single environment of a twin of Gymnasium's classic control; see :class:`ClassicVectorEnv`."""
 
     def __init__(self, name: str, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
@@ -269,9 +288,13 @@ class ClassicEnv(Env):
         self.metadata = {"render_modes": ["rgb_array"], "render_fps": _FPS[self._classic.name]}
         self.observation_space = _seen(self._classic, self._all._settings, given, self.observation_space)
         self.action_space = _action_space(self._classic, given, self.action_space)
+        self._is_made = True
 
     def _checked_render_mode(self, render_mode: str | None) -> str | None:
         return _render_mode(render_mode)
+
+    def _batch(self) -> Environments:
+        return self._all
 
     def __getstate__(self) -> dict[str, Any]:
         # Surfaces of Pygame cannot be copied.
