@@ -6,8 +6,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from typing import Any, Mapping
+from typing import Any, Iterator, Mapping
 
 import gymnasium
 import numpy as np
@@ -176,7 +177,20 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self._generators: list[np.random.Generator | None] = [None] * self.num_envs
         self._ended = np.zeros(self.num_envs, bool)
+        self._rows: Iterator[NDArray[np.float32]] | None = None
+        # The start of an episode takes a second array of the engine in the same step.
+        if not given.get("copy", True) and (starts == "gymnasium" or self._settings["dtype"] != "float32"):
+            rows = [np.empty(self.observation_space.shape or (), np.float32) for _ in range(given.get("buffers") or 2)]
+            self._rows = itertools.cycle(rows)
         self._is_made = True
+
+    def _rounded(self, observations: NDArray[Any]) -> NDArray[np.float32]:
+        """Return observations in the float type of Gymnasium; with ``copy=False`` in arrays that steps fill in turn."""
+        if self._rows is None:
+            return observations.astype(np.float32, copy=False)
+        row = next(self._rows)
+        np.copyto(row, observations, casting="same_kind")
+        return row
 
     def _checked_render_mode(self, render_mode: str | None) -> str | None:
         return _render_mode(render_mode)
@@ -198,7 +212,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
         options = dict(options or {})
         if self._starts == "libration":
             observations, infos = super().reset(seed=seed, options=_ranges(self._classic, options))
-            return observations.astype(np.float32), infos
+            return self._rounded(observations), infos
         bounds = _bounds(self._classic, options)
         if "low" in options or "high" in options:
             raise ValueError("options has ends of ranges, but those of Gymnasium's Pendulum are 'x_init' and 'y_init'")
@@ -217,7 +231,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
             observations = self._start(mask, bounds)
         if first and not mask.all():
             observations = self._start(~mask, {})
-        return observations.astype(np.float32), infos
+        return self._rounded(observations), infos
 
     def _start(self, mask: NDArray[np.bool_], bounds: dict[str, Any]) -> np.ndarray:
         """Put environments at starts of Gymnasium."""
@@ -249,7 +263,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
             if begun is not None and begun.any():
                 observations = self._start(begun, {})
             self._ended = ended
-        return observations.astype(np.float32), rewards, terminated, truncated, infos
+        return self._rounded(observations), rewards, terminated, truncated, infos
 
     def render(self) -> tuple[np.ndarray, ...] | None:
         """Return one picture of Gymnasium's per environment, if ``render_mode`` is ``"rgb_array"``; it requires Pygame."""
