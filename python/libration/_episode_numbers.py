@@ -64,13 +64,13 @@ def check_float_type(name: str, request: Request, dtype: str, allowed: str = "fi
 
 
 def largest_commands(value: Any, inputs: int, num_envs: int) -> list[Request]:
-    """Return the largest command of each input: one for all, one for each, or an array ``(num_envs, inputs)``, of one input ``(num_envs,)``."""
+    """Return the largest command of each input: one for all, one for each, or an array ``(num_envs, inputs)``, of one input ``(num_envs,)`` or a list."""
     value = math.inf if value is None else value
     if getattr(value, "ndim", 1) == 2:
         if value.shape != (num_envs, inputs):
             raise ValueError(f"max_action has shape {value.shape}, but it must be ({num_envs}, {inputs})")
         columns: Sequence[Any] = list(value.T)
-    elif inputs == 1 and getattr(value, "shape", None) == (num_envs,):
+    elif inputs == 1 and (getattr(value, "shape", None) == (num_envs,) or (isinstance(value, list) and len(value) == num_envs > 1)):
         columns = [value]
     else:
         columns = each("max_action", value, inputs)

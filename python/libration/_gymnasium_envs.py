@@ -15,6 +15,7 @@ from ._attributes import SETTABLE, keywords_of, refused, unknown
 from ._environment_keywords import Unpack, VectorKeywords
 from ._episode_numbers import largest
 from ._presets import Preset
+from ._spec_keywords import JSON_SPEC
 from ._tasks import EquationPreset
 from .environments import Environments
 from .equations import EquationSystem
@@ -64,6 +65,7 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
     """
 
     metadata = METADATA
+    spec = JSON_SPEC
     _takes_name = True
     """Whether the class takes the name of a system or a system first."""
     _reset_needed = ResetNeeded
@@ -199,7 +201,7 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
         self._close()
 
     def _extras(self) -> dict[str, Any]:
-        names = ("spec", "render_mode", "_np_random", "_np_random_seed", "closed")
+        names = ("_spec", "render_mode", "_np_random", "_np_random_seed", "closed")
         return {name: self.__dict__[name] for name in names if name in self.__dict__}
 
     @classmethod
@@ -221,6 +223,7 @@ class Env(gymnasium.Env):
     """
 
     metadata = METADATA
+    spec = JSON_SPEC
 
     def __init__(
         self, name: str | EquationSystem, *, render_mode: str | None = None, **given: Any

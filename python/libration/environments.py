@@ -14,6 +14,7 @@ from ._keywords import check_keywords
 from ._preset_equations import has_varied, native_varied
 from ._presets import PRESETS, Preset
 from ._settings import AUTORESET, count, native, nearest
+from ._spec_keywords import keyword_value
 from ._tasks import EquationPreset, native_equations
 from .equations import EquationSystem
 from .perturbations import PD
@@ -206,6 +207,8 @@ class Environments(_native.Batch):
             raise TypeError(f"parameter_infos must be True or False, not {type(parameter_infos).__name__}")
         if copy and buffers is not None:
             raise TypeError("buffers is given, but it belongs to copy=False")
+        given = {key: keyword_value(value) for key, value in given.items()}
+        parameters = {key: keyword_value(value) for key, value in parameters.items()}
         self._arguments = (name, {**given, **parameters})
         self._settings: Mapping[str, Any]
         if isinstance(name, EquationSystem):

@@ -19,6 +19,7 @@ from ._environment_keywords import (
 )
 from ._gymnasium_envs import METADATA, Env, VectorEnv
 from ._presets import PRESETS
+from ._spec_keywords import system_value
 from .equations import EquationSystem
 
 __all__ = [
@@ -174,6 +175,7 @@ class DatasetEnv(Env):
 
 
 def _system(system: Any) -> EquationSystem:
+    system = system_value(system)
     if not isinstance(system, EquationSystem):
         raise TypeError(f"system must be a libration.EquationSystem, not {type(system).__name__}")
     return system

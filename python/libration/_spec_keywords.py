@@ -1,0 +1,79 @@
+"""Keywords of environments as values of JSON, which specs of Gymnasium keep.
+
+``EnvSpec.to_json`` takes dictionaries, lists, strings and numbers only. A distribution is a list of its name and its two numbers.
+"""
+
+from __future__ import annotations
+
+import copy
+from enum import Enum
+from typing import Any, Mapping
+
+import numpy as np
+
+from ._settings import is_several
+from .equations import EquationSystem
+from .perturbations import PD, Gaussian, LogUniform, Uniform
+
+_KINDS = {"uniform": Uniform, "log-uniform": LogUniform, "gaussian": Gaussian, "pd": PD}
+_SYSTEM_KEYS = {"text", "file", "parameters"}
+
+
+def json_value(value: Any) -> Any:
+    """Return a keyword as a value of JSON, which :func:`keyword_value` reads; an object of another type is returned as it is."""
+    if isinstance(value, Uniform):
+        return ["uniform", *([float(value.std)] if value.ends is None else value.ends)]  # type: ignore[arg-type]
+    if isinstance(value, LogUniform):
+        return ["log-uniform", float(value.low), float(value.high)]
+    if isinstance(value, Gaussian):
+        return ["gaussian", float(value.std), float(value.mean)]
+    if isinstance(value, PD):
+        return ["pd", float(value.kp), float(value.kd)]
+    if isinstance(value, EquationSystem):
+        text, file, given = value._text
+        return {"text": text, "file": file, "parameters": dict(given)}
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, (np.ndarray, np.generic)):
+        # Of largest actions (num_envs, inputs) a list for each input.
+        return value.T.tolist()
+    if isinstance(value, np.dtype) or (isinstance(value, type) and issubclass(value, np.generic)):
+        return np.dtype(value).name
+    if isinstance(value, Mapping):
+        return {key: json_value(one) for key, one in value.items()}
+    return [json_value(one) for one in value] if is_several(value) else value
+
+
+def keyword_value(value: Any) -> Any:
+    """Return the keyword of a value of JSON: ``["uniform", 10, 20]`` is ``Uniform(10, 20)``."""
+    if isinstance(value, Mapping):
+        return {key: keyword_value(one) for key, one in value.items()}
+    if not is_several(value) or not value:
+        return value
+    kind, *numbers = value
+    if isinstance(kind, str) and kind in _KINDS and len(numbers) == 2 and not any(isinstance(x, (str, list, tuple)) for x in numbers):
+        return _KINDS[kind](*numbers)
+    # A range of the standard deviation of a law, or a distribution for each input.
+    return type(value)(keyword_value(one) for one in value) if type(value) in (list, tuple) else value
+
+
+def system_value(value: Any) -> Any:
+    """Return the system of a value of JSON."""
+    if isinstance(value, Mapping) and set(value) == _SYSTEM_KEYS:
+        return EquationSystem._again(value["text"], value["file"], [(name, float(x)) for name, x in value["parameters"].items()])
+    return value
+
+
+def _spec(env: Any) -> Any:
+    return vars(env).get("_spec")
+
+
+def _set_spec(env: Any, spec: Any) -> None:
+    if spec is not None:
+        spec, given = copy.copy(spec), spec.kwargs
+        spec.kwargs = {name: json_value(value) for name, value in given.items()}
+    vars(env)["_spec"] = spec
+
+
+JSON_SPEC: Any = property(_spec, _set_spec, doc="Spec of Gymnasium, whose keywords are values of JSON.")
+"""An attribute ``spec`` of environments."""
