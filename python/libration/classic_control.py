@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import Any, Iterator, Mapping
+from typing import Any, Iterator
 
 import gymnasium
 import numpy as np
@@ -19,8 +19,9 @@ from numpy.typing import NDArray
 
 from ._attributes import keywords_of
 from ._classic_attributes import ClassicAttributes
+from ._classic_starts import drawn_start, start_bounds, start_ranges
 from ._classic_systems import CLASSIC, ClassicSystem, system_of
-from ._settings import nearest, number
+from ._settings import nearest
 from ._gymnasium_envs import Env, VectorEnv
 from .environments import Environments
 
@@ -72,59 +73,6 @@ def _action_space(classic: ClassicSystem, given: dict[str, Any], space: Any) -> 
     if classic.charges_more and given.get("max_action") is None:
         return Box(-classic.max_action, classic.max_action, space.shape, np.float32)
     return Box(np.float32(space.low), np.float32(space.high), dtype=np.float32)
-
-
-def _bounds(classic: ClassicSystem, options: dict[str, Any]) -> dict[str, Any]:
-    """Take the ends of starts out of options of Gymnasium, and return the keywords of :func:`_draw`."""
-    names = ("x_init", "y_init") if classic.name == "Pendulum" else ("low", "high")
-    given = {name: number(f"options[{name!r}]", options.pop(name), "finite") for name in names if name in options}
-    if classic.rounds_start:
-        for name, value in given.items():
-            number(f"options[{name!r}]", value, "finite in float32", lambda x: bool(np.isfinite(np.float32(x))))
-    if given and "state" in options:
-        raise ValueError(f"options has 'state' and {next(iter(given))!r}, but it must have one of them")
-    if classic.name == "Pendulum":
-        for name, value in given.items():
-            if value < 0:
-                raise ValueError(f"options[{name!r}] is {value}, but it must be at least 0")
-    elif given and (low := given.get("low", classic.start[0])) > (high := given.get("high", classic.start[1])):
-        raise ValueError(f"options has low = {low} and high = {high}, but low must be at most high")
-    return given
-
-
-def _ranges(classic: ClassicSystem, options: dict[str, Any]) -> dict[str, Any]:
-    """Return options of the engine for those of Gymnasium, whose numbers are for the states that it draws."""
-    options = dict(options)
-    if classic.name != "Pendulum" and any(np.ndim(options.get(name, 0.0)) != 0 or isinstance(options.get(name), Mapping) for name in ("low", "high")):
-        return options
-    given = _bounds(classic, options)
-    if not given:
-        return options
-    if "low" in options or "high" in options:
-        raise ValueError(f"options has {next(iter(given))!r} and ends of ranges, but it must have one of them")
-    states = system_of(classic.name).states
-    if classic.name == "Pendulum":
-        high = {"theta": given.get("x_init", np.pi), "theta'": given.get("y_init", 1.0)}
-        low = {name: -value for name, value in high.items()}
-    else:
-        ends = (given.get("low", classic.start[0]), given.get("high", classic.start[1]))
-        low, high = ({name: end if name in classic.drawn else 0.0 for name in states} for end in ends)
-    return {**options, "low": low, "high": high}
-
-
-def _draw(classic: ClassicSystem, generator: np.random.Generator, given: dict[str, Any]) -> NDArray[np.float64]:
-    """Return the state from which Gymnasium's environment starts, in the order of the system's states."""
-    states = dict.fromkeys(system_of(classic.name).states, 0.0)
-    if classic.name == "Pendulum":
-        high = np.array([given.get("x_init", np.pi), given.get("y_init", 1.0)])
-        drawn = generator.uniform(low=-high, high=high)
-    else:
-        low, high = given.get("low", classic.start[0]), given.get("high", classic.start[1])
-        drawn = generator.uniform(low=low, high=high, size=(len(classic.drawn),))
-    if classic.rounds_start:
-        drawn = drawn.astype(np.float32)
-    states.update(zip(classic.drawn, drawn.astype(np.float64)))
-    return np.array(list(states.values()))
 
 
 class _Picture:
@@ -211,9 +159,9 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
         options = dict(options or {})
         if self._starts == "libration":
-            observations, infos = super().reset(seed=seed, options=_ranges(self._classic, options))
+            observations, infos = super().reset(seed=seed, options=start_ranges(self._classic, options))
             return self._rounded(observations), infos
-        bounds = _bounds(self._classic, options)
+        bounds = start_bounds(self._classic, options)
         if "low" in options or "high" in options:
             raise ValueError("options has ends of ranges, but those of Gymnasium's Pendulum are 'x_init' and 'y_init'")
         # The first reset begins all environments, also those outside the mask.
@@ -239,7 +187,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
         for n in np.flatnonzero(mask):
             generator = self._generators[n]
             assert generator is not None, "every environment was reset"
-            states[n] = _draw(self._classic, generator, bounds)
+            states[n] = drawn_start(self._classic, generator, bounds)
         return super().set_state(states, mask)
 
     def rollout(self, policy: Any, horizon: int, **given: Any) -> Any:
@@ -317,15 +265,15 @@ class ClassicEnv(ClassicAttributes, Env):
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
         options, self._action = dict(options or {}), None
         if self._starts == "libration":
-            observation, info = super().reset(seed=seed, options=_ranges(self._classic, options))
+            observation, info = super().reset(seed=seed, options=start_ranges(self._classic, options))
             return observation.astype(np.float32), info
-        bounds = _bounds(self._classic, options)
+        bounds = start_bounds(self._classic, options)
         if "low" in options or "high" in options:
             raise ValueError("options has ends of ranges, but those of Gymnasium's Pendulum are 'x_init' and 'y_init'")
         observation, info = super().reset(seed=seed, options=options)
         if "state" in options:
             return observation.astype(np.float32), info
-        return self.set_state(_draw(self._classic, self.np_random, bounds)), info
+        return self.set_state(drawn_start(self._classic, self.np_random, bounds)), info
 
     def set_state(self, state: Any) -> np.ndarray:
         return super().set_state(state).astype(np.float32)

@@ -346,22 +346,3 @@ def test_rewards_that_are_not_finite_are_compared():
     assert compare((np.nan, 1.0), (np.nan, 1.0)) and compare((-np.inf, 1.0), (-np.inf, 1.0))
     for one, other in (((np.nan, 0.0), (0.0, 0.0)), ((-np.inf, 0.0), (0.0, 0.0)), ((-np.inf, 5.0), (-np.inf, 0.0))):
         assert "reward" in compare(one, other).difference
-
-
-@pytest.mark.parametrize("starts", ["libration", "gymnasium"])
-@pytest.mark.parametrize("id", IDS)
-def test_steps_without_copies_fill_arrays_in_turn(id, starts):
-    given = dict(starts=starts, max_episode_steps=5)
-    envs = gymnasium.make_vec(f"libration/{id}", 3, copy=False, buffers=3, **given)
-    other = gymnasium.make_vec(f"libration/{id}", 3, **given)
-    seen, copies, wanted = [], [], []
-    for step in range(-1, 12):
-        actions = envs.action_space.sample()
-        rows, others = (env.reset(seed=3)[0] if step < 0 else env.step(actions)[0] for env in (envs, other))
-        seen.append(rows), copies.append(rows.copy()), wanted.append(others)
-    assert len({rows.__array_interface__["data"][0] for rows in seen}) == 3
-    for n, rows in enumerate(copies):
-        # The copies of the other environment stay.
-        assert np.array_equal(rows, wanted[n]) and rows.dtype == np.float32
-    assert all(np.array_equal(seen[n], copies[n]) for n in (-1, -2, -3))
-    assert len({rows.__array_interface__["data"][0] for rows in wanted}) == len(wanted)

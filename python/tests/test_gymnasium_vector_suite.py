@@ -10,6 +10,7 @@ from gymnasium.wrappers import TimeLimit
 from gymnasium.wrappers import TransformObservation as SingleTransform
 from vector_pairs import assert_equal_over_episodes, ours, theirs
 
+from libration._classic_systems import CLASSIC
 from libration.classic_control import CartPoleEnv, CartPoleVectorEnv
 
 ID = "libration/CartPole-v1"
@@ -165,6 +166,25 @@ def test_the_limit_of_a_batch_is_that_of_the_wrapper_of_a_single_environment(mad
         _, _, all_terminated, all_truncated, _ = envs.step(np.array([step % 2]))
         assert (terminated, truncated) == (all_terminated[0], all_truncated[0]) == (False, step == 4)
     assert envs.step(np.array([0]))[1:4] == ([0.0], [False], [False])
+
+
+@pytest.mark.parametrize("starts", ["libration", "gymnasium"])
+@pytest.mark.parametrize("id", [each.id for each in CLASSIC.values()])
+def test_steps_without_copies_fill_arrays_in_turn(id, starts):
+    given = dict(starts=starts, max_episode_steps=5)
+    envs = gymnasium.make_vec(f"libration/{id}", 3, copy=False, buffers=3, **given)
+    other = gymnasium.make_vec(f"libration/{id}", 3, **given)
+    seen, copies, wanted = [], [], []
+    for step in range(-1, 12):
+        actions = envs.action_space.sample()
+        rows, others = (env.reset(seed=3)[0] if step < 0 else env.step(actions)[0] for env in (envs, other))
+        seen.append(rows), copies.append(rows.copy()), wanted.append(others)
+    assert len({rows.__array_interface__["data"][0] for rows in seen}) == 3
+    for n, rows in enumerate(copies):
+        # The copies of the other environment stay.
+        assert np.array_equal(rows, wanted[n]) and rows.dtype == np.float32
+    assert all(np.array_equal(seen[n], copies[n]) for n in (-1, -2, -3))
+    assert len({rows.__array_interface__["data"][0] for rows in wanted}) == len(wanted)
 
 
 # Of make_vec.
