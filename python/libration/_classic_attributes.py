@@ -97,6 +97,8 @@ _ATTRIBUTES: Mapping[str, Mapping[str, Attribute]] = {
 
 _OF_RUNS = {"action_arrow", "clock", "domain_fig", "isopen", "last_u", "prev_done", "screen", "screens", "steps", "steps_beyond_terminated", "surf"}
 """Attributes of runs and pictures of Gymnasium's environments, which twins do not have."""
+_DRAWN = ("length", "LINK_LENGTH_1")
+"""Attributes that a picture shows and a keyword changes."""
 _OF_STATES = {"state": "set_state(…) or reset(options={'state': …})", "low": "reset(options={'low': …})", "high": "reset(options={'high': …})"}
 
 
@@ -138,6 +140,10 @@ class ClassicAttributes:
             raise AttributeError(f"{self._classic.name} has no {name!r}: {keyword} is {shown(given[keyword])}")
         drawn: Mapping[str, Any] = envs.parameters
         return attribute.value({**given, **(drawn if n is None else {key: float(values[n]) for key, values in drawn.items()})})
+
+    def _lengths(self, n: int) -> Mapping[str, Any]:
+        """Return the attributes that pictures of environment ``n`` show."""
+        return {name: self._value(name, n) for name in _DRAWN if name in self._table()}
 
     def __setattr__(self, name: str, value: Any) -> None:
         if self._is_made and not name.startswith("_"):

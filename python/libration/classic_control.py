@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import Any, Iterator
+from typing import Any, Iterator, Mapping
 
 import gymnasium
 import numpy as np
@@ -83,7 +83,9 @@ class _Picture:
         self._env: Any = gymnasium.make(classic.id, render_mode="rgb_array").unwrapped
         self._env.reset(seed=0)
 
-    def __call__(self, state: NDArray[Any], action: Any = None) -> NDArray[np.uint8]:
+    def __call__(self, state: NDArray[Any], lengths: Mapping[str, Any], action: Any = None) -> NDArray[np.uint8]:
+        for name, length in lengths.items():
+            setattr(self._env, name, length)
         self._env.state = state[self._places].astype(np.float64)
         # The arrow of the torque.
         self._env.last_u = action
@@ -219,7 +221,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
             return super().render()
         if self._picture is None:
             self._picture = _Picture(self._classic)
-        return tuple(self._picture(state) for state in self.states)
+        return tuple(self._picture(state, self._lengths(n)) for n, state in enumerate(self.states))
 
     def close_extras(self, **kwargs: Any) -> None:
         if (picture := self.__dict__.get("_picture")) is not None:
@@ -289,7 +291,7 @@ class ClassicEnv(ClassicAttributes, Env):
             return super().render()
         if self._picture is None:
             self._picture = _Picture(self._classic)
-        return self._picture(self.state, self._action)
+        return self._picture(self.state, self._lengths(0), self._action)
 
     def close(self) -> None:
         if (picture := self.__dict__.get("_picture")) is not None:

@@ -116,3 +116,16 @@ def test_copies_and_pickles_have_and_refuse_the_attributes(made):
             other.length = 1.0
         other.mine = 3
         assert other.mine == 3
+
+
+@pytest.mark.parametrize(("id", "keyword", "attribute"), [("CartPole-v1", "length", "length"), ("Acrobot-v1", "l1", "LINK_LENGTH_1")])
+def test_a_picture_has_the_length_of_its_episode(monkeypatch, id, keyword, attribute):
+    drawn = type(gymnasium.make(id).unwrapped)
+    # Without Pygame: only the number that Gymnasium draws.
+    monkeypatch.setattr(drawn, "render", lambda env: getattr(env, attribute))
+    env = gymnasium.make(f"libration/{id}", render_mode="rgb_array", **{keyword: 0.9}).unwrapped
+    env.reset(seed=0)
+    assert env.render() == 0.9
+    envs = gymnasium.make_vec(f"libration/{id}", 3, render_mode="rgb_array", **{keyword: Uniform(0.3, 0.7)})
+    envs.reset(seed=0)
+    assert envs.render() == tuple(envs.parameters[keyword])

@@ -109,13 +109,13 @@ def test_a_list_of_infos_has_the_parameters_of_each_environment():
 def test_videos_begin_at_their_steps_and_episodes(tmp_path):
     pytest.importorskip("pygame"), pytest.importorskip("moviepy")
     envs = wrappers.RecordVideo(
-        ours(2, render_mode="rgb_array"), str(tmp_path), name_prefix="cart", step_trigger=lambda step: step in (0, 25), video_length=5
+        ours(2, render_mode="rgb_array"), str(tmp_path / "videos"), name_prefix="cart", step_trigger=lambda step: step in (0, 25), video_length=5
     )
     envs.reset(seed=0)
     for _ in range(40):
         envs.step(envs.action_space.sample())
     envs.close()
-    assert {name for name in os.listdir(tmp_path) if name.endswith(".mp4")} == {"cart-step-0.mp4", "cart-step-25.mp4"}
+    assert {name for name in os.listdir(tmp_path / "videos") if name.endswith(".mp4")} == {"cart-step-0.mp4", "cart-step-25.mp4"}
 
 
 def test_tensors_of_torch_go_in_and_come_out():
