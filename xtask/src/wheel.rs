@@ -162,12 +162,16 @@ mod tests {
             [
                 "test_attributes.py",
                 "test_check_vector_env.py",
+                "test_classic_attributes.py",
                 "test_classic_control.py",
                 "test_custom.py",
                 "test_environment_pages.py",
                 "test_first_hour.py",
+                "test_gymnasium_vector_suite.py",
+                "test_gymnasium_vector_wrappers.py",
                 "test_probe_gymnasium.py",
                 "test_sb3.py",
+                "test_specs.py",
                 "test_system_environments.py",
                 "test_vector.py"
             ]

@@ -11,9 +11,14 @@ const NEAR: f64 = 0.7;
 /// A part of a compound name suffices: `verlet` is similar to `velocity-verlet`.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let name = name.to_lowercase();
+    // A common beginning alone does not make a single letter similar to a word.
+    let likeness = |other: &str| match (other.len(), name.len()) {
+        (1, 3..) => 0.0,
+        _ => strsim::jaro_winkler(&name, other),
+    };
     let unlikeness = |candidate: &str| {
-        let whole = strsim::jaro_winkler(&name, candidate);
-        let parts = candidate.split('-').map(|part| 0.95 * strsim::jaro_winkler(&name, part));
+        let whole = likeness(candidate);
+        let parts = candidate.split('-').map(|part| 0.95 * likeness(part));
         1.0 - parts.fold(whole, f64::max)
     };
     candidates
@@ -68,6 +73,8 @@ mod tests {
         ] {
             assert_eq!(nearest(typed, names), meant, "{typed}");
         }
+        assert_eq!(nearest("temperature", ["t", "x"]), None);
+        assert_eq!(nearest("T", ["t", "x"]), Some("t"));
     }
 
     #[test]
