@@ -85,7 +85,7 @@ fn a_lag_behind_a_part_of_a_period_is_found_among_all_models() {
     let mut responses = lag_response(&arrivals, 0.05, 0.9, &samples);
     responses.iter_mut().for_each(|y| *y += 0.2 + 0.01 * draws.normal());
     let recording = Recording::new(&times, &commands, &samples, &responses).unwrap();
-    let found = identified(&recording, &Request { bootstrap: 40, details: true, ..quick() });
+    let found = identified(&recording, &Request { bootstrap: 20, details: true, ..quick() });
     assert_eq!((found.response, found.hold, found.noise), ("lag", Hold::Zero, NoiseKind::White));
     for (key, truth) in [("dead_time", 0.0334), ("lag", 0.05), ("latency", 0.0834), ("gain", 0.9)] {
         let parameter = found.parameter(key).unwrap();
@@ -97,9 +97,9 @@ fn a_lag_behind_a_part_of_a_period_is_found_among_all_models() {
     // The noise: its standard deviation is known to 1/√(2n) = 2.3 %.
     assert!((value(&found, "noise_std") / 0.01 - 1.0).abs() < 0.1);
     assert!(!found.is_contradicted, "{:?}", found.residuals);
-    // 40 repetitions know a standard deviation to 11 %: four of these.
+    // 20 repetitions know a standard deviation to 16 %: four of these.
     for row in &found.bootstrap {
-        assert!((row.ratio.unwrap() - 1.0).abs() < 0.45, "{row:?}");
+        assert!((row.ratio.unwrap() - 1.0).abs() < 0.65, "{row:?}");
     }
 }
 

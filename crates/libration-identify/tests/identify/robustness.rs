@@ -14,7 +14,7 @@ fn no_numbers_lead_to_a_panic_and_results_are_finite_or_refused() {
     let sizes = [1e-90, 1e-8, 1.0, 1e90, 1e300];
     let stop = AtomicBool::new(false);
     let mut identified = 0;
-    for round in 0..16 {
+    for round in 0..8 {
         let count = 40 + (round * 7) % 60;
         let mut one_of = |sizes: &[f64; 5]| sizes[((draws.uniform() + 1.0) * 2.5) as usize % 5];
         let (time, command, response) = (one_of(&time_sizes), one_of(&sizes), one_of(&sizes));
@@ -36,5 +36,5 @@ fn no_numbers_lead_to_a_panic_and_results_are_finite_or_refused() {
             assert!(page(&found).len() > 1000 && loop_file(&found).contains("[loop]"));
         }
     }
-    assert!(identified > 2, "{identified}");
+    assert!(identified > 1, "{identified}");
 }

@@ -208,7 +208,7 @@ fn findings_agree_for_other_springs_starts_methods_and_steps() {
                 oscillator: Spring { m: 1.0, k: 1.0 },
                 ..base.clone()
             }
-            .with(drift(&[0.0009765625, 0.7, 1.0], 200_000)),
+            .with(drift(&[0.0009765625, 0.7, 1.0], 30_000)),
         ),
         (
             "a start in motion",
@@ -217,7 +217,7 @@ fn findings_agree_for_other_springs_starts_methods_and_steps() {
                 start: Start { q: 0.3, v: -1.2 },
                 ..base.clone()
             }
-            .with(drift(&[0.004, 0.03], 300_000)),
+            .with(drift(&[0.004, 0.03], 60_000)),
         ),
         (
             "beyond every limit of stability",
