@@ -19,6 +19,7 @@ from ._spec_keywords import JSON_SPEC
 from ._tasks import EquationPreset
 from .environments import Environments
 from .equations import EquationSystem
+from .systems import System, with_commands
 
 _ATTRIBUTES = ("action_space", "metadata", "observation_space", "render_mode", "spec", "state")
 """Attributes of each environment besides its keywords."""
@@ -76,20 +77,21 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
 
     # A system by equations has parameters of any name.
     @overload
-    def __init__(self, name: EquationSystem, num_envs: int = 1, *, render_mode: str | None = None, **given: Any) -> None: ...
+    def __init__(self, name: EquationSystem | System, num_envs: int = 1, *, render_mode: str | None = None, **given: Any) -> None: ...
 
     def __init__(
         self,
-        name: str | EquationSystem,
+        name: str | EquationSystem | System,
         num_envs: int = 1,
         *,
         render_mode: str | None = None,
         **given: Any,
     ) -> None:
-        self.render_mode = _render_mode(name, render_mode)
-        super().__init__(name, num_envs, **given)
+        subject: str | EquationSystem = with_commands(name)
+        self.render_mode = _render_mode(subject, render_mode)
+        super().__init__(subject, num_envs, **given)
         self.metadata = {
-            **_metadata(name, self._settings),
+            **_metadata(subject, self._settings),
             "autoreset_mode": AutoresetMode(self._settings["autoreset"]),
         }
         spaces = _spaces(self.preset, dict(self._settings))
@@ -226,16 +228,17 @@ class Env(gymnasium.Env):
     spec = JSON_SPEC
 
     def __init__(
-        self, name: str | EquationSystem, *, render_mode: str | None = None, **given: Any
+        self, name: str | EquationSystem | System, *, render_mode: str | None = None, **given: Any
     ) -> None:
         for unknown in ("num_envs", "autoreset_mode", "copy", "buffers", "max_episode_steps"):
             if unknown in given:
                 raise TypeError(f"unexpected keyword argument {unknown!r}: it belongs to vector environments")
-        self.render_mode = _render_mode(name, render_mode)
+        subject: str | EquationSystem = with_commands(name)
+        self.render_mode = _render_mode(subject, render_mode)
         self._all = Environments(
-            name, max_episode_steps=np.inf, autoreset_mode="Disabled", **given
+            subject, max_episode_steps=np.inf, autoreset_mode="Disabled", **given
         )
-        self.metadata = _metadata(name, self._all._settings)
+        self.metadata = _metadata(subject, self._all._settings)
         self._all._reset_needed, self._all._closed_error = ResetNeeded, ClosedEnvironmentError
         spaces = _spaces(self._all.preset, dict(self._all._settings))
         self.observation_space, self.action_space = spaces

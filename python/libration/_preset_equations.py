@@ -10,15 +10,12 @@ from math import inf
 from typing import Any, Mapping
 
 from . import _native
+from ._catalogue_equations import commanded
 from ._episode_numbers import episode_number, is_varied, scaled_law
 from ._presets import Preset
 from ._settings import CATALOGUE, TASK_OPTIONS, count, ends, law, native, refuse_others
 from ._tasks import SMALLEST_OPTIONS, native_equations
 from .equations import EquationSystem
-
-_ACCELERATIONS = {"oscillator": "-omega2*q + u", "pendulum": "-omega2*sin(q) + u", "duffing": "-alpha*q - beta*(q*q*q) + u"}
-
-_WITH_MASS = "-(k/m)*q + u*(1/m)"
 
 _TASKS: Mapping[str, Mapping[str, Any]] = {
     "regulate": {
@@ -84,7 +81,7 @@ def native_varied(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
         costs.pop("bound")
         parameters = {name: value for name, value in parameters.items() if name != "bound"}
     system = EquationSystem(
-        acceleration={"q": _WITH_MASS if mass else _ACCELERATIONS[preset.system]},
+        acceleration=commanded(preset.system, bool(mass)),
         parameters={**own, **costs},
         inputs=["u"],
         task={**task, "start": starts},

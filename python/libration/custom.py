@@ -17,6 +17,7 @@ from ._environment_keywords import CustomTaskKeywords, Unpack
 from ._episode_numbers import largest
 from ._gymnasium_envs import VectorEnv
 from .equations import EquationSystem
+from .systems import System, with_commands
 
 __all__ = ["CustomTaskVectorEnv"]
 
@@ -47,7 +48,7 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
 
     def __init__(
         self,
-        name: str | EquationSystem,
+        name: str | EquationSystem | System,
         num_envs: int = 1,
         *,
         task: Callable[[np.ndarray, np.ndarray, np.ndarray], Any],
@@ -60,6 +61,7 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
             if price in given:
                 raise TypeError(f"unexpected keyword argument {price!r}: the task determines rewards")
         endless: dict[str, Any] = {} if name == "Pendulum" else {"bound": np.inf}
+        name = with_commands(name)
         if isinstance(name, EquationSystem):
             for own in ("reward", "terminated"):
                 if own in given:

@@ -17,6 +17,7 @@ from ._settings import AUTORESET, count, native, nearest
 from ._spec_keywords import keyword_value
 from ._tasks import EquationPreset, native_equations
 from .equations import EquationSystem
+from .systems import SYSTEMS, System, with_commands
 from .perturbations import PD
 from .policies import Policy
 from .rollout import Rollout
@@ -38,8 +39,8 @@ class Environments(_native.Batch):
     Parameters
     ----------
     name:
-        ``"Oscillator"``, ``"Pendulum"`` or ``"Duffing"``, or a system by equations (:class:`libration.EquationSystem`), whose inputs
-        are the actions.
+        ``"Oscillator"``, ``"Pendulum"`` or ``"Duffing"``, or a system by equations (:class:`libration.EquationSystem`), whose inputs are the
+        actions. One of the catalogue (:class:`libration.System`) is its :meth:`~libration.System.equations`.
     num_envs:
         Number of environments.
     max_episode_steps:
@@ -126,11 +127,11 @@ class Environments(_native.Batch):
 
     # A system by equations has parameters of any name.
     @overload
-    def __init__(self, name: EquationSystem, num_envs: int = 1, **given: Any) -> None: ...
+    def __init__(self, name: EquationSystem | System, num_envs: int = 1, **given: Any) -> None: ...
 
     def __init__(
         self,
-        name: str | EquationSystem,
+        name: str | EquationSystem | System,
         num_envs: int = 1,
         *,
         max_episode_steps: float | None = None,
@@ -163,8 +164,10 @@ class Environments(_native.Batch):
         parameter_infos: bool = False,
         **parameters: Any,
     ) -> None:
-        if not isinstance(name, EquationSystem) and name not in PRESETS:
-            raise ValueError(f"unknown environment {name!r}: {nearest(str(name), PRESETS)}")
+        subject: str | EquationSystem = with_commands(name)
+        if not isinstance(subject, EquationSystem) and subject not in PRESETS:
+            help = f"; help: System({subject!r}) and a task" if subject in SYSTEMS else ""
+            raise ValueError(f"unknown environment {subject!r}: {nearest(str(subject), PRESETS)}{help}")
         mode = getattr(autoreset_mode, "value", autoreset_mode)
         if mode not in AUTORESET:
             raise ValueError(
@@ -209,13 +212,13 @@ class Environments(_native.Batch):
             raise TypeError("buffers is given, but it belongs to copy=False")
         given = {key: keyword_value(value) for key, value in given.items()}
         parameters = {key: keyword_value(value) for key, value in parameters.items()}
-        self._arguments = (name, {**given, **parameters})
+        self._arguments = (subject, {**given, **parameters})
         self._settings: Mapping[str, Any]
-        if isinstance(name, EquationSystem):
-            found = native_equations(name, {**given, "parameters": parameters})
+        if isinstance(subject, EquationSystem):
+            found = native_equations(subject, {**given, "parameters": parameters})
             self.preset, self._settings = found
         else:
-            self.preset, stated = PRESETS[name], {**given, "parameters": parameters}
+            self.preset, stated = PRESETS[subject], {**given, "parameters": parameters}
             self._settings = (native_varied if has_varied(stated) else native)(self.preset, stated)
             if self._settings["lengths"] and "catalogued" in self._settings["subject"]:
                 # Steps of different lengths are those of programs.

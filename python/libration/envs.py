@@ -21,6 +21,7 @@ from ._gymnasium_envs import METADATA, Env, VectorEnv
 from ._presets import PRESETS
 from ._spec_keywords import system_value
 from .equations import EquationSystem
+from .systems import with_commands
 
 __all__ = [
     "DatasetEnv",
@@ -175,9 +176,9 @@ class DatasetEnv(Env):
 
 
 def _system(system: Any) -> EquationSystem:
-    system = system_value(system)
+    system = with_commands(system_value(system))
     if not isinstance(system, EquationSystem):
-        raise TypeError(f"system must be a libration.EquationSystem, not {type(system).__name__}")
+        raise TypeError(f"system must be a libration.System, not {type(system).__name__}")
     return system
 
 

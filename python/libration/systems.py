@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence, TypedDict, o
 import numpy as np
 
 from . import _native
+from ._catalogue_equations import equations_of
 from ._settings import nearest, number
 from .equations import EquationSystem
 
@@ -107,6 +108,27 @@ class System:
         """Return the system of the equations in a file: :meth:`libration.EquationSystem.from_toml`."""
         return EquationSystem.from_toml(path, **parameters)
 
+    def equations(self, **keywords: Unpack[EquationKeywords]) -> EquationSystem:
+        """Return this system by equations, with a command for each coordinate: for environments, tasks and inputs of one's own.
+
+        Parameters
+        ----------
+        **keywords:
+            Keywords of :class:`libration.EquationSystem`, in place of those of this system.
+
+        Returns
+        -------
+        EquationSystem
+            With the coordinate ``q`` and the command ``u``, or ``x``, ``y`` and ``u_x``, ``u_y``. A command is an acceleration, or a force in
+            N where the system has the mass ``m``. Without commands its motion has the bits of the catalogue's.
+
+        Examples
+        --------
+        >>> System("kepler").equations().inputs
+        ('u_x', 'u_y')
+        """
+        return equations_of(self, **keywords)
+
     @property
     def dimensions(self) -> range:
         """Allowed numbers of degrees of freedom."""
@@ -130,6 +152,11 @@ class System:
 
 def _again(name: str, parameters: list[tuple[str, float]]) -> System:
     return System(name, **dict(parameters))
+
+
+def with_commands(system: Any) -> Any:
+    """Return a system of the catalogue by equations, and anything else as it is."""
+    return system.equations() if isinstance(system, System) else system
 
 
 @dataclass(frozen=True)
