@@ -25,8 +25,19 @@ pub(super) struct FreeMotion<'a> {
 /// The angle of the fastest motion in a step below which errors fall with the step, in rad.
 const RESOLVED: f64 = 0.1;
 
-/// Reference steps of order four per compared step. Their error is 1/4096 of that of a method of order four.
+/// Reference steps of order four per step of a method of order four. Their error is 1/4096 of its.
 const FINER: u32 = 8;
+
+/// Reference steps per step of a method of some order in which the fastest motion turns by `angle`, so that their error is 1/4096 of its.
+///
+/// Errors of the orders `p` and 4 of steps that are `n` times as short have the ratio `angle^(4 − p)/n⁴`.
+fn finer(order: u32, angle: f64) -> u32 {
+    // The phase of a first-order method may be of second order.
+    let difference = 4_u32.saturating_sub(order.max(2));
+    let number = f64::from(FINER) * angle.min(1.0).powf(f64::from(difference) / 4.0);
+    // Of an infinite angle, or of none, the most.
+    if number > 0.0 { number.ceil() as u32 } else { FINER }
+}
 
 /// Safety factor of errors against the reference, so that advised steps meet the tolerance against the true motion.
 const WIDER: f64 = 1.001;
@@ -125,9 +136,9 @@ impl<'a> FreeMotion<'a> {
         match self.system.exact_steps(dt, &self.start) {
             Some(exact) => self.reference_error(work, trajectory, most, (exact, 1)),
             None => {
-                let fine = dt / f64::from(FINER);
-                let method = self.system.reference_method();
-                let reference = (self.system.steps(false, method, fine, &self.start), FINER);
+                let times = finer(method.order(), self.turn(dt));
+                let (method, fine) = (self.system.reference_method(), dt / f64::from(times));
+                let reference = (self.system.steps(false, method, fine, &self.start), times);
                 Ok(self.reference_error(work, trajectory, most / WIDER, reference)? * WIDER)
             }
         }

@@ -238,3 +238,32 @@ fn a_loop_gets_the_fewest_steps_in_a_period_that_meet_the_tolerance() {
         assert!(narrow >= 3, "{narrow} of {:?}", found.integrators);
     }
 }
+
+/// A circular orbit is known in closed form; the search knows its error by a reference whose steps are as long as those of a
+/// first-order method, or parts of those of others.
+#[test]
+fn errors_against_the_reference_are_those_against_a_circular_orbit_in_closed_form() {
+    let kepler = Kepler { mu: 1.0 };
+    let request =
+        free(AnySystem::Kepler(kepler), &[1.0, 0.0], &[0.0, 1.0], Measure::Trajectory, 1e-3, 7.0);
+    let found = advice(&request).unwrap();
+    let mut orders = [0; 3];
+    for choice in found.integrators.iter().filter(|choice| choice.dt.is_some()) {
+        let (method, dt) = (Method::from_name(choice.integrator).unwrap(), choice.dt.unwrap());
+        let mut state = State { q: [1.0, 0.0], v: [0.0, 1.0] };
+        let mut largest = 0.0_f64;
+        for n in 1..=(7.0 / dt).round() as u64 {
+            state = method.step(&kepler, state, dt);
+            let (sine, cosine) = (n as f64 * dt).sin_cos();
+            let off =
+                [state.q[0] - cosine, state.q[1] - sine, state.v[0] + sine, state.v[1] - cosine];
+            // The size of the true state is √2.
+            largest = largest.max((off.iter().map(|x| x * x).sum::<f64>() / 2.0).sqrt());
+        }
+        // The search adds 0.1 % for the reference, whose own error is 1/4096.
+        let ratio = choice.lost / largest;
+        assert!((1.0..1.0015).contains(&ratio), "{}: {ratio}", choice.integrator);
+        orders[method.order() as usize / 2] += 1;
+    }
+    assert!(orders.iter().all(|&count| count >= 2), "{orders:?}");
+}
