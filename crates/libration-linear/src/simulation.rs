@@ -260,8 +260,12 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
             sums[k] += a[k] * b[k];
         }
     }
-    let rest: f64 = fours.1.iter().zip(others.1).map(|(a, b)| a * b).sum();
-    sums.iter().sum::<f64>() + rest
+    // Plain loops: iterators that add up remain calls in tests, and take longer than the sum of a few numbers.
+    let mut rest = 0.0;
+    for (a, b) in fours.1.iter().zip(others.1) {
+        rest += a * b;
+    }
+    sums[0] + sums[1] + sums[2] + sums[3] + rest
 }
 
 #[cfg(test)]
