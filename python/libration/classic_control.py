@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import Any, Iterator, Mapping
+from typing import Any, Mapping, Sequence
 
 import gymnasium
 import numpy as np
@@ -112,6 +112,8 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
     """
 
     _is_vector = True
+    # The start of an episode takes arrays of the engine in the same step.
+    _has_own_arrays = True
 
     def __init__(self, name: str, num_envs: int = 1, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
         self._classic, self._starts = _classic(name), starts
@@ -127,20 +129,24 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self._generators: list[np.random.Generator | None] = [None] * self.num_envs
         self._ended = np.zeros(self.num_envs, bool)
-        self._rows: Iterator[NDArray[np.float32]] | None = None
-        # The start of an episode takes a second array of the engine in the same step.
-        if not given.get("copy", True) and (starts == "gymnasium" or self._settings["dtype"] != "float32"):
-            rows = [np.empty(self.observation_space.shape or (), np.float32) for _ in range(given.get("buffers") or 2)]
-            self._rows = itertools.cycle(rows)
+        turns: list[list[NDArray[Any]]] = [[] for _ in range(self._buffers)]
+        self._turns = itertools.cycle(turns)
         self._is_made = True
 
-    def _rounded(self, observations: NDArray[Any]) -> NDArray[np.float32]:
-        """Return observations in the float type of Gymnasium; with ``copy=False`` in arrays that steps fill in turn."""
-        if self._rows is None:
-            return observations.astype(np.float32, copy=False)
-        row = next(self._rows)
-        np.copyto(row, observations, casting="same_kind")
-        return row
+    def _in_turn(self, *results: NDArray[Any]) -> Sequence[NDArray[Any]]:
+        """Return the results of a step; with ``copy=False`` in the arrays that steps fill in turn."""
+        if not self._buffers:
+            return results
+        arrays = next(self._turns)
+        # The caller may have made an array read-only, or changed its shape.
+        if any(not array.flags.writeable or array.shape != result.shape for array, result in zip(arrays, results)):
+            arrays.clear()
+        if not arrays:
+            arrays += [result.copy() for result in results]
+            return tuple(arrays)
+        for array, result in zip(arrays, results):
+            np.copyto(array, result)
+        return tuple(arrays)
 
     def _checked_render_mode(self, render_mode: str | None) -> str | None:
         return _render_mode(render_mode)
@@ -162,7 +168,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
         options = dict(options or {})
         if self._starts == "libration":
             observations, infos = super().reset(seed=seed, options=start_ranges(self._classic, options))
-            return self._rounded(observations), infos
+            return observations.astype(np.float32, copy=False), infos
         bounds = start_bounds(self._classic, options)
         if "low" in options or "high" in options:
             raise ValueError("options has ends of ranges, but those of Gymnasium's Pendulum are 'x_init' and 'y_init'")
@@ -181,7 +187,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
             observations = self._start(mask, bounds)
         if first and not mask.all():
             observations = self._start(~mask, {})
-        return self._rounded(observations), infos
+        return observations.astype(np.float32, copy=False), infos
 
     def _start(self, mask: NDArray[np.bool_], bounds: dict[str, Any]) -> np.ndarray:
         """Put environments at starts of Gymnasium."""
@@ -213,7 +219,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
             if begun is not None and begun.any():
                 observations = self._start(begun, {})
             self._ended = ended
-        return self._rounded(observations), rewards, terminated, truncated, infos
+        return *self._in_turn(observations.astype(np.float32, copy=False), rewards, terminated, truncated), infos
 
     def render(self) -> tuple[np.ndarray, ...] | None:
         """Return one picture of Gymnasium's per environment, if ``render_mode`` is ``"rgb_array"``; it requires Pygame."""

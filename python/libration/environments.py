@@ -98,8 +98,11 @@ class Environments(_native.Batch):
     threads:
         Number of threads (0: one per core). The results are independent of it.
     copy:
-        Whether each step returns arrays that later steps do not overwrite. Otherwise the steps fill ``buffers`` arrays in turn
-        (default: 2).
+        Whether each step returns arrays that nothing overwrites.
+    buffers:
+        With ``copy=False``: the number of arrays that steps fill in turn (default: 2). Each :meth:`reset` and :meth:`set_state` takes a turn
+        as well, and a reset with ``state``, ``low`` or ``high`` takes two. An array is overwritten ``buffers`` turns after its own. In the
+        twins of Gymnasium's classic control only steps take turns, and a reset returns a new array.
     parameter_infos:
         Whether ``infos`` of ``reset`` and ``step`` have :attr:`parameters`.
     **parameters:
@@ -119,6 +122,8 @@ class Environments(_native.Batch):
     preset: Preset | EquationPreset
     num_envs: int
 
+    _has_own_arrays = False
+    """Whether the class has the arrays that steps fill in turn, in place of the engine."""
     _reset_needed: type[Exception] = RuntimeError
     _closed_error: type[Exception] = RuntimeError
 
@@ -225,8 +230,8 @@ class Environments(_native.Batch):
                 self._settings = native_varied(self.preset, stated)
         self._seeder: np.random.Generator | None = None
         self.num_envs = self._settings["num_envs"]
-        kept = 0 if copy else count("buffers", 2 if buffers is None else buffers, 1, 1_000_000)
-        self._set_up(self._settings, kept)
+        self._buffers = 0 if copy else count("buffers", 2 if buffers is None else buffers, 1, 1_000_000)
+        self._set_up(self._settings, 0 if self._has_own_arrays else self._buffers)
 
     def reset(
         self,
