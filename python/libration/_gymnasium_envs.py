@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
+import copy
 from typing import Any, overload
 
 import gymnasium
 import numpy as np
 from gymnasium.error import ClosedEnvironmentError, ResetNeeded
-from gymnasium.spaces import Box, Discrete
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
 from ._attributes import SETTABLE, keywords_of, refused, unknown
 from ._environment_keywords import Unpack, VectorKeywords
-from ._episode_numbers import largest
 from ._presets import Preset
+from ._spaces import single_spaces
 from ._spec_keywords import JSON_SPEC
-from ._tasks import EquationPreset
 from .environments import Environments
 from .equations import EquationSystem
 from .systems import System, with_commands
@@ -31,20 +30,6 @@ def _metadata(name: str | EquationSystem, settings: Any) -> dict[str, Any]:
     if isinstance(name, EquationSystem):
         return {"render_modes": []}
     return {**METADATA, "render_fps": max(1, round(1.0 / (settings["dt"] * settings["substeps"])))}
-
-
-def _spaces(preset: Preset | EquationPreset, settings: dict[str, Any]) -> tuple[Box, Box | Discrete]:
-    """Return the observation space and the action space of one environment."""
-    dtype, subject = np.dtype(settings["dtype"]), settings["subject"]
-    noise = subject["noise"]
-    laws = noise if isinstance(noise, list) else [noise] * len(preset.seen)
-    limits = [np.inf if law[1] > 0 else limit for law, limit in zip(laws, preset.limits)]
-    high = np.array(limits, dtype=dtype)
-    seen = Box(-high, high, dtype=dtype)
-    if settings["levels"]:
-        return seen, Discrete(len(settings["levels"]))
-    most = np.broadcast_to(np.array(largest(subject["saturation"]), dtype=dtype), len(preset.actions))
-    return seen, Box(-most, most, dtype=dtype)
 
 
 def _render_mode(name: str | EquationSystem, render_mode: str | None) -> str | None:
@@ -94,7 +79,7 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
             **_metadata(subject, self._settings),
             "autoreset_mode": AutoresetMode(self._settings["autoreset"]),
         }
-        spaces = _spaces(self.preset, dict(self._settings))
+        spaces = single_spaces(self.preset, self._settings)
         self.single_observation_space, self.single_action_space = spaces
         self.observation_space, self.action_space = (batch_space(s, self.num_envs) for s in spaces)
 
@@ -218,6 +203,13 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
         return f"{type(self).__name__}({self.preset.name}, num_envs={self.num_envs})"
 
 
+class _Batch(Environments):
+    """The environments of a single one, with the errors of Gymnasium."""
+
+    _reset_needed = ResetNeeded
+    _closed_error = ClosedEnvironmentError
+
+
 class Env(gymnasium.Env):
     """Single Gymnasium environment of the engine.
 
@@ -235,13 +227,9 @@ class Env(gymnasium.Env):
                 raise TypeError(f"unexpected keyword argument {unknown!r}: it belongs to vector environments")
         subject: str | EquationSystem = with_commands(name)
         self.render_mode = _render_mode(subject, render_mode)
-        self._all = Environments(
-            subject, max_episode_steps=np.inf, autoreset_mode="Disabled", **given
-        )
+        self._all = _Batch(subject, max_episode_steps=np.inf, autoreset_mode="Disabled", **given)
         self.metadata = _metadata(subject, self._all._settings)
-        self._all._reset_needed, self._all._closed_error = ResetNeeded, ClosedEnvironmentError
-        spaces = _spaces(self._all.preset, dict(self._all._settings))
-        self.observation_space, self.action_space = spaces
+        self.observation_space, self.action_space = single_spaces(self._all.preset, self._all._settings)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -310,6 +298,10 @@ class Env(gymnasium.Env):
     def _keywords(self) -> dict[str, Any]:
         # ``gymnasium.make`` adds the time limit.
         return {name: value for name, value in keywords_of(self._all).items() if name != "max_episode_steps"}
+
+    def __copy__(self) -> Env:
+        # A shallow copy would step the original.
+        return copy.deepcopy(self)
 
     def close(self) -> None:
         self._all._close()

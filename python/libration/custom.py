@@ -172,7 +172,7 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
 
     def __deepcopy__(self, memo: dict[int, Any]) -> CustomTaskVectorEnv:
         twin: CustomTaskVectorEnv = object.__new__(type(self))
-        twin.__dict__.update(self.__dict__, inner=copy.deepcopy(self.inner, memo))
+        twin.__dict__.update(self.__dict__, inner=copy.deepcopy(self.inner, memo), _np_random=copy.deepcopy(self._np_random, memo))
         twin._ended, twin._turn = self._ended.copy(), threading.RLock()
         return twin
 

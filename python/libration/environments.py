@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Mapping, Sequence, overload
 
 import numpy as np
@@ -23,6 +24,7 @@ from .policies import Policy
 from .rollout import Rollout
 
 if TYPE_CHECKING:
+    from gymnasium.spaces import Box, Discrete, Space
     from numpy.typing import DTypeLike
 
     from ._environment_keywords import Autoreset, Delay, Law, LawOfEach, Range, Varied
@@ -33,8 +35,9 @@ __all__ = ["Environments"]
 class Environments(_native.Batch):
     """Environments that the engine steps together.
 
-    ``reset`` and ``step`` follow Gymnasium's vector environments, without Gymnasium. :class:`libration.envs.VectorEnv` adds spaces,
-    specs and rendering.
+    ``reset`` and ``step`` follow Gymnasium's vector environments, without Gymnasium. :class:`libration.envs.VectorEnv` adds specs and
+    rendering. ``single_observation_space``, ``single_action_space``, ``observation_space`` and ``action_space`` are those of ``VectorEnv``; they
+    require Gymnasium.
 
     Parameters
     ----------
@@ -121,6 +124,17 @@ class Environments(_native.Batch):
 
     preset: Preset | EquationPreset
     num_envs: int
+    if TYPE_CHECKING:
+        single_observation_space: Space[Any]
+        single_action_space: Space[Any]
+        observation_space: Space[Any]
+        action_space: Space[Any]
+    else:
+        # Only these four import Gymnasium.
+        single_observation_space = cached_property(lambda self: self._single_spaces()[0])
+        single_action_space = cached_property(lambda self: self._single_spaces()[1])
+        observation_space = cached_property(lambda self: self._batched(self.single_observation_space))
+        action_space = cached_property(lambda self: self._batched(self.single_action_space))
 
     _has_own_arrays = False
     """Whether the class has the arrays that steps fill in turn, in place of the engine."""
@@ -446,6 +460,18 @@ class Environments(_native.Batch):
     def substeps(self) -> int:
         """Steps of the integrator between two actions."""
         return self._settings["substeps"]
+
+    def _single_spaces(self) -> tuple[Box, Box | Discrete]:
+        try:
+            from ._spaces import single_spaces
+        except ImportError as error:
+            raise ImportError(f"spaces of environments require Gymnasium ({error}); help: pip install 'libration[gymnasium]'") from error
+        return single_spaces(self.preset, self._settings)
+
+    def _batched(self, space: Space[Any]) -> Space[Any]:
+        from gymnasium.vector.utils import batch_space
+
+        return batch_space(space, self.num_envs)
 
     def close(self) -> None:
         """Release memory and threads; ``reset`` and ``step`` then fail."""

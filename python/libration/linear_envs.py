@@ -85,6 +85,10 @@ class LinearVectorEnv(gymnasium.vector.VectorEnv):
         self._ended = False
         self._lost = np.zeros(self.num_envs, dtype=bool)
 
+    def __copy__(self) -> LinearVectorEnv:
+        # A shallow copy would step the loops of the original.
+        raise TypeError("a LinearVectorEnv cannot be copied; help: make others with the same arguments")
+
     @property
     def loops(self) -> OpenLoops:
         """The loops, with names, units and period."""
