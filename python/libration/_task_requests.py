@@ -13,6 +13,10 @@ from .perturbations import PD
 
 Table = Mapping[str, Any]
 
+_FUNCTIONS = "abs acos asin atan atan2 cos cosh exp log max min sign sin sinh sqrt tan tanh"
+_RESERVED = ("age", "before", "if", "pi", "t", *_FUNCTIONS.split())
+"""Names that expressions of an inner controller have already."""
+
 
 @dataclass(frozen=True)
 class TaskRequest:
@@ -32,6 +36,8 @@ class TaskRequest:
     """Number of actions of a chunk."""
     used: int = 1
     """Number of actions of a chunk that are used."""
+    controller_text: str | None = None
+    """With a chunk and an inner controller: the table of the task with the names of the caller, of which those of a chunk are made."""
 
 
 def task_request(system: EquationSystem, keywords: Table) -> TaskRequest:
@@ -52,12 +58,17 @@ def task_request(system: EquationSystem, keywords: Table) -> TaskRequest:
     period = _chosen(task, own, "inner_period", None)
     if inner and period is None:
         raise TypeError("inner_period is required with inner: the time in s between samples of the controller")
-    chunk, length, used = keywords["chunk"], 1, 1
+    chunk, length, used, controller_text = keywords["chunk"], 1, 1, None
+    _check_reserved(_chosen(task, own, "targets", ()))
     if chunk is not None:
         if not inner and task["inner_period"] is not None:
             raise TypeError("inner_period is given, but it belongs to an inner controller")
         dt = positive("dt", keywords["dt"])
-        task |= _chunk(system, chunk, task, own, dt)
+        whole = task | _chunk(system, chunk, task, own, dt)
+        if inner:
+            # The reward has the names of the chunk.
+            controller_text = _text(system, {**task, "reward": "0"}, own)
+        task = whole
         # That of the file is of a controller that the caller replaced.
         own = {**own, "inner_period": None} if own and not inner else own
         inner_count(dt, period if inner else None, None)
@@ -71,6 +82,7 @@ def task_request(system: EquationSystem, keywords: Table) -> TaskRequest:
         inner_period=period if inner else None,
         length=length,
         used=used,
+        controller_text=controller_text,
     )
 
 
@@ -127,6 +139,12 @@ def _chunk(
     pattern = re.compile("|".join(rf"(?<![A-Za-z0-9_'])({re.escape(name)})(?![A-Za-z0-9_'(])" for name in names))
     texts = {u: pattern.sub(lambda found: f"({commands[found.group()]})", text) for u, text in inner.items()}
     return {"targets": [f"{name}_{i}" for i in range(length) for name in names], "inner": texts}
+
+
+def _check_reserved(targets: Any) -> None:
+    for name in targets if is_several(targets) else ():
+        if name in _RESERVED:
+            raise ValueError(f"targets has {name!r}, but expressions have this name; expected another one, such as 'target'")
 
 
 def _check_targets(system: EquationSystem, targets: Any, inner: Mapping[str, Any]) -> None:

@@ -8,6 +8,7 @@ from typing import Any, Mapping, Sequence
 
 import numpy as np
 
+from ._native import Batch
 from ._episode_numbers import Request, check_float_type, each, episode_number, largest_commands, scaled_law
 from ._settings import OPTIONS, common, count, is_several, law, refuse_others
 from ._task_requests import TaskRequest, task_request
@@ -81,7 +82,19 @@ def native_equations(
         "error_scale": [clock, sensor],
         "lengths": settings["lengths"],
     }
+    if task.controller_text is not None:
+        _check_controller(task, settings)
     return EquationPreset(system.name, task.observed, task.actions, task.levels), settings
+
+
+def _check_controller(task: TaskRequest, settings: Mapping[str, Any]) -> None:
+    """Let the engine check an inner controller with the names of the caller, as without a chunk."""
+    subject = dict(settings["subject"])
+    subject["task"] = task.controller_text
+    subject["saturation"] = [("constant", [math.inf])] * (len(task.actions) // task.length)
+    # One environment has one of the numbers of all.
+    subject["varied"] = [(name, ("constant", values[:1]) if kind == "each" else (kind, values)) for name, (kind, values) in subject["varied"]]
+    Batch()._set_up({**settings, "num_envs": 1, "threads": 1, "subject": subject}, 0)
 
 
 def _check_system(system: EquationSystem, given: Mapping[str, Any]) -> None:

@@ -203,3 +203,31 @@ def test_a_chunk_may_have_hundreds_of_actions():
 def test_targets_of_chunks_are_checked_as_without_chunks(given, text):
     with pytest.raises((TypeError, ValueError), match=text):
         arm(dt=0.02, chunk=(2, 1), **given)
+
+
+@pytest.mark.parametrize("chunk", [None, (3, 1)])
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("pi", "'pi', but expressions have this name"),
+        ("age", "'age', but expressions have this name"),
+        ("t", "'t', but expressions have this name"),
+        ("if", "'if', but expressions have this name"),
+        ("sin", "'sin', but expressions have this name"),
+        ("pull", "`pull` is given twice"),
+        ("", "`` is no name"),
+        ("a b", "`a b` is no name"),
+    ],
+)
+def test_no_target_has_a_name_of_expressions_with_or_without_a_chunk(name, text, chunk):
+    system = System(acceleration={"q": "pull - q"}, let={"pull": "2*u"}, inputs=["u"], parameters={"k": 1.0})
+    given = {"dt": 0.1, "reward": "-q^2", "inner": {"u": "q"}, "inner_period": 0.1, "chunk": chunk, "k": np.array([1.0, 2.0])}
+    with pytest.raises(ValueError, match=text):
+        Environments(system, 2, targets=[name], **given)
+    assert len(Environments(system, 2, targets=["goal"], **given).preset.actions) == (chunk or [1])[0]
+
+
+def test_a_target_of_a_file_has_no_name_of_expressions():
+    task = {"reward": "0", "targets": ["t"], "inner": {"u": "t - q"}, "inner_period": 0.1}
+    with pytest.raises(ValueError, match="targets has 't'"):
+        Environments(System(acceleration={"q": "u"}, inputs=["u"], task=task), 1, dt=0.1)
