@@ -21,8 +21,9 @@ from ._attributes import keywords_of
 from ._classic_attributes import ClassicAttributes
 from ._classic_starts import drawn_start, start_bounds, start_ranges
 from ._classic_systems import CLASSIC, ClassicSystem, system_of
-from ._settings import nearest
+from ._settings import ends, nearest
 from ._gymnasium_envs import Env, VectorEnv
+from ._spec_keywords import keyword_value
 from .environments import Environments
 
 __all__ = [
@@ -59,12 +60,19 @@ def _classic(name: str) -> ClassicSystem:
 
 def _seen(classic: ClassicSystem, settings: Any, given: dict[str, Any], own: Any) -> Box:
     """Return the observation space: that of Gymnasium, unless keywords change what is observed or how far it goes."""
-    if given.get("observe") is not None or given.get("project") is not None:
+    if any(given.get(name) is not None for name in ("observe", "project", "terminated")) or _starts_outside(classic, keyword_value(given.get("start"))):
         return Box(np.float32(own.low), np.float32(own.high), dtype=np.float32)
     low, high = (np.array(ends, np.float32) for ends in zip(*classic.limits))
     if any(std > 0 for _, std in settings["subject"]["noise"]):
         low, high = np.full_like(low, -np.inf), np.full_like(high, np.inf)
     return Box(low, high, dtype=np.float32)
+
+
+def _starts_outside(classic: ClassicSystem, start: Mapping[str, Any] | None) -> bool:
+    """Whether an episode can start where Gymnasium's observation space ends."""
+    limits = dict(zip(classic.system["task"]["observe"], classic.limits))
+    ranges = {name: (ends(f"start of {name}", value), limits[name]) for name, value in (start or {}).items() if name in limits}
+    return any(low < least or high > most for (low, high), (least, most) in ranges.values())
 
 
 def _action_space(classic: ClassicSystem, given: dict[str, Any], space: Any) -> Any:

@@ -2,11 +2,15 @@
 
 import subprocess
 import sys
+import warnings
 
+import gymnasium
 import numpy as np
 import pytest
 
 import libration
+from libration import classic_control
+from libration.classic_control import AcrobotEnv, CartPoleEnv, MountainCarEnv, PendulumEnv
 
 TWO = libration.System(acceleration={"q": "u - 3*q", "p": "w - p"}, inputs=["u", "w"])
 SPACES = ("single_observation_space", "single_action_space", "observation_space", "action_space")
@@ -49,3 +53,43 @@ for name in ("single_observation_space", "single_action_space", "observation_spa
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize(
+    ("twin", "given"),
+    [
+        (CartPoleEnv, {"terminated": ["x < -10", "x > 10"]}),
+        (CartPoleEnv, {"terminated": ["x > 2.4"]}),
+        (CartPoleEnv, {"start": {"x": (5, 6)}}),
+        (CartPoleEnv, {"start": {"theta": libration.Uniform(-1, 1)}}),
+        (PendulumEnv, {"start": {"theta'": np.array([-20.0, 20.0])}}),
+        (MountainCarEnv, {"start": {"x": -2.0}}),
+        (AcrobotEnv, {"start": {"theta2'": (0, 60)}}),
+    ],
+)
+def test_observations_of_twins_with_other_ends_or_starts_are_in_their_space(twin, given):
+    env = twin(**given)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for seed in range(20):
+            observation, _ = env.reset(seed=seed)
+            assert observation in env.observation_space
+            for _ in range(200):
+                observation, _, terminated, _, _ = env.step(env.action_space.sample() if seed else env.action_space.sample() * 0)
+                assert observation in env.observation_space
+                if terminated:
+                    break
+    # The vector environment has the same space.
+    vector = getattr(classic_control, twin.__name__.replace("Env", "VectorEnv"))
+    assert vector(2, **given).single_observation_space == env.observation_space
+
+
+def test_the_spec_of_a_twin_makes_the_same_space():
+    env = gymnasium.make("libration/CartPole-v1", start={"x": libration.Uniform(-5, 5)})
+    spec = gymnasium.envs.registration.EnvSpec.from_json(env.spec.to_json())
+    assert gymnasium.make(spec).observation_space == env.observation_space
+
+
+def test_twins_whose_starts_lie_within_have_the_space_of_gymnasium():
+    for twin, start in ((CartPoleEnv, {"x": (-2, 2)}), (PendulumEnv, {"theta": (-20, 20), "theta'": 8.0}), (AcrobotEnv, {"theta1": (-9, 9)})):
+        assert twin(start=start).observation_space == twin().observation_space
