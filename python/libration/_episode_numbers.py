@@ -77,6 +77,13 @@ def largest_commands(value: Any, inputs: int, num_envs: int) -> list[Request]:
     return [episode_number("max_action", x, num_envs, "greater than 0", lambda x: x > 0) for x in columns]
 
 
+def largest_command_names(saturation: Any, actions: Sequence[str]) -> list[str]:
+    """Return the names of largest commands in ``parameters``, from the settings of the engine; none if all are constants."""
+    if isinstance(saturation, float) or all(kind == "constant" for kind, _ in saturation):
+        return []
+    return ["max_action"] if len(actions) == 1 else [f"max_action_{name}" for name in actions]
+
+
 def largest(saturation: Any) -> list[float]:
     """Return the largest command of each input in any episode, from the settings of the engine."""
     return [saturation] if isinstance(saturation, float) else [max(values) for _, values in saturation]

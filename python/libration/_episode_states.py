@@ -7,6 +7,7 @@ from typing import Any, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ._episode_numbers import largest_command_names
 from ._settings import nearest
 
 OPTIONS = ("reset_mask", "state", "low", "high")
@@ -80,10 +81,7 @@ def rows_of(
 def episode_numbers(settings: Mapping[str, Any], inputs: Sequence[str], drawn: NDArray[Any]) -> dict[str, NDArray[Any]]:
     """Return the numbers that vary by name, from all that the engine draws for each episode."""
     subject = settings["subject"]
-    names = [name for name, _ in subject.get("varied", [])]
-    saturation = subject["saturation"]
-    if isinstance(saturation, list) and any(kind != "constant" for kind, _ in saturation):
-        names += ["max_action"] if len(inputs) == 1 else [f"max_action_{name}" for name in inputs]
+    names = [*(name for name, _ in subject.get("varied", [])), *largest_command_names(subject["saturation"], inputs)]
     found = {name: drawn[:, i].copy() for i, name in enumerate(names)}
     for i, name in enumerate(("observation_delay", "action_delay")):
         if name in settings["ranges"]:

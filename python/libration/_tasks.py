@@ -9,7 +9,7 @@ from typing import Any, Mapping, Sequence
 import numpy as np
 
 from ._native import Batch
-from ._episode_numbers import Request, check_float_type, each, episode_number, largest_commands, scaled_law
+from ._episode_numbers import Request, check_float_type, each, episode_number, largest_command_names, largest_commands, scaled_law
 from ._settings import OPTIONS, common, count, is_several, law, refuse_others
 from ._task_requests import TaskRequest, task_request
 from .equations import EquationSystem
@@ -73,6 +73,7 @@ def native_equations(
     settings["levels"] = list(task.levels)
     saturation = _saturation(given["max_action"], task, num_envs)
     _check_varied(varied, saturation, settings["dtype"])
+    _check_command_names(varied, saturation, task.actions)
     settings["subject"] = {
         "equations": (system.replace(**constants) if constants else system)._text,
         "task": task.text,
@@ -143,6 +144,16 @@ def _check_varied(varied: Mapping[str, Request], saturation: Sequence[Request], 
         check_float_type(name, request, dtype)
     for request in saturation:
         check_float_type("max_action", request, dtype, "greater than 0", lambda x: x > 0)
+
+
+def _check_command_names(varied: Mapping[str, Request], saturation: Sequence[Request], actions: Sequence[str]) -> None:
+    """Check that no parameter that varies has the name under which infos have a largest command."""
+    for name in largest_command_names(saturation, actions):
+        if name in varied:
+            raise ValueError(
+                f"the parameter {name!r} varies, but infos have the largest action of {name.removeprefix('max_action_')!r} under this name; "
+                f"help: give the parameter another name, such as '{name}_'"
+            )
 
 
 def _check_parameter_names(system: EquationSystem) -> None:

@@ -53,3 +53,13 @@ def test_numbers_beyond_the_float_type_are_refused_by_name(given, text):
     with pytest.raises(ValueError, match=text):
         Environments(SPRING, 2, dt=0.01, **given)
     Environments(SPRING, 2, dt=0.01, dtype="float64", **given)
+
+
+def test_no_parameter_that_varies_has_the_name_of_a_largest_action_that_varies():
+    system = System(acceleration={"q": "u - max_action_u*q", "p": "w - p"}, parameters={"max_action_u": 1.0}, inputs=["u", "w"])
+    given = {"dt": 0.1, "reward": "-q^2"}
+    with pytest.raises(ValueError, match="the parameter 'max_action_u' varies, but infos have the largest action of 'u' under this name; help: .* 'max_action_u_'"):
+        Environments(system, 3, max_action=[Uniform(1, 2), 1.0], max_action_u=Uniform(5, 6), **given)
+    # Only one of them is in infos.
+    for one in ({"max_action": [Uniform(1, 2), 1.0], "max_action_u": 5.0}, {"max_action": [2.0, 1.0], "max_action_u": Uniform(5, 6)}):
+        assert "max_action_u" in Environments(system, 3, **one, **given).parameters
