@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import copy
+import importlib
 from dataclasses import dataclass, field
 from typing import Any, Callable, Iterator
 
 import gymnasium
 import numpy as np
+from gymnasium.envs.registration import EnvSpec
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space, concatenate, create_empty_array, iterate
 
-__all__ = ["Breach", "Found", "NotChecked", "Step", "Subject", "first_difference", "leaves", "replaced", "rows"]
+__all__ = ["Breach", "Found", "NotChecked", "Step", "Subject", "first_difference", "leaves", "registered_id", "replaced", "rows", "spec_of"]
 
 #: A sentence, and the lines that show it.
 Found = tuple[str, tuple[str, ...]]
@@ -24,6 +26,19 @@ class Breach:
     check: str
     sentence: str
     lines: tuple[str, ...]
+
+
+def registered_id(name: str) -> str:
+    """Return the id in Gymnasium's registry of a name such as ``gym:CartPole-v1``, ``CartPole-v1`` or ``module:Name-v0``."""
+    return name.removeprefix("gym:")
+
+
+def spec_of(id: str) -> EnvSpec:
+    """Return the spec of an id, after the import of its module."""
+    module, _, name = id.rpartition(":")
+    if module:
+        importlib.import_module(module)
+    return gymnasium.spec(name)
 
 
 class NotChecked(Exception):
@@ -83,7 +98,8 @@ class Subject:
         self._given: VectorEnv | None = None
         self._made: list[VectorEnv] = []
         if isinstance(env, str):
-            gymnasium.spec(env)
+            env = registered_id(env)
+            spec_of(env)
             self._make, self.source = lambda n: gymnasium.make_vec(env, n), f'gymnasium.make_vec("{env}", NUM)'
         elif isinstance(env, VectorEnv):
             self._given, self.num_envs, self.source = env, env.num_envs, "..."

@@ -18,6 +18,8 @@ import gymnasium
 import numpy as np
 from gymnasium.spaces import Box, Discrete, MultiBinary, MultiDiscrete
 
+from ._vector_env_trial import registered_id
+
 __all__ = ["EnvironmentsMatch", "check_environments_match", "main"]
 
 Make = gymnasium.Env | str | Callable[[], gymnasium.Env]
@@ -240,7 +242,7 @@ class _Run:
 
 
 def _made(env: Make) -> gymnasium.Env:
-    made = gymnasium.make(env) if isinstance(env, str) else env
+    made = gymnasium.make(registered_id(env)) if isinstance(env, str) else env
     if not isinstance(made, gymnasium.Env) and callable(made):
         made = made()
     if not isinstance(made, gymnasium.Env):
@@ -279,7 +281,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     try:
         keywords = [_keywords(texts) for texts in (given.first, given.second)]
-        envs = [gymnasium.make(id, **own) for id, own in zip(given.ids, keywords)]
+        envs = [gymnasium.make(registered_id(id), **own) for id, own in zip(given.ids, keywords)]
         tolerances = {"tolerance_ulps": given.tolerance_ulps, "reward_tolerance": given.reward_tolerance}
         found = check_environments_match(*envs, steps=given.steps, seeds=given.seeds, **tolerances)
     except (gymnasium.error.Error, ImportError, TypeError, ValueError) as error:

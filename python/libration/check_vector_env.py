@@ -1,6 +1,7 @@
 """Check of the contract of :class:`gymnasium.vector.VectorEnv`.
 
-``python -m libration.check_vector_env CartPole-v1`` checks a registered environment, with exit code 1 if it breaks the contract.
+``python -m libration.check_vector_env CartPole-v1`` checks a registered environment, with exit code 1 if it breaks the contract. The prefix
+``gym:``, as in ``gym:CartPole-v1``, is that of Gymnasium's registry and may be left out.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 from gymnasium.vector import AutoresetMode, VectorEnv
 
 from ._vector_env_checks import CHECKS
-from ._vector_env_trial import Breach, NotChecked, Subject
+from ._vector_env_trial import Breach, NotChecked, Subject, registered_id, spec_of
 
 __all__ = ["VectorEnvReport", "check_vector_env", "main"]
 
@@ -122,7 +123,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         prog="python -m libration.check_vector_env",
         description="Check that vector environments keep the contract of Gymnasium.",
     )
-    parser.add_argument("id", nargs="+", help="id of a registered environment, such as CartPole-v1 or module:Name-v0")
+    parser.add_argument("id", nargs="+", help="id of a registered environment, such as CartPole-v1, gym:CartPole-v1 or module:Name-v0")
     parser.add_argument(
         "--vectorization-mode",
         choices=("sync", "async", "vector_entry_point"),
@@ -153,7 +154,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _trials(id: str, mode: str | None, autoreset: str | None) -> list[tuple[Callable[[int], VectorEnv], str]]:
     """Return the environments of an id, as functions of ``num_envs`` with the lines that make them."""
-    spec = gymnasium.spec(id)
+    id = registered_id(id)
+    spec = spec_of(id)
     if mode is None:
         mode = "sync" if spec.vector_entry_point is None else "vector_entry_point"
     if mode == "vector_entry_point":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from pathlib import Path
 from typing import Any
 
 import gymnasium
@@ -12,6 +13,7 @@ from gymnasium.spaces import Box
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
+from libration.check_environments_match import check_environments_match
 from libration.check_vector_env import check_vector_env, main
 
 
@@ -308,6 +310,22 @@ def test_the_command_has_exit_codes(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["Nope-v1"]) == 2
     assert main(["CartPole-v1", "--num-envs", "1"]) == 2
     assert "num_envs is 1, but it must be at least 2" in capsys.readouterr().err
+
+
+def test_an_id_may_have_the_prefix_of_the_registry_or_of_a_module(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    options = ["--vectorization-mode", "sync", "--autoreset-mode", "next-step", "--max-steps", "30"]
+    plain, prefixed = (capsys.readouterr().out for id in ("CartPole-v1", "gym:CartPole-v1") if main([id, *options]) == 0)
+    assert plain == prefixed
+    assert check_vector_env("gym:libration/CartPole-v1", max_steps=30).is_correct
+    text = "import gymnasium\ngymnasium.register('Pole-v0', entry_point='libration.classic_control:CartPoleEnv')\n"
+    (tmp_path / "registers_pole.py").write_text(text)
+    monkeypatch.syspath_prepend(tmp_path)
+    for id in ("registers_pole:Pole-v0", "gym:registers_pole:Pole-v0"):
+        assert main([id, *options]) == 0
+    assert main(["gym:Nope-v1"]) == 2 and main(["nope:Pole-v0"]) == 2
+    assert check_environments_match("gym:CartPole-v1", "CartPole-v1", steps=10)
 
 
 @pytest.mark.parametrize(
