@@ -11,11 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 from . import _native
 from ._keywords import check_keywords
 from ._settings import count, number
-from ._tasks import EquationPreset
 from .environments import Environments
 from .rollout import Rollout
 
 __all__ = ["ReplayBuffer", "Sequences", "Transitions"]
+
+_SIZES = (2, 3, 4)
+"""Numbers of observed numbers for which the engine has buffers."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,7 @@ class ReplayBuffer:
     Parameters
     ----------
     environments:
-        Environments of the rollouts to insert.
+        Environments of the rollouts to insert, with 2 to 4 observed numbers and one action. Discrete actions are stored as their commands.
     steps:
         Capacity in steps per environment.
     priorities:
@@ -79,7 +81,7 @@ class ReplayBuffer:
     Raises
     ------
     ValueError
-        For a capacity of zero.
+        For a capacity of zero, or environments with another number of observed numbers or actions.
     MemoryError
         If there is not enough memory.
     """
@@ -96,8 +98,12 @@ class ReplayBuffer:
     ) -> None:
         if not isinstance(environments, Environments):
             raise TypeError(f"environments must be Environments, not {type(environments).__name__}")
-        if isinstance(environments.preset, EquationPreset):
-            raise TypeError("a ReplayBuffer takes environments of the catalogue, not of a system by equations")
+        observed, actions = environments.preset.seen, environments.preset.actions
+        if len(observed) not in _SIZES or len(actions) != 1:
+            raise ValueError(
+                f"the environments have observations of length {len(observed)} and actions of length {len(actions)}; expected lengths 2 to 4 and 1; "
+                "help: observe=[…] selects observed numbers, and Rollout.observations, actions and rewards are arrays for any other buffer"
+            )
         settings = environments._settings
         self.seed = count("seed", seed, 0, 2**64 - 1)
         #: Number of the next draw.
@@ -105,7 +111,7 @@ class ReplayBuffer:
         self._buffer = _native.Buffer(
             count("steps", steps, 1, 2**40),
             settings["num_envs"],
-            len(environments.preset.seen),
+            len(observed),
             settings["dtype"] == "float32",
             bool(priorities),
             None if ends is None else count("ends", ends, 1, 2**40),

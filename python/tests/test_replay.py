@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from libration import Environments, ReplayBuffer, Uniform
+from libration import Environments, ReplayBuffer, System, Uniform
+from libration.classic_control import AcrobotVectorEnv, CartPoleVectorEnv, MountainCarContinuousVectorEnv, MountainCarVectorEnv, PendulumVectorEnv
 from libration.policies import Random
 
 
@@ -129,6 +130,40 @@ def test_a_rollout_of_other_environments_is_refused():
         envs = Environments("Oscillator", 8, dtype="float64")
         envs.reset(seed=0)
         buffer.insert(envs.rollout(Random(-1.0, 1.0), 51))
+
+
+@pytest.mark.parametrize("twin", [CartPoleVectorEnv, PendulumVectorEnv, MountainCarVectorEnv, MountainCarContinuousVectorEnv])
+def test_a_buffer_takes_rollouts_of_systems_by_equations(twin):
+    envs = twin(8, max_episode_steps=10, autoreset_mode="SameStep")
+    envs.reset(seed=0)
+    rollout = envs.rollout(Random(-1.0, 1.0), 32)
+    buffer = ReplayBuffer(envs, steps=40, priorities=True)
+    buffer.insert(rollout)
+    drawn = buffer.sample(2000)
+    step, n = np.divmod(drawn.indices.astype(int), 8)
+    for name in ("observations", "actions", "rewards", "terminated", "truncated"):
+        np.testing.assert_array_equal(getattr(drawn, name), getattr(rollout, name)[step, n])
+    ends = {(s, e): seen for s, e, seen in zip(rollout.episodes["steps"], rollout.episodes["environments"], rollout.episodes["final_observations"])}
+    ended = np.flatnonzero(drawn.truncated | drawn.terminated)
+    assert len(ended) > 100
+    for k in ended:
+        np.testing.assert_array_equal(drawn.next_observations[k], ends[step[k], n[k]])
+    assert not drawn.discounts[drawn.terminated].any()
+    assert buffer.sample_sequences(16, steps=4).observations.shape == (16, 4, len(envs.preset.seen))
+    assert buffer.update_priorities(drawn.indices, np.abs(drawn.rewards)) > 0
+
+
+@pytest.mark.parametrize(
+    ("envs", "text"),
+    [
+        (lambda: AcrobotVectorEnv(2), "length 6 and actions of length 1"),
+        (lambda: Environments(System(acceleration={"q": "u - p", "p": "w"}, inputs=["u", "w"]), 2, dt=0.1, reward="0"), "length 4 and actions of length 2"),
+        (lambda: Environments(System(rate={"q": "u - q"}, inputs=["u"]), 2, dt=0.1, reward="0"), "length 1 and actions of length 1"),
+    ],
+)
+def test_environments_for_which_there_is_no_buffer_are_refused_with_what_works(envs, text):
+    with pytest.raises(ValueError, match=f"observations of {text}; expected lengths 2 to 4 and 1; help: observe="):
+        ReplayBuffer(envs(), 10)
 
 
 @pytest.mark.parametrize("given", [{"jitter": 0.1}, {"omega2": Uniform(10, 20)}, {"action_delay": 0.0333}])
