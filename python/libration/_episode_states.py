@@ -13,6 +13,15 @@ from ._settings import nearest
 OPTIONS = ("reset_mask", "state", "low", "high")
 
 
+def options_of(options: Any) -> dict[str, Any]:
+    """Return a copy of the options of ``reset``; without options it is empty."""
+    if options is None:
+        return {}
+    if not isinstance(options, Mapping):
+        raise TypeError(f"options must be a dictionary, not {type(options).__name__}")
+    return dict(options)
+
+
 def refuse_options(options: Mapping[str, Any]) -> None:
     """Raise a ValueError for options of ``reset`` that have no effect."""
     for name in options:

@@ -13,6 +13,7 @@ from gymnasium.vector.utils import batch_space
 
 from ._attributes import SETTABLE, keywords_of, refused, unknown
 from ._environment_keywords import Unpack, VectorKeywords
+from ._episode_states import options_of
 from ._presets import Preset
 from ._spaces import single_spaces
 from ._spec_keywords import JSON_SPEC
@@ -234,8 +235,9 @@ class Env(gymnasium.Env):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
+        options = options_of(options)
         super().reset(seed=seed)
-        if options is not None and "reset_mask" in options:
+        if "reset_mask" in options:
             raise ValueError("options has 'reset_mask', but it belongs to vector environments")
         observations, infos = self._all.reset(seed=None if seed is None else [seed], options=options)
         return observations[0], _single(infos)

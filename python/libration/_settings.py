@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import numbers
+import sys
 import warnings
 from typing import Any, Container, Iterable, Sequence
 
@@ -189,7 +190,7 @@ def delays(
         for name, (_, most) in steps.items():
             if most > 4096:
                 raise ValueError(
-                    f"{name} is {named[name][1]!r} s, which is {most} steps of {dt / parts:g} s, "
+                    f"{name} is {named[name][1]!r} s, which is {most:.6g} steps of {dt / parts:g} s, "
                     "but it must be at most 4096 of them"
                 )
         return equal
@@ -314,6 +315,18 @@ def refuse_others(given: Iterable[str], taken: Container[str], known: Iterable[s
             raise TypeError(f"unexpected keyword argument {name!r}: {nearest(name, known)}")
 
 
+_NORMAL = {"float32": (2.0**-126, (2 - 2.0**-23) * 2.0**127), "float64": (sys.float_info.min, sys.float_info.max)}
+"""The smallest and the largest normal number of each float type."""
+
+
+def check_step(name: str, dt: float, substeps: int, dtype: str) -> None:
+    """Raise a ValueError for a time step that is no normal number of the float type, of which rounding leaves few digits or none."""
+    low, high = _NORMAL.get(dtype, (0.0, math.inf))
+    if not low <= dt / substeps <= high:
+        steps = f", with {substeps} substeps {dt / substeps!r} s," if substeps > 1 else ","
+        raise ValueError(f"{name} is {dt!r} s{steps} but a step of the integrator must be {low:.3g} to {high:.3g} s in {dtype}")
+
+
 def common(given: dict[str, Any], inner_period: float | None = None, used: int = 1) -> dict[str, Any]:
     """Return the settings that environments of all systems have."""
     dt = positive("dt", given["dt"])
@@ -345,6 +358,7 @@ def common(given: dict[str, Any], inner_period: float | None = None, used: int =
     unlimited = isinstance(limit, numbers.Real) and limit in (math.inf, -1)
     limit = None if unlimited else count("max_episode_steps", limit, 1, 2**32 - 1)
     integrator, dtype = given["integrator"], given["dtype"]
+    check_step("dt", dt, substeps, str(dtype))
     if not isinstance(integrator, str):
         raise TypeError(f"integrator must be a string, not {type(integrator).__name__}")
     return {

@@ -6,7 +6,10 @@ import re
 from dataclasses import dataclass
 from typing import Any, Mapping, Sequence
 
-from ._settings import TASK_OPTIONS, count, ends, inner_count, is_several, number, positive
+import numpy as np
+
+from ._episode_numbers import check_float_type
+from ._settings import TASK_OPTIONS, count, ends, inner_count, is_several, number, positive, shown
 from ._toml import text_of
 from .equations import EquationSystem
 from .perturbations import PD
@@ -58,6 +61,9 @@ def task_request(system: EquationSystem, keywords: Table) -> TaskRequest:
     period = _chosen(task, own, "inner_period", None)
     if inner and period is None:
         raise TypeError("inner_period is required with inner: the time in s between samples of the controller")
+    if task["actions"] is not None:
+        task["actions"] = _levels(task["actions"], keywords["dtype"])
+    levels = tuple(_levels(_chosen(task, own, "actions", ()), keywords["dtype"]))
     chunk, length, used, controller_text = keywords["chunk"], 1, 1, None
     _check_reserved(_chosen(task, own, "targets", ()))
     if chunk is not None:
@@ -78,12 +84,26 @@ def task_request(system: EquationSystem, keywords: Table) -> TaskRequest:
         text=_text(system, task, own) if is_changed else None,
         observed=tuple(_chosen(task, own, "observe", system.states)),
         actions=tuple(_chosen(task, own, "targets", ())) or system.inputs,
-        levels=tuple(float(level) for level in _chosen(task, own, "actions", ())),
+        levels=levels,
         inner_period=period if inner else None,
         length=length,
         used=used,
         controller_text=controller_text,
     )
+
+
+def _levels(actions: Any, dtype: str) -> list[float]:
+    """Return the commands of discrete actions as floats."""
+    if getattr(actions, "ndim", 1) != 1 or not (is_several(actions) or hasattr(actions, "tolist")):
+        raise TypeError(f"actions is {shown(actions)}, but it must be a list of commands")
+    levels = [number(f"actions[{i}]", x, "finite") for i, x in enumerate(actions)]
+    for i, level in enumerate(levels):
+        check_float_type(f"actions[{i}]", ("constant", [level]), dtype)
+    with np.errstate(over="ignore"):
+        rounded = np.array(levels).astype(dtype if dtype == "float32" else "float64")
+    if len(levels) == 1 or (np.diff(rounded) <= 0).any():
+        raise ValueError(f"actions is {levels}, but it must be at least two commands in ascending order in {dtype}")
+    return levels
 
 
 def _chosen(task: Table, own: Table | None, name: str, default: Any) -> Any:
@@ -185,9 +205,7 @@ def _text(system: EquationSystem, task: Table, own: Table | None) -> str:
         for name, text in table[key].items():
             if not isinstance(text, str):
                 raise TypeError(f"{key} of {name} must be an expression, not {type(text).__name__}")
-    if not is_several(table["actions"]) and not hasattr(table["actions"], "tolist"):
-        raise TypeError(f"actions is {table['actions']!r}, but it must be a list of commands")
-    table["actions"] = [number("actions", x, "finite") for x in table["actions"]] or None
+    table["actions"] = [float(x) for x in table["actions"]] or None
     # The file's ranges hold for what is not given.
     starts = {**own["start"], **table["start"]}
     table["start"] = {name: ends(f"start of {name}", value) for name, value in starts.items()}

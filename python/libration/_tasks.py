@@ -72,6 +72,9 @@ def native_equations(
         raise ValueError(f"skew is {given['skew']!r}, but it must be 0 where each episode draws its jitter")
     settings["levels"] = list(task.levels)
     saturation = _saturation(given["max_action"], task, num_envs)
+    for name, value in {**system.parameters, **constants}.items():
+        if name not in varied:
+            check_float_type(name, ("constant", [value]), settings["dtype"])
     _check_varied(varied, saturation, settings["dtype"])
     _check_command_names(varied, saturation, task.actions)
     settings["subject"] = {

@@ -21,6 +21,7 @@ from ._attributes import keywords_of
 from ._classic_attributes import ClassicAttributes
 from ._classic_starts import drawn_start, start_bounds, start_ranges
 from ._classic_systems import CLASSIC, ClassicSystem, system_of
+from ._episode_states import options_of
 from ._settings import ends, nearest
 from ._gymnasium_envs import Env, VectorEnv
 from ._spec_keywords import keyword_value
@@ -173,7 +174,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
         super().set_attr(name, values)
 
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
-        options = dict(options or {})
+        options = options_of(options)
         if self._starts == "libration":
             observations, infos = super().reset(seed=seed, options=start_ranges(self._classic, options))
             return observations.astype(np.float32, copy=False), infos
@@ -279,7 +280,7 @@ class ClassicEnv(ClassicAttributes, Env):
         return {**self.__dict__, "_picture": None}
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
-        options, self._action = dict(options or {}), None
+        options, self._action = options_of(options), None
         if self._starts == "libration":
             observation, info = super().reset(seed=seed, options=start_ranges(self._classic, options))
             return observation.astype(np.float32), info

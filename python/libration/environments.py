@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _native
 from ._environment_keywords import Unpack, VectorKeywords
-from ._episode_states import episode_numbers, refuse_options, rows_of, start_of
+from ._episode_states import episode_numbers, options_of, refuse_options, rows_of, start_of
 from ._keywords import check_keywords
 from ._preset_equations import has_varied, native_varied
 from ._presets import PRESETS, Preset
@@ -285,7 +285,7 @@ class Environments(_native.Batch):
     def _begin(
         self, seeds: list[int | None], options: dict[str, Any] | None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        options = {} if options is None else options
+        options = options_of(options)
         refuse_options(options)
         mask = self._mask(options["reset_mask"]) if "reset_mask" in options else None
         which = np.arange(self.num_envs) if mask is None else np.flatnonzero(mask)

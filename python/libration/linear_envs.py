@@ -13,6 +13,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from ._environment_keywords import LoopKeywords, Unpack
+from ._episode_states import options_of
 from ._settings import count, nearest, number
 from .linear_loops import OpenLoops
 
@@ -100,8 +101,8 @@ class LinearVectorEnv(gymnasium.vector.VectorEnv):
         """Begin an episode in all environments; ``seed`` is a number. There are no ``options``."""
         if isinstance(seed, list):
             raise TypeError("seed is a list; expected a number: environment n draws from stream n of one seed")
-        if options:
-            raise ValueError(f"options has {next(iter(options))!r}; expected no options")
+        for name in options_of(options):
+            raise ValueError(f"options has {name!r}; expected no options")
         super().reset(seed=seed)
         observations = self._begin()
         return observations, {}

@@ -1,0 +1,81 @@
+"""Errors of environments: the name of the argument, its value and what is allowed."""
+
+import numpy as np
+import pytest
+
+import libration
+from libration import Environments, System, VectorEnv
+from libration.classic_control import CartPoleEnv, CartPoleVectorEnv
+from libration.envs import PendulumEnv
+
+ARM = System(acceleration={"q": "u/m - 3*q"}, parameters={"m": 0.5}, inputs=["u"])
+
+
+@pytest.mark.parametrize("given", [{}, {"substeps": 3}, {"observation_delay": (0.0, 0.1)}])
+def test_a_latency_of_many_steps_is_shown_in_few_digits(given):
+    with pytest.raises(ValueError, match=r"^action_delay is 1e\+300 s, which is \de\+301 steps of 0.\d+ s, but it must be at most 4096 of them$"):
+        Environments("Pendulum", 2, action_delay=1e300, **given)
+
+
+@pytest.mark.parametrize("options", [5, 0, [], "ab", [("state", 1)]])
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: Environments("Pendulum", 2),
+        lambda: VectorEnv("Pendulum", 2),
+        PendulumEnv,
+        CartPoleEnv,
+        lambda: CartPoleVectorEnv(2),
+        lambda: CartPoleVectorEnv(2, starts="gymnasium"),
+        lambda: libration.CustomTaskVectorEnv("Pendulum", 2, task=lambda before, actions, after: after[:, 0]),
+        lambda: libration.LinearVectorEnv(libration.LinearPlant.mechanical(1.0, 0.1, 10.0, 1.0), 2, period=0.01),
+    ],
+)
+def test_options_that_are_no_dictionary_are_an_error_with_their_type(make, options):
+    with pytest.raises(TypeError, match=f"^options must be a dictionary, not {type(options).__name__}$"):
+        make().reset(options=options)
+
+
+@pytest.mark.parametrize(
+    ("actions", "error", "text"),
+    [
+        (np.array(3), TypeError, r"actions is array\(3\), but it must be a list of commands"),
+        (3, TypeError, "actions is 3, but it must be a list"),
+        (np.ones((2, 2)), TypeError, "actions is array.*, but it must be a list"),
+        ([0, "a"], TypeError, r"actions\[1\] must be a number, not str"),
+        ([0, float("nan")], ValueError, r"actions\[1\] is nan, but it must be finite"),
+        ([0, 1e300], ValueError, r"actions\[1\] is 1e\+300, but it must be finite in float32"),
+        ([1, 1 + 1e-12], ValueError, r"actions is \[1.0, 1.000000000001\], but it must be .* ascending order in float32"),
+        ([1, -1], ValueError, "actions is .* ascending order in float32"),
+        ([1], ValueError, "actions is .* at least two commands"),
+    ],
+)
+def test_wrong_actions_are_an_error_of_this_name(actions, error, text):
+    with pytest.raises(error, match=f"^{text}"):
+        Environments(ARM, 2, dt=0.1, reward="-q^2", actions=actions)
+    assert Environments(ARM, 2, dt=0.1, reward="-q^2", actions=[1, 1 + 1e-12], dtype="float64").preset.levels == (1.0, 1 + 1e-12)
+
+
+def test_actions_of_a_file_must_differ_in_the_float_type():
+    system = System(acceleration={"q": "u"}, inputs=["u"], task={"reward": "0", "actions": [1.0, 1.0 + 1e-12]})
+    with pytest.raises(ValueError, match="^actions is .* in float32"):
+        Environments(system, 2, dt=0.1)
+
+
+def test_constants_must_be_finite_in_the_float_type():
+    with pytest.raises(ValueError, match=r"^m is 1e\+300, but it must be finite in float32"):
+        Environments(ARM, 2, dt=0.1, reward="-q^2", m=1e300)
+    with pytest.raises(ValueError, match=r"^m is 1e\+300, but it must be finite in float32"):
+        Environments(ARM.replace(m=1e300), 2, dt=0.1, reward="-q^2")
+    Environments(ARM, 2, dt=0.1, reward="-q^2", m=1e300, dtype="float64")
+    Environments(ARM.replace(m=1e300), 2, dt=0.1, reward="-q^2", m=np.array([1.0, 2.0]))
+
+
+@pytest.mark.parametrize(("dt", "dtype"), [(1e-320, "float64"), (1e-310, "float64"), (1e-40, "float32"), (1e39, "float32"), (1e300, "float32")])
+@pytest.mark.parametrize("name", ["Pendulum", ARM])
+def test_a_time_step_must_be_a_normal_number(name, dt, dtype):
+    given = {} if name == "Pendulum" else {"reward": "-q^2"}
+    with pytest.raises(ValueError, match=f"^dt is .* s, but a step of the integrator must be .* s in {dtype}"):
+        Environments(name, 2, dt=dt, dtype=dtype, **given)
+    with pytest.raises(ValueError, match=r"^dt is 2e-38 s, with 4 substeps 5e-39 s, but a step"):
+        Environments(name, 2, dt=2e-38, substeps=4, **given)
