@@ -61,7 +61,10 @@ class Environments(_native.Batch):
         steps; else a step begins where each latency ends, and their lengths differ. With an inner controller or a chunk, and with latencies that
         episodes draw, the smallest number up to 1000.
     action_delay, observation_delay:
-        Latencies of actions and observations in s: a number, or a pair ``(low, high)``, from which each episode draws one.
+        Latencies of actions and observations in s: a number, or a pair ``(low, high)``, from which each episode draws one. The engine draws whole
+        steps of the integrator, ``low``, ``low + dt/substeps``, … ``high``, each as likely; more ``substeps`` make the values finer. A latency
+        within ``dt`` can raise the default of ``substeps``, which changes how the system is integrated: a comparison with and without latency
+        requires the same ``substeps`` in both.
     jitter:
         Jitter ``ε`` of each step of the integrator, ``dt·(1 + ε)``: the standard deviation of a Gaussian, or ``("uniform", std)``,
         ``("gaussian", std)``. Negative steps become zero.

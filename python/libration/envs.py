@@ -127,7 +127,7 @@ class SystemEnv(Env):
 
     Timing and noise (all 0 by default):
 
-    - `action_delay`, `observation_delay`: latency in s; a pair `(low, high)` is drawn for each episode.
+    - `action_delay`, `observation_delay`: latency in s; of a pair `(low, high)` each episode draws whole steps of the integrator.
     - `jitter`: standard deviation of the length of each step of the integrator, relative to its length; or `("uniform", std)`.
     - `skew`: standard deviation of the rate of the clock of an episode; or `("uniform", std)`.
     - `observation_noise`: standard deviation of the noise of each observed number, in its unit; or `("uniform", std)`.
@@ -235,7 +235,7 @@ class OscillatorEnv(Env):
 
     Timing and noise (all 0 by default):
 
-    - `action_delay`, `observation_delay`: latency in s; a pair `(low, high)` is drawn for each episode.
+    - `action_delay`, `observation_delay`: latency in s; of a pair `(low, high)` each episode draws whole steps of the integrator.
     - `jitter`: standard deviation of the length of each step of the integrator, relative to its length; or `("uniform", std)`.
     - `skew`: standard deviation of the rate of the clock of an episode; or `("uniform", std)`.
     - `observation_noise`: standard deviation of the noise of each observed number, in its unit; or `("uniform", std)`.
@@ -318,7 +318,7 @@ class PendulumEnv(Env):
 
     Timing and noise (all 0 by default):
 
-    - `action_delay`, `observation_delay`: latency in s; a pair `(low, high)` is drawn for each episode.
+    - `action_delay`, `observation_delay`: latency in s; of a pair `(low, high)` each episode draws whole steps of the integrator.
     - `jitter`: standard deviation of the length of each step of the integrator, relative to its length; or `("uniform", std)`.
     - `skew`: standard deviation of the rate of the clock of an episode; or `("uniform", std)`.
     - `observation_noise`: standard deviation of the noise of each observed number, in its unit; or `("uniform", std)`.
@@ -401,7 +401,7 @@ class DuffingEnv(Env):
 
     Timing and noise (all 0 by default):
 
-    - `action_delay`, `observation_delay`: latency in s; a pair `(low, high)` is drawn for each episode.
+    - `action_delay`, `observation_delay`: latency in s; of a pair `(low, high)` each episode draws whole steps of the integrator.
     - `jitter`: standard deviation of the length of each step of the integrator, relative to its length; or `("uniform", std)`.
     - `skew`: standard deviation of the rate of the clock of an episode; or `("uniform", std)`.
     - `observation_noise`: standard deviation of the noise of each observed number, in its unit; or `("uniform", std)`.

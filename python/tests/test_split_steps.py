@@ -8,6 +8,7 @@ import pytest
 
 import libration
 from libration import Environments, System
+from libration.classic_control import PendulumVectorEnv
 
 SPRING = System(acceleration={"q": "-9*q + u"}, inputs=["u"])
 
@@ -93,6 +94,37 @@ def test_split_steps_hold_for_presets_with_every_autoreset(tmp_path):
         assert np.array_equal(envs.reset(seed=3)[0][1:2], alone.reset(seed=4)[0])
         for _ in range(4):
             assert np.array_equal(envs.step(np.ones((3, 1), np.float32))[0][1:2], alone.step(np.ones((1, 1), np.float32))[0])
+
+
+@pytest.mark.parametrize(("delay", "substeps"), [(0.02, 5), (0.1 / 3, 3), (0.05, 1), ((0.0, 0.02), 5)])
+def test_a_latency_leaves_the_free_system_of_the_same_substeps(delay, substeps):
+    given = {"starts": "libration", "dtype": "float64"}
+    late, baseline, other = PendulumVectorEnv(4, action_delay=delay, **given), PendulumVectorEnv(4, substeps=substeps, **given), PendulumVectorEnv(4, **given)
+    assert late.substeps == substeps
+    for envs in (late, baseline, other):
+        envs.reset(seed=0, options={"state": [3.0, 0.5]})
+        for _ in range(20):
+            envs.step(np.zeros((4, 1)))
+    np.testing.assert_array_equal(late.states, baseline.states)
+    assert (substeps == 1) == np.array_equal(late.states, other.states)
+
+
+@pytest.mark.parametrize(
+    ("given", "values"),
+    [
+        ({"action_delay": (0.0, 0.1)}, [0.0, 0.05, 0.1]),
+        ({"action_delay": libration.Uniform(0.0, 0.02)}, [0.0, 0.01, 0.02]),
+        ({"action_delay": (0.0, 0.1), "substeps": 10}, np.arange(21) * 0.005),
+    ],
+)
+def test_an_episode_draws_whole_steps_of_the_integrator_each_as_likely(given, values):
+    envs = PendulumVectorEnv(4000, **given)
+    envs.reset(seed=0)
+    found, counts = np.unique(np.round(envs.parameters["action_delay"], 9), return_counts=True)
+    np.testing.assert_allclose(found, values, atol=1e-9)
+    # Five standard deviations of a count.
+    share = 4000 / len(values)
+    assert np.abs(counts - share).max() < 5 * np.sqrt(share)
 
 
 @pytest.mark.parametrize(("dt", "delay"), [(0.05, 0.033333), (0.01, 0.012345), (0.05, 1e-8), (0.05, 10.0333)])
