@@ -106,9 +106,7 @@ class Environments(_native.Batch):
     copy:
         Whether each step returns arrays that nothing overwrites.
     buffers:
-        With ``copy=False``: the number of arrays that steps fill in turn (default: 2). Each :meth:`reset` and :meth:`set_state` takes a turn
-        as well, and a reset with ``state``, ``low`` or ``high`` takes two. An array is overwritten ``buffers`` turns after its own. In the
-        twins of Gymnasium's classic control only steps take turns, and a reset returns a new array.
+        With ``copy=False``: the number of arrays that steps fill in turn (default: 2). :meth:`reset` and :meth:`set_state` return new arrays.
     parameter_infos:
         Whether ``infos`` of ``reset`` and ``step`` have :attr:`parameters`.
     **parameters:

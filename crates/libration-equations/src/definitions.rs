@@ -159,6 +159,6 @@ fn is_column(name: &str) -> bool {
 }
 
 /// Whether a name has a meaning in every expression.
-fn is_reserved(name: &str) -> bool {
+pub(super) fn is_reserved(name: &str) -> bool {
     ["t", "pi", "if", BEFORE].contains(&name) || Function::from_name(name).is_some()
 }

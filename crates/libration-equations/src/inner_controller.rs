@@ -1,6 +1,6 @@
 //! Controllers between the actions of a task and the inputs of a system.
 
-use super::definitions::is_name;
+use super::definitions::{is_name, is_reserved};
 use super::equations::define_values;
 use super::program::Program;
 use super::program_builder::ProgramBuilder;
@@ -40,6 +40,8 @@ pub(super) fn program(
         let taken = resolver.defines(target) || definitions.inputs.contains(target);
         let reason = if !is_name(target) {
             "no name"
+        } else if is_reserved(target) {
+            "a name of the language"
         } else if taken || task.targets[..i].contains(target) {
             "given twice"
         } else {

@@ -96,6 +96,12 @@ fn wrong_projections_and_inner_controllers_are_errors_with_their_keys() {
         ("task.inner", "without targets", vec![], pairs(&[("u", "0"), ("w", "0")])),
         ("task.targets", "`x` is given twice", vec!["x"], pairs(&[("u", "0"), ("w", "0")])),
         ("task.targets", "`1` is no name", vec!["1"], pairs(&[("u", "0"), ("w", "0")])),
+        (
+            "task.targets",
+            "`t` is a name of the language",
+            vec!["t"],
+            pairs(&[("u", "0"), ("w", "0")]),
+        ),
         ("task.inner.u", "unknown name `w`", vec!["goal"], pairs(&[("u", "w"), ("w", "0")])),
     ] {
         let (found, message) = with(&|task| {

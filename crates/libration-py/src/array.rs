@@ -93,13 +93,25 @@ where
     {
         return Ok(old.clone());
     }
-    let new = if shape.iter().product::<usize>().saturating_mul(size_of::<T>()) < LARGE {
-        allocate(py, shape)?
-    } else {
-        allocate_aligned(py, shape)?
-    };
+    let new = allocate_by_size(py, shape)?;
     *kept = Some(ReusedArray { array: new.clone().into_any().unbind(), at: new.data() as usize });
     Ok(new)
+}
+
+/// Returns a new array, which the caller must fill; a large one is aligned to a cache line.
+///
+/// # Errors
+/// A `MemoryError`.
+pub(crate) fn allocate_by_size<'py, T: Element + Zeroable, const N: usize>(
+    py: Python<'py>,
+    shape: [usize; N],
+) -> PyResult<Bound<'py, Array<T, N>>>
+where
+    [usize; N]: IntoDimension<Dim = Dim<[usize; N]>>,
+    Dim<[usize; N]>: Dimension,
+{
+    let bytes = shape.iter().product::<usize>().saturating_mul(size_of::<T>());
+    if bytes < LARGE { allocate(py, shape) } else { allocate_aligned(py, shape) }
 }
 
 /// Whether an array is contiguous and writable.

@@ -158,7 +158,7 @@ impl Batch {
             episodes.stood(&ended);
         }
         outcome?;
-        with_batch!(batch, environments => step::observe_copy(slf.py(), &mut **environments, episodes))
+        with_batch!(batch, environments => step::observe(slf.py(), &mut **environments, episodes))
     }
 
     /// Returns positions and velocities, `(num_envs, 2)`; of a system by equations its states.

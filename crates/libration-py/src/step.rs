@@ -10,8 +10,8 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 
 use crate::array::{
-    Array, Number, ReusedArray, allocate, are_finite, bytes_of, contiguous_actions, lies_in,
-    reuse_or_allocate, view_mut,
+    Array, Number, ReusedArray, allocate, allocate_by_size, are_finite, bytes_of,
+    contiguous_actions, lies_in, reuse_or_allocate, view_mut,
 };
 use crate::batch::{Batch, raise};
 use crate::error::{Raised, value_error};
@@ -135,31 +135,13 @@ impl EpisodeStates {
     }
 }
 
-/// The current observations, in the array of a step.
-pub(crate) fn observe<'py, T: Number>(
-    py: Python<'py>,
-    environments: &mut dyn AnyEnvironments<T>,
-    episodes: &mut EpisodeStates,
-) -> PyResult<Bound<'py, PyAny>> {
-    let Row { seen, .. } = episodes.row::<T>(py, environments.sizes()[0])?;
-    shown(py, environments, seen)
-}
-
 /// The current observations, in an array of their own.
-pub(crate) fn observe_copy<'py, T: Number>(
+pub(crate) fn observe<'py, T: Number>(
     py: Python<'py>,
     environments: &mut dyn AnyEnvironments<T>,
     episodes: &EpisodeStates,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let seen = allocate(py, [episodes.len, environments.sizes()[0]])?;
-    shown(py, environments, seen)
-}
-
-fn shown<'py, T: Number>(
-    py: Python<'py>,
-    environments: &mut dyn AnyEnvironments<T>,
-    seen: Bound<'py, Array<T, 2>>,
-) -> PyResult<Bound<'py, PyAny>> {
+    let seen = allocate_by_size(py, [episodes.len, environments.sizes()[0]])?;
     let to = view_mut(&seen);
     py.detach(|| environments.observe(to)).map_err(Raised::raised)?;
     Ok(seen.into_any())
