@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any, Iterable
 
+import numpy as np
+
 from ._presets import Preset
 from ._settings import TASK_OPTIONS, nearest, shown
 from .environments import Environments
@@ -19,7 +21,7 @@ _OF_TASK = TASK_OPTIONS
 
 
 def keywords_of(envs: Environments) -> dict[str, Any]:
-    """Return the keywords of each environment: those that were given, else their defaults."""
+    """Return the keywords of each environment: those that were given, else their defaults. A caller may change lists and arrays."""
     system, given = envs._arguments
     unused: tuple[str, ...]
     found = {name: value for name, value in given.items() if name not in _OF_ALL}
@@ -36,7 +38,16 @@ def keywords_of(envs: Environments) -> dict[str, Any]:
     limit = envs._settings["limit"]
     defaults |= {"substeps": envs.substeps, "max_episode_steps": math.inf if limit is None else limit}
     found["max_episode_steps"] = None
-    return {name: defaults.get(name) if value is None else value for name, value in found.items()}
+    return {name: copied(defaults.get(name) if value is None else value) for name, value in found.items()}
+
+
+def copied(value: Any) -> Any:
+    """Return a value with copies of its lists, dictionaries and arrays."""
+    if isinstance(value, np.ndarray):
+        return value.copy()
+    if isinstance(value, dict):
+        return {key: copied(one) for key, one in value.items()}
+    return type(value)(copied(one) for one in value) if type(value) in (list, tuple) else value
 
 
 def unknown(name: str, known: Iterable[str]) -> AttributeError:

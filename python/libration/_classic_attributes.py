@@ -35,6 +35,10 @@ def _constant(value: Any, arguments: str = "", keyword: str = "") -> Attribute:
     return Attribute(lambda _: value, arguments, keyword)
 
 
+def _array(numbers: tuple[float, ...]) -> Value:
+    return lambda _: np.array(numbers, np.float32)
+
+
 def _rule(given: Mapping[str, Any]) -> str:
     return {"explicit-euler": "euler", "symplectic-euler": "semi-implicit euler"}.get(given["integrator"], given["integrator"])
 
@@ -42,7 +46,7 @@ def _rule(given: Mapping[str, Any]) -> str:
 _SCREEN = {"screen_width": _constant(600), "screen_height": _constant(400)}
 _THETA = CLASSIC["CartPole"].limits[2][1] / 2
 _ANGLES = "'theta < -{0}', 'theta > {0}'"
-_LOW, _HIGH = (_constant(np.array(ends, np.float32), "project={{…}}", "project") for ends in zip(*CLASSIC["MountainCar"].limits))
+_LOW, _HIGH = (_constant(ends, "project={{…}}", "project")._replace(value=_array(ends)) for ends in zip(*CLASSIC["MountainCar"].limits))
 _CAR = {
     "min_position": _constant(-1.2, "project={{…}}", "project"),
     "max_position": _constant(0.6, "project={{…}}", "project"),

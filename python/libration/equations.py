@@ -107,7 +107,8 @@ class EquationSystem:
 
     def _read(self, text: str, file: str, given: list[tuple[str, float]]) -> None:
         self._text = (text, file, given)
-        self._summary: dict[str, Any] = json.loads(_native._equation_summary(self._text))
+        self._summary_text = _native._equation_summary(self._text)
+        self._summary: dict[str, Any] = json.loads(self._summary_text)
         self.name: str = self._summary["name"]
         names = [state["name"] for state in self._summary["states"]]
         self.states: tuple[str, ...] = tuple(names)
@@ -157,8 +158,8 @@ class EquationSystem:
 
     @property
     def summary(self) -> Mapping[str, Any]:
-        """What follows from the equations, as ``libration list FILE --json`` prints it."""
-        return MappingProxyType(self._summary)
+        """Contents of ``libration list FILE --json``: states, parameters and task. Changes to lists of it have no effect on the system."""
+        return MappingProxyType(json.loads(self._summary_text))
 
     def plant(self) -> LinearPlant:
         """Return the linear plant at the equilibrium near the start.

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from libration import Uniform
+from libration._attributes import keywords_of
 from libration._classic_systems import CLASSIC
-from libration.classic_control import CartPoleEnv, CartPoleVectorEnv, PendulumEnv
+from libration.classic_control import AcrobotEnv, CartPoleEnv, CartPoleVectorEnv, MountainCarEnv, PendulumEnv
 
 IDS = [each.id for each in CLASSIC.values()]
 # Those that Gymnasium sets on every environment, and those of a run or a picture.
@@ -97,6 +98,31 @@ def test_an_attribute_that_varies_is_that_of_the_current_episode():
     envs.reset(seed=1)
     assert np.array_equal(envs.length, envs.parameters["length"]) and envs.length.shape == (3,)
     assert envs.get_attr("polemass_length") == tuple(0.1 * envs.parameters["length"])
+
+
+@pytest.mark.parametrize(
+    ("made", "change"),
+    [
+        (CartPoleVectorEnv, lambda envs: envs.get_attr("actions")[0].reverse()),
+        (CartPoleVectorEnv, lambda envs: envs.get_attr("start")[0].clear()),
+        (CartPoleEnv, lambda env: env.get_wrapper_attr("terminated").clear()),
+        (AcrobotEnv, lambda env: env.AVAIL_TORQUE.append(3.0)),
+        (MountainCarEnv, lambda env: env.low.fill(5)),
+        (CartPoleEnv, lambda env: env.metadata["render_modes"].clear()),
+    ],
+)
+def test_a_change_of_what_was_read_leaves_other_twins(made, change):
+    def seen(env):
+        env.reset(seed=1)
+        actions = [1] * getattr(env, "num_envs", 1)
+        steps = [env.step(actions if "Vector" in made.__name__ else 1)[0].tolist() for _ in range(5)]
+        table = {name: np.asarray(getattr(env, name)).tolist() for name in ("AVAIL_TORQUE", "low", "x_threshold") if hasattr(env, name)}
+        return copy.deepcopy((steps, table, keywords_of(env._batch()), env.action_space, env.metadata))
+
+    unchanged, first = seen(made()), made()
+    change(first)
+    assert seen(first)[:4] == unchanged[:4]
+    assert seen(made()) == unchanged == seen(copy.deepcopy(made()))
 
 
 def test_a_task_of_the_caller_has_no_attributes_of_gymnasiums_task():

@@ -276,3 +276,18 @@ def test_advice_on_a_simulation_of_equations_is_that_of_the_same_catalogue_syste
     ):
         with pytest.raises((TypeError, ValueError), match=message):
             libration.advise(own, **keywords)
+
+
+def test_a_change_of_a_summary_leaves_the_system():
+    system = libration.System(
+        acceleration={"q": "-q + u"}, inputs=["u"], task={"reward": "-q^2", "actions": [-1.0, 1.0], "start": {"q": (-1, 1)}}
+    )
+    unchanged = system.summary
+    for table in (system.summary["task"], system.summary["task"]["actions"], system.summary["states"], system.summary["inputs"]):
+        table.clear()
+    assert system.summary == unchanged and unchanged["task"]["actions"] == [-1.0, 1.0]
+    actions = [-2.0, 2.0]
+    env = libration.envs.SystemEnv(system, dt=0.1, actions=actions)
+    actions.append(3.0)
+    env.get_wrapper_attr("actions").append(4.0)
+    assert env.get_wrapper_attr("actions") == [-2.0, 2.0]
