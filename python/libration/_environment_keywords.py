@@ -153,6 +153,76 @@ class VectorKeywords(SingleKeywords, BatchKeywords, total=False):
     """Keywords of vector environments of any system of the catalogue, without ``render_mode``."""
 
 
+class ClassicKeywords(EngineKeywords, TaskKeywords, RenderKeywords, total=False):
+    """Keywords of all twins of Gymnasium's classic control."""
+
+    starts: str
+
+
+class ClassicCartPoleKeywords(ClassicKeywords, total=False):
+    """Keywords of the single twin, with the constants of its system."""
+
+    gravity: Varied
+    masscart: Varied
+    masspole: Varied
+    length: Varied
+    force_mag: Varied
+
+
+class ClassicPendulumKeywords(ClassicKeywords, total=False):
+    """Keywords of the single twin, with the constants of its system."""
+
+    g: Varied
+    m: Varied
+    l: Varied
+
+
+class ClassicMountainCarKeywords(ClassicKeywords, total=False):
+    """Keywords of the single twin, with the constants of its system."""
+
+    force: Varied
+    gravity: Varied
+    goal_velocity: Varied
+
+
+class ClassicMountainCarContinuousKeywords(ClassicKeywords, total=False):
+    """Keywords of the single twin, with the constants of its system."""
+
+    power: Varied
+    goal_velocity: Varied
+
+
+class ClassicAcrobotKeywords(ClassicKeywords, total=False):
+    """Keywords of the single twin, with the constants of its system."""
+
+    m1: Varied
+    m2: Varied
+    l1: Varied
+    lc1: Varied
+    lc2: Varied
+    moi: Varied
+
+
+class ClassicCartPoleVectorKeywords(ClassicCartPoleKeywords, BatchKeywords, total=False):
+    """Keywords of the vector environment."""
+
+
+class ClassicPendulumVectorKeywords(ClassicPendulumKeywords, BatchKeywords, total=False):
+    """Keywords of the vector environment."""
+
+
+class ClassicMountainCarVectorKeywords(ClassicMountainCarKeywords, BatchKeywords, total=False):
+    """Keywords of the vector environment."""
+
+
+class ClassicMountainCarContinuousVectorKeywords(ClassicMountainCarContinuousKeywords, BatchKeywords, total=False):
+    """Keywords of the vector environment."""
+
+
+class ClassicAcrobotVectorKeywords(ClassicAcrobotKeywords, BatchKeywords, total=False):
+    """Keywords of the vector environment."""
+
+
 class CustomTaskKeywords(
     EngineKeywords, StartKeywords, OscillatorParameters, DuffingParameters, RenderKeywords, total=False
 ):

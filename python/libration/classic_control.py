@@ -6,26 +6,26 @@
 
 from __future__ import annotations
 
-import itertools
-import math
-from typing import Any, Mapping, Sequence
+from typing import Any, Callable, TypeVar
 
 import gymnasium
-import numpy as np
-from gymnasium.spaces import Box, Discrete
-from gymnasium.utils.seeding import np_random
-from gymnasium.vector.utils import batch_space
-from numpy.typing import NDArray
 
-from ._attributes import keywords_of
-from ._classic_attributes import ClassicAttributes
-from ._classic_starts import drawn_start, start_bounds, start_ranges
-from ._classic_systems import CLASSIC, ClassicSystem, system_of
-from ._episode_states import options_of
-from ._settings import ends, nearest
-from ._gymnasium_envs import Env, VectorEnv
-from ._spec_keywords import keyword_value
-from .environments import Environments
+from ._classic_envs import ClassicEnv, ClassicVectorEnv
+from ._classic_systems import CLASSIC, system_of
+from ._environment_keywords import (
+    ClassicAcrobotKeywords,
+    ClassicAcrobotVectorKeywords,
+    ClassicCartPoleKeywords,
+    ClassicCartPoleVectorKeywords,
+    ClassicMountainCarContinuousKeywords,
+    ClassicMountainCarContinuousVectorKeywords,
+    ClassicMountainCarKeywords,
+    ClassicMountainCarVectorKeywords,
+    ClassicPendulumKeywords,
+    ClassicPendulumVectorKeywords,
+    Unpack,
+)
+from ._environment_pages import vector_page
 
 __all__ = [
     "AcrobotEnv",
@@ -40,314 +40,372 @@ __all__ = [
     "PendulumVectorEnv",
 ]
 
-STARTS = ("libration", "gymnasium")
+Class = TypeVar("Class", bound=type[Any])
 
+_ARGUMENTS = """
+    Each of these numbers may vary: `Uniform(low, high)`, `LogUniform(low, high)`, `Gaussian(std, mean)`, or an array `(num_envs,)`.
 
-def _with_defaults(classic: ClassicSystem, starts: Any, given: dict[str, Any]) -> dict[str, Any]:
-    """Return keywords of the engine with the twin's constants where nothing else is given."""
-    if starts not in STARTS:
-        raise ValueError(f"starts is {starts!r}: {nearest(str(starts), STARTS)}")
-    if starts == "gymnasium" and given.get("start") is not None:
-        raise TypeError("start is given, but starts='gymnasium' has the starts of Gymnasium")
-    most = math.inf if classic.charges_more else classic.max_action
-    return {"integrator": classic.integrator, "dt": classic.dt, "max_action": most, "dtype": classic.dtype, **given}
+    Task (default: that of Gymnasium):
 
+    - `starts` (`"libration"`): `"libration"` draws starts that depend on seed, environment and episode only; `"gymnasium"` has the starts that
+      NumPy draws for Gymnasium with the same seed.
+    - `start`: a number or a range for each state, by its name: {states}.
+    - `observe`, `reward`, `terminated`: expressions of the task.
+    - `project`: expressions that replace states after each step of the integrator, by name.
+    - `actions`: commands of discrete actions.
+    - `max_action`{most}: largest action.
+    - `inner`, `targets`, `inner_period`: a controller between actions and inputs.
+    - `chunk`: `(H, s)`, of whose `H` actions `s` are used.
 
-def _classic(name: str) -> ClassicSystem:
-    if name not in CLASSIC:
-        raise ValueError(f"unknown environment {name!r}: {nearest(str(name), CLASSIC)}")
-    return CLASSIC[name]
+    Timing and noise (all 0 by default):
 
+    - `action_delay`, `observation_delay`: latency in s; a pair `(low, high)` is drawn for each episode.
+    - `jitter`: standard deviation of the length of each step of the integrator, relative to its length; or `("uniform", std)`.
+    - `skew`: standard deviation of the rate of the clock of an episode; or `("uniform", std)`.
+    - `observation_noise`: standard deviation of the noise of each observed number, in its unit; or `("uniform", std)`.
 
-def _seen(classic: ClassicSystem, settings: Any, given: dict[str, Any], own: Any) -> Box:
-    """Return the observation space: that of Gymnasium, unless keywords change what is observed or how far it goes."""
-    if any(given.get(name) is not None for name in ("observe", "project", "terminated")) or _starts_outside(classic, keyword_value(given.get("start"))):
-        return Box(np.float32(own.low), np.float32(own.high), dtype=np.float32)
-    low, high = (np.array(ends, np.float32) for ends in zip(*classic.limits))
-    if any(std > 0 for _, std in settings["subject"]["noise"]):
-        low, high = np.full_like(low, -np.inf), np.full_like(high, np.inf)
-    return Box(low, high, dtype=np.float32)
+    Engine:
 
-
-def _starts_outside(classic: ClassicSystem, start: Mapping[str, Any] | None) -> bool:
-    """Whether an episode can start where Gymnasium's observation space ends."""
-    limits = dict(zip(classic.system["task"]["observe"], classic.limits))
-    ranges = {name: (ends(f"start of {name}", value), limits[name]) for name, value in (start or {}).items() if name in limits}
-    return any(low < least or high > most for (low, high), (least, most) in ranges.values())
-
-
-def _action_space(classic: ClassicSystem, given: dict[str, Any], space: Any) -> Any:
-    if isinstance(space, Discrete):
-        return space
-    if classic.charges_more and given.get("max_action") is None:
-        return Box(-classic.max_action, classic.max_action, space.shape, np.float32)
-    return Box(np.float32(space.low), np.float32(space.high), dtype=np.float32)
-
-
-class _Picture:
-    """Pictures of Gymnasium's environment."""
-
-    def __init__(self, classic: ClassicSystem) -> None:
-        self._places = [system_of(classic.name).states.index(name) for name in classic.order]
-        self._env: Any = gymnasium.make(classic.id, render_mode="rgb_array").unwrapped
-        self._env.reset(seed=0)
-
-    def __call__(self, state: NDArray[Any], lengths: Mapping[str, Any], action: Any = None) -> NDArray[np.uint8]:
-        for name, length in lengths.items():
-            setattr(self._env, name, length)
-        self._env.state = state[self._places].astype(np.float64)
-        # The arrow of the torque.
-        self._env.last_u = action
-        return self._env.render()
-
-    def close(self) -> None:
-        self._env.close()
-
-
-class ClassicVectorEnv(ClassicAttributes, VectorEnv):
-    """Vector environment of a twin of Gymnasium's classic control.
-
-    Parameters
-    ----------
-    name:
-        Name of the twin without its version.
-    num_envs:
-        Number of environments.
-    starts:
-        ``"libration"``: starts depend on seed, environment and episode only. ``"gymnasium"``: those of Gymnasium's ``SyncVectorEnv`` with the
-        same seeds, which NumPy draws; a step at which episodes begin is slower.
-    **given:
-        Keywords of :class:`libration.Environments`, such as ``action_delay``, ``jitter`` and ``skew``, and parameters of the system.
+    - `integrator` (`"{integrator}"`): a name from `libration.INTEGRATORS` except `"exact"`.
+    - `dt` (`{dt}`): time between two actions in s.
+    - `substeps`: steps of the integrator between two actions (default: the smallest number up to 20 for which all latencies are whole steps; else steps begin where latencies end).
+    - `dtype` (`"{dtype}"`): `"float32"` or `"float64"` for states and rewards; observations of `reset` and `step` are `float32`.
+    - `threads` (`1`): number of threads; 0 is one per core.
+    - `parameter_infos` (`False`): whether `info` has `parameters`, the numbers that differ between episodes.
+    - `render_mode` (`None`): `"rgb_array"` for pictures of Gymnasium, which require Pygame.
+    """
+_OF_VECTORS = """
+    `rollout` returns observations in `dtype`; `reset` and `step` round them to `float32`.
     """
 
-    _is_vector = True
-    # The start of an episode takes arrays of the engine in the same step.
-    _has_own_arrays = True
 
-    def __init__(self, name: str, num_envs: int = 1, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
-        self._classic, self._starts = _classic(name), starts
-        given.setdefault("max_episode_steps", self._classic.max_episode_steps)
-        super().__init__(system_of(name), num_envs, **_with_defaults(self._classic, starts, given))
-        self._given = {"num_envs": num_envs, "starts": starts, "render_mode": render_mode, **given}
-        self.render_mode = self._checked_render_mode(render_mode)
-        self._picture: _Picture | None = None
-        self.metadata = {**self.metadata, "render_modes": ["rgb_array"], "render_fps": _FPS[self._classic.name]}
-        self.single_observation_space = _seen(self._classic, self._settings, given, self.single_observation_space)
-        self.single_action_space = _action_space(self._classic, given, self.single_action_space)
-        self.observation_space = batch_space(self.single_observation_space, self.num_envs)
-        self.action_space = batch_space(self.single_action_space, self.num_envs)
-        self._generators: list[np.random.Generator | None] = [None] * self.num_envs
-        self._ended = np.zeros(self.num_envs, bool)
-        turns: list[list[NDArray[Any]]] = [[] for _ in range(self._buffers)]
-        self._turns = itertools.cycle(turns)
-        self._is_made = True
+def _page(name: str) -> Callable[[Class], Class]:
+    """Return a decorator that adds the arguments of all twins to the documentation of one."""
 
-    def _in_turn(self, *results: NDArray[Any]) -> Sequence[NDArray[Any]]:
-        """Return the results of a step; with ``copy=False`` in the arrays that steps fill in turn."""
-        if not self._buffers:
-            return results
-        arrays = next(self._turns)
-        # The caller may have made an array read-only, or changed its shape.
-        if any(not array.flags.writeable or array.shape != result.shape for array, result in zip(arrays, results)):
-            arrays.clear()
-        if not arrays:
-            arrays += [result.copy() for result in results]
-            return tuple(arrays)
-        for array, result in zip(arrays, results):
-            np.copyto(array, result)
-        return tuple(arrays)
+    def documented(single: Class) -> Class:
+        classic = CLASSIC[name]
+        states = ", ".join(f"`{state}`" for state in system_of(name).states)
+        most = f" (`{classic.max_action}`)" if classic.max_action < float("inf") and not classic.charges_more else ""
+        arguments = _ARGUMENTS.format(states=states, most=most, integrator=classic.integrator, dt=classic.dt, dtype=classic.dtype)
+        single.__doc__ = (single.__doc__ or "").rstrip() + "\n" + arguments
+        return single
 
-    def _checked_render_mode(self, render_mode: str | None) -> str | None:
-        return _render_mode(render_mode)
-
-    def _batch(self) -> VectorEnv:
-        return self
-
-    def get_attr(self, name: str) -> tuple[Any, ...]:
-        if name in self._table() and name not in keywords_of(self):
-            return tuple(self._value(name, n) for n in range(self.num_envs))
-        return super().get_attr(name)
-
-    def set_attr(self, name: str, values: Any) -> None:
-        if name not in keywords_of(self):
-            self._refuse(name, values)
-        super().set_attr(name, values)
-
-    def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
-        options = options_of(options)
-        if self._starts == "libration":
-            observations, infos = super().reset(seed=seed, options=start_ranges(self._classic, options))
-            return observations.astype(np.float32, copy=False), infos
-        bounds = start_bounds(self._classic, options)
-        if "low" in options or "high" in options:
-            raise ValueError("options has ends of ranges, but those of Gymnasium's Pendulum are 'x_init' and 'y_init'")
-        # The first reset begins all environments, also those outside the mask.
-        first = self._seeder is None
-        observations, infos = super().reset(seed=seed, options=options)
-        everyone = np.ones(self.num_envs, bool)
-        mask = options.get("reset_mask", everyone)
-        for n, one in enumerate(self._seeds(seed)):
-            if mask[n] and one is not None:
-                self._generators[n] = np_random(one)[0]
-            elif self._generators[n] is None:
-                self._generators[n] = np_random(None)[0]
-        self._ended[everyone if first else mask] = False
-        if "state" not in options:
-            observations = self._start(mask, bounds)
-        if first and not mask.all():
-            observations = self._start(~mask, {})
-        return observations.astype(np.float32, copy=False), infos
-
-    def _start(self, mask: NDArray[np.bool_], bounds: dict[str, Any]) -> np.ndarray:
-        """Put environments at starts of Gymnasium."""
-        states = np.zeros((self.num_envs, len(system_of(self._classic.name).states)))
-        for n in np.flatnonzero(mask):
-            generator = self._generators[n]
-            assert generator is not None, "every environment was reset"
-            states[n] = drawn_start(self._classic, generator, bounds)
-        return super().set_state(states, mask)
-
-    def rollout(self, policy: Any, horizon: int, **given: Any) -> Any:
-        if self._starts == "gymnasium":
-            raise ValueError("starts is 'gymnasium', but rollout requires starts='libration': NumPy draws the starts of Gymnasium between steps")
-        return super().rollout(policy, horizon, **given)
-
-    def set_state(self, states: Any, mask: np.ndarray | None = None) -> np.ndarray:
-        return super().set_state(states, mask).astype(np.float32)
-
-    def step(self, actions: Any) -> Any:
-        observations, rewards, terminated, truncated, infos = super().step(actions)
-        if "final_obs" in infos:
-            final = infos["final_obs"]
-            for n in np.flatnonzero(infos["_final_obs"]):
-                final[n] = final[n].astype(np.float32)
-        if self._starts == "gymnasium":
-            mode = self._settings["autoreset"]
-            ended = terminated | truncated
-            begun = {"NextStep": self._ended, "SameStep": ended}.get(mode)
-            if begun is not None and begun.any():
-                observations = self._start(begun, {})
-            self._ended = ended
-        return *self._in_turn(observations.astype(np.float32, copy=False), rewards, terminated, truncated), infos
-
-    def render(self) -> tuple[np.ndarray, ...] | None:
-        """Return one picture of Gymnasium's per environment, if ``render_mode`` is ``"rgb_array"``; it requires Pygame."""
-        if self.render_mode is None:
-            return super().render()
-        if self._picture is None:
-            self._picture = _Picture(self._classic)
-        return tuple(self._picture(state, self._lengths(n)) for n, state in enumerate(self.states))
-
-    def close_extras(self, **kwargs: Any) -> None:
-        if (picture := self.__dict__.get("_picture")) is not None:
-            picture.close()
-        super().close_extras(**kwargs)
-
-    def _extras(self) -> dict[str, Any]:
-        return {**super()._extras(), "_generators": self._generators, "_ended": self._ended}
-
-    def __reduce__(self) -> Any:
-        function, (cls, _, *rest) = super().__reduce__()
-        return function, (cls, (self._classic.name, self._given), *rest)
-
-    @classmethod
-    def _construct(cls, name: Any, given: dict[str, Any]) -> Any:
-        return cls(name, **given) if cls is ClassicVectorEnv else cls(**given)
+    return documented
 
 
-class ClassicEnv(ClassicAttributes, Env):
-    """Single environment of a twin of Gymnasium's classic control; see :class:`ClassicVectorEnv`."""
-
-    def __init__(self, name: str, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
-        self._classic, self._starts = _classic(name), starts
-        super().__init__(system_of(name), **_with_defaults(self._classic, starts, given))
-        self.render_mode = self._checked_render_mode(render_mode)
-        self._picture: _Picture | None = None
-        self._action: Any = None
-        self.metadata = {"render_modes": ["rgb_array"], "render_fps": _FPS[self._classic.name]}
-        self.observation_space = _seen(self._classic, self._all._settings, given, self.observation_space)
-        self.action_space = _action_space(self._classic, given, self.action_space)
-        self._is_made = True
-
-    def _checked_render_mode(self, render_mode: str | None) -> str | None:
-        return _render_mode(render_mode)
-
-    def _batch(self) -> Environments:
-        return self._all
-
-    def __getstate__(self) -> dict[str, Any]:
-        # Surfaces of Pygame cannot be copied.
-        return {**self.__dict__, "_picture": None}
-
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
-        options, self._action = options_of(options), None
-        if self._starts == "libration":
-            observation, info = super().reset(seed=seed, options=start_ranges(self._classic, options))
-            return observation.astype(np.float32), info
-        bounds = start_bounds(self._classic, options)
-        if "low" in options or "high" in options:
-            raise ValueError("options has ends of ranges, but those of Gymnasium's Pendulum are 'x_init' and 'y_init'")
-        observation, info = super().reset(seed=seed, options=options)
-        if "state" in options:
-            return observation.astype(np.float32), info
-        return self.set_state(drawn_start(self._classic, self.np_random, bounds)), info
-
-    def set_state(self, state: Any) -> np.ndarray:
-        return super().set_state(state).astype(np.float32)
-
-    def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        observation, reward, terminated, truncated, info = super().step(action)
-        if self.render_mode is not None and not isinstance(self.action_space, Discrete):
-            self._action = float(np.clip(np.ravel(action)[0], -self._classic.max_action, self._classic.max_action))
-        return observation.astype(np.float32), reward, terminated, truncated, info
-
-    def render(self) -> np.ndarray | None:
-        if self.render_mode is None:
-            return super().render()
-        if self._picture is None:
-            self._picture = _Picture(self._classic)
-        return self._picture(self.state, self._lengths(0), self._action)
-
-    def close(self) -> None:
-        if (picture := self.__dict__.get("_picture")) is not None:
-            picture.close()
-        super().close()
+def _vector_page(single: type[ClassicEnv]) -> str:
+    return vector_page(single) + _OF_VECTORS
 
 
-def _render_mode(render_mode: str | None) -> str | None:
-    if render_mode not in (None, "rgb_array"):
-        raise ValueError(f"render_mode is {render_mode!r}, but it must be 'rgb_array' or None")
-    return render_mode
+@_page("CartPole")
+class CartPoleEnv(ClassicEnv):
+    """Environment ``libration/CartPole-v1``: a twin of Gymnasium's ``CartPole-v1``.
+
+    ## Description
+
+    A pole on a cart, to keep upright. Equations, constants and integrator are those of Gymnasium, after Barto, Sutton and Anderson (1983).
+
+    ## Action space
+
+    The action is an integer of `Discrete(2)`.
+
+    - 0: push the cart to the left with `force_mag`
+    - 1: push the cart to the right with `force_mag`
+
+    ## Observation space
+
+    The observation is an `ndarray` with shape `(4,)`. With `observation_noise` no number has a limit.
+
+    | Num | Observation      | Min         | Max        | Unit  |
+    |-----|------------------|-------------|------------|-------|
+    | 0   | position         | -4.8        | 4.8        | m     |
+    | 1   | velocity         | -inf        | inf        | m/s   |
+    | 2   | angle            | -0.41887903 | 0.41887903 | rad   |
+    | 3   | angular velocity | -inf        | inf        | rad/s |
+
+    ## Rewards
+
+    The reward is 1 for each step.
+
+    ## Starting state
+
+    Position, angle and both velocities are uniform in *[−0.05, 0.05]*.
+
+    ## Episode end
+
+    1. Termination: the position is beyond ±2.4 m, or the angle beyond ±12°.
+    2. Truncation: after 500 actions, by `gymnasium.make`.
+
+    A state that is not finite is lost: the episode terminates, its last reward is 0, and `info` has `lost`.
+
+    ## Arguments
+
+    System:
+
+    - `gravity` (`9.8`): acceleration of gravity in m/s².
+    - `masscart` (`1.0`), `masspole` (`0.1`): masses in kg.
+    - `length` (`0.5`): half the length of the pole in m.
+    - `force_mag` (`10.0`): force of an action in N.
+    """
+
+    def __init__(self, **given: Unpack[ClassicCartPoleKeywords]) -> None:
+        super().__init__("CartPole", **given)
 
 
-_FPS = {"CartPole": 50, "Pendulum": 30, "MountainCar": 30, "MountainCarContinuous": 30, "Acrobot": 15}
+class CartPoleVectorEnv(ClassicVectorEnv):
+    __doc__ = _vector_page(CartPoleEnv)
+
+    def __init__(self, num_envs: int = 1, **given: Unpack[ClassicCartPoleVectorKeywords]) -> None:
+        super().__init__("CartPole", num_envs, **given)
 
 
-def _classes(name: str) -> tuple[type[ClassicEnv], type[ClassicVectorEnv]]:
-    """Return the single and the vector environment class of a twin."""
+@_page("Pendulum")
+class PendulumEnv(ClassicEnv):
+    """Environment ``libration/Pendulum-v1``: a twin of Gymnasium's ``Pendulum-v1``.
 
-    class Single(ClassicEnv):
-        __doc__ = f"Twin of Gymnasium's ``{CLASSIC[name].id}``; see :class:`ClassicVectorEnv` for all keywords."
+    ## Description
 
-        def __init__(self, **given: Any) -> None:
-            super().__init__(name, **given)
+    A pendulum with a motor that cannot lift it in one swing, to swing up. Equations, constants and integrator are those of Gymnasium. The angle
+    *θ* is 0 at the top.
 
-    class Vector(ClassicVectorEnv):
-        __doc__ = f"Vector environment of twins of Gymnasium's ``{CLASSIC[name].id}``; see :class:`ClassicVectorEnv` for all keywords."
+    ## Action space
 
-        def __init__(self, num_envs: int = 1, **given: Any) -> None:
-            super().__init__(name, num_envs, **given)
+    The action is an `ndarray` with shape `(1,)`, the torque of the motor. Larger actions are clipped.
 
-    for made, title in ((Single, f"{name}Env"), (Vector, f"{name}VectorEnv")):
-        made.__name__ = made.__qualname__ = title
-    return Single, Vector
+    | Num | Action | Min  | Max | Unit |
+    |-----|--------|------|-----|------|
+    | 0   | torque | -2.0 | 2.0 | N·m  |
+
+    ## Observation space
+
+    The observation is an `ndarray` with shape `(3,)`. With `observation_noise` no number has a limit.
+
+    | Num | Observation      | Min  | Max | Unit  |
+    |-----|------------------|------|-----|-------|
+    | 0   | cos θ            | -1.0 | 1.0 | 1     |
+    | 1   | sin θ            | -1.0 | 1.0 | 1     |
+    | 2   | angular velocity | -8.0 | 8.0 | rad/s |
+
+    ## Rewards
+
+    *r = −(θ² + 0.1 v² + 0.001 u²)* with angle in *[−π, π]* and velocity before the step and the clipped action. The largest reward is 0.
+
+    ## Starting state
+
+    The angle is uniform in *[−π, π]* rad, the velocity in *[−1, 1]* rad/s.
+
+    ## Episode end
+
+    1. Termination: never.
+    2. Truncation: after 200 actions, by `gymnasium.make`.
+
+    A state that is not finite is lost: the episode terminates, its last reward is 0, and `info` has `lost`.
+
+    ## Arguments
+
+    System:
+
+    - `g` (`10.0`): acceleration of gravity in m/s².
+    - `m` (`1.0`): mass in kg.
+    - `l` (`1.0`): length in m.
+    """
+
+    def __init__(self, **given: Unpack[ClassicPendulumKeywords]) -> None:
+        super().__init__("Pendulum", **given)
 
 
-CartPoleEnv, CartPoleVectorEnv = _classes("CartPole")
-PendulumEnv, PendulumVectorEnv = _classes("Pendulum")
-MountainCarEnv, MountainCarVectorEnv = _classes("MountainCar")
-MountainCarContinuousEnv, MountainCarContinuousVectorEnv = _classes("MountainCarContinuous")
-AcrobotEnv, AcrobotVectorEnv = _classes("Acrobot")
+class PendulumVectorEnv(ClassicVectorEnv):
+    __doc__ = _vector_page(PendulumEnv)
+
+    def __init__(self, num_envs: int = 1, **given: Unpack[ClassicPendulumVectorKeywords]) -> None:
+        super().__init__("Pendulum", num_envs, **given)
+
+
+@_page("MountainCar")
+class MountainCarEnv(ClassicEnv):
+    """Environment ``libration/MountainCar-v0``: a twin of Gymnasium's ``MountainCar-v0``.
+
+    ## Description
+
+    A car in a valley with a motor that is weaker than gravity, to drive up the right hill. Equations, constants and integrator are those of
+    Gymnasium, after Moore (1990). Position and velocity have no unit; a step takes the time 1.
+
+    ## Action space
+
+    The action is an integer of `Discrete(3)`.
+
+    - 0: accelerate to the left with `force`
+    - 1: do not accelerate
+    - 2: accelerate to the right with `force`
+
+    ## Observation space
+
+    The observation is an `ndarray` with shape `(2,)`. With `observation_noise` no number has a limit.
+
+    | Num | Observation | Min   | Max  | Unit |
+    |-----|-------------|-------|------|------|
+    | 0   | position    | -1.2  | 0.6  | 1    |
+    | 1   | velocity    | -0.07 | 0.07 | 1    |
+
+    ## Rewards
+
+    The reward is −1 for each step.
+
+    ## Starting state
+
+    The position is uniform in *[−0.6, −0.4]*, the velocity is 0.
+
+    ## Episode end
+
+    1. Termination: the position is at least 0.5 and the velocity at least `goal_velocity`.
+    2. Truncation: after 200 actions, by `gymnasium.make`.
+
+    A state that is not finite is lost: the episode terminates, its last reward is 0, and `info` has `lost`.
+
+    ## Arguments
+
+    System:
+
+    - `force` (`0.001`): acceleration of an action.
+    - `gravity` (`0.0025`): largest acceleration of the slope.
+    - `goal_velocity` (`0.0`): least velocity at the goal.
+    """
+
+    def __init__(self, **given: Unpack[ClassicMountainCarKeywords]) -> None:
+        super().__init__("MountainCar", **given)
+
+
+class MountainCarVectorEnv(ClassicVectorEnv):
+    __doc__ = _vector_page(MountainCarEnv)
+
+    def __init__(self, num_envs: int = 1, **given: Unpack[ClassicMountainCarVectorKeywords]) -> None:
+        super().__init__("MountainCar", num_envs, **given)
+
+
+@_page("MountainCarContinuous")
+class MountainCarContinuousEnv(ClassicEnv):
+    """Environment ``libration/MountainCarContinuous-v0``: a twin of Gymnasium's ``MountainCarContinuous-v0``.
+
+    ## Description
+
+    A car in a valley with a motor that is weaker than gravity, to drive up the right hill. Equations, constants and integrator are those of
+    Gymnasium, after Moore (1990). Position and velocity have no unit; a step takes the time 1.
+
+    ## Action space
+
+    The action is an `ndarray` with shape `(1,)`. The motion clips larger actions at ±1; the reward does not, unless `max_action` is given.
+
+    | Num | Action | Min  | Max | Unit |
+    |-----|--------|------|-----|------|
+    | 0   | force  | -1.0 | 1.0 | 1    |
+
+    ## Observation space
+
+    The observation is an `ndarray` with shape `(2,)`. With `observation_noise` no number has a limit.
+
+    | Num | Observation | Min   | Max  | Unit |
+    |-----|-------------|-------|------|------|
+    | 0   | position    | -1.2  | 0.6  | 1    |
+    | 1   | velocity    | -0.07 | 0.07 | 1    |
+
+    ## Rewards
+
+    *r = −0.1 u²* with the action *u*, and 100 more for the step that reaches the goal.
+
+    ## Starting state
+
+    The position is uniform in *[−0.6, −0.4]*, the velocity is 0.
+
+    ## Episode end
+
+    1. Termination: the position is at least 0.45 and the velocity at least `goal_velocity`.
+    2. Truncation: after 999 actions, by `gymnasium.make`.
+
+    A state that is not finite is lost: the episode terminates, its last reward is 0, and `info` has `lost`.
+
+    ## Arguments
+
+    System:
+
+    - `power` (`0.0015`): acceleration of the action 1.
+    - `goal_velocity` (`0.0`): least velocity at the goal.
+    """
+
+    def __init__(self, **given: Unpack[ClassicMountainCarContinuousKeywords]) -> None:
+        super().__init__("MountainCarContinuous", **given)
+
+
+class MountainCarContinuousVectorEnv(ClassicVectorEnv):
+    __doc__ = _vector_page(MountainCarContinuousEnv)
+
+    def __init__(self, num_envs: int = 1, **given: Unpack[ClassicMountainCarContinuousVectorKeywords]) -> None:
+        super().__init__("MountainCarContinuous", num_envs, **given)
+
+
+@_page("Acrobot")
+class AcrobotEnv(ClassicEnv):
+    """Environment ``libration/Acrobot-v1``: a twin of Gymnasium's ``Acrobot-v1``.
+
+    ## Description
+
+    Two links that hang from a fixed joint, with a motor at the joint between them, to swing up. Equations, constants and integrator are those of
+    Gymnasium, after Sutton and Barto. The angle *θ₁* is 0 where the first link hangs, *θ₂* is the angle between the links.
+
+    ## Action space
+
+    The action is an integer of `Discrete(3)`.
+
+    - 0: torque of -1 N·m
+    - 1: no torque
+    - 2: torque of 1 N·m
+
+    ## Observation space
+
+    The observation is an `ndarray` with shape `(6,)`. With `observation_noise` no number has a limit.
+
+    | Num | Observation               | Min        | Max       | Unit  |
+    |-----|---------------------------|------------|-----------|-------|
+    | 0   | cos θ₁                    | -1.0       | 1.0       | 1     |
+    | 1   | sin θ₁                    | -1.0       | 1.0       | 1     |
+    | 2   | cos θ₂                    | -1.0       | 1.0       | 1     |
+    | 3   | sin θ₂                    | -1.0       | 1.0       | 1     |
+    | 4   | angular velocity of *θ₁*  | -12.566371 | 12.566371 | rad/s |
+    | 5   | angular velocity of *θ₂*  | -28.274334 | 28.274334 | rad/s |
+
+    ## Rewards
+
+    The reward is −1 for each step, and 0 for the step that reaches the height.
+
+    ## Starting state
+
+    Both angles and both velocities are uniform in *[−0.1, 0.1]*.
+
+    ## Episode end
+
+    1. Termination: the free end is above the joint by more than the length 1, *−cos θ₁ − cos(θ₁ + θ₂) > 1*.
+    2. Truncation: after 500 actions, by `gymnasium.make`.
+
+    A state that is not finite is lost: the episode terminates, its last reward is 0, and `info` has `lost`.
+
+    ## Arguments
+
+    System:
+
+    - `m1` (`1.0`), `m2` (`1.0`): masses of the links in kg.
+    - `l1` (`1.0`): length of the first link in m.
+    - `lc1` (`0.5`), `lc2` (`0.5`): distances of the centres of mass from the joints in m.
+    - `moi` (`1.0`): moment of inertia of each link in kg·m².
+    """
+
+    def __init__(self, **given: Unpack[ClassicAcrobotKeywords]) -> None:
+        super().__init__("Acrobot", **given)
+
+
+class AcrobotVectorEnv(ClassicVectorEnv):
+    __doc__ = _vector_page(AcrobotEnv)
+
+    def __init__(self, num_envs: int = 1, **given: Unpack[ClassicAcrobotVectorKeywords]) -> None:
+        super().__init__("Acrobot", num_envs, **given)
 
 
 def register() -> None:

@@ -17,6 +17,7 @@ from ._environment_keywords import (
     PendulumVectorKeywords,
     Unpack,
 )
+from ._environment_pages import vector_page
 from ._gymnasium_envs import METADATA, Env, VectorEnv
 from ._presets import PRESETS
 from ._spec_keywords import system_value
@@ -41,34 +42,6 @@ NAMESPACE = "libration"
 DATASET_ID = f"{NAMESPACE}/Dataset-v0"
 FORMER_ID = f"{NAMESPACE}/Pendulum-v0"
 """``Pendulum-v1`` is a twin of Gymnasium's own pendulum, another environment."""
-
-
-def _vector_page(single: type[Env]) -> str:
-    """Return the documentation of the vector environment: that of the single one, and what many of them add."""
-    page = single.__doc__ or ""
-    for old, new in (
-        ("Environment ``", "Vector environment ``"),
-        ("The action is an `ndarray` with shape `(", "The actions are an `ndarray` with shape `(num_envs, "),
-        ("The observation is an `ndarray` with shape `(", "The observations are an `ndarray` with shape `(num_envs, "),
-        ("The observation is an `ndarray` with a number", "The observations are an `ndarray` with a row for each environment, a number"),
-        (",)`", ")`"),
-        (", by `gymnasium.make`", ", or `max_episode_steps`"),
-        (" of `gymnasium.make`", ""),
-        ("`info` has", "`infos` has"),
-    ):
-        page = page.replace(old, new)
-    return page.rstrip() + _OF_VECTORS
-
-
-_OF_VECTORS = """
-
-    Vector environment:
-
-    - `num_envs` (`1`): number of environments. Environment *n* under `reset(seed=s)` is the single environment under `reset(seed=s + n)`.
-    - `max_episode_steps`: number of actions after which an episode is truncated; `math.inf` or -1 for no limit.
-    - `autoreset_mode` (`"NextStep"`): `"NextStep"`, `"SameStep"` or `"Disabled"`, as in Gymnasium.
-    - `copy` (`True`), `buffers` (`2`): with `copy=False` the steps fill `buffers` arrays in turn.
-    """
 
 
 class SystemEnv(Env):
@@ -149,7 +122,7 @@ class SystemEnv(Env):
 
 
 class SystemVectorEnv(VectorEnv):
-    __doc__ = _vector_page(SystemEnv)
+    __doc__ = vector_page(SystemEnv)
 
     metadata = {"render_modes": []}
 
@@ -256,7 +229,7 @@ class OscillatorEnv(Env):
 
 
 class OscillatorVectorEnv(VectorEnv):
-    __doc__ = _vector_page(OscillatorEnv)
+    __doc__ = vector_page(OscillatorEnv)
 
     _takes_name = False
 
@@ -339,7 +312,7 @@ class PendulumEnv(Env):
 
 
 class PendulumVectorEnv(VectorEnv):
-    __doc__ = _vector_page(PendulumEnv)
+    __doc__ = vector_page(PendulumEnv)
 
     _takes_name = False
 
@@ -422,7 +395,7 @@ class DuffingEnv(Env):
 
 
 class DuffingVectorEnv(VectorEnv):
-    __doc__ = _vector_page(DuffingEnv)
+    __doc__ = vector_page(DuffingEnv)
 
     _takes_name = False
 

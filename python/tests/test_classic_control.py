@@ -179,6 +179,8 @@ def test_systems_of_twins_have_the_states_that_gymnasium_has():
         ({"starts": "gym"}, ValueError, "starts is 'gym'"),
         ({"max_action": 0.5}, TypeError, "max_action is given, but"),
         ({"lenght": 1.0}, TypeError, "did you mean 'length'"),
+        ({"startz": "gymnasium"}, TypeError, "'startz': did you mean 'start'.* known are .*, starts,"),
+        ({"name": "CartPole"}, TypeError, "unexpected keyword argument 'name': known are .*length"),
     ],
 )
 def test_wrong_keywords_of_twins_are_refused(given, error, text):

@@ -12,24 +12,26 @@ import pytest
 import libration
 from common import IDS, NAMES
 from libration import _environment_keywords as keywords
-from libration import envs
+from libration import classic_control, envs
+from libration._classic_systems import CLASSIC, system_of
 
 SECTIONS = ["Description", "Action space", "Observation space", "Rewards", "Starting state", "Episode end", "Arguments"]
 CLASSES = [f"{name}{kind}" for name in (*NAMES, "System") for kind in ("Env", "VectorEnv")]
+TWINS = [f"{name}{kind}" for name in CLASSIC for kind in ("Env", "VectorEnv")]
 SPRING = libration.System(acceleration={"q": "-10*q + u"}, inputs=["u"], task={"reward": "-q^2 - 0.01*u^2", "start": {"q": (-1, 1)}})
 
 
-def page_of(name):
-    return inspect.cleandoc(getattr(envs, name).__doc__)
+def page_of(name, module=envs):
+    return inspect.cleandoc(getattr(module, name).__doc__)
 
 
-def section(name, title):
-    return re.search(rf"^## {title}\n(.*?)(?=^## |\Z)", page_of(name), re.MULTILINE | re.DOTALL)[1]
+def section(name, title, module=envs):
+    return re.search(rf"^## {title}\n(.*?)(?=^## |\Z)", page_of(name, module), re.MULTILINE | re.DOTALL)[1]
 
 
-def table(name, title):
+def table(name, title, module=envs):
     """The rows of the table of a section, without its head."""
-    rows = [line.strip("|").split("|") for line in section(name, title).splitlines() if line.startswith("|")]
+    rows = [line.strip("|").split("|") for line in section(name, title, module).splitlines() if line.startswith("|")]
     assert len(rows[0]) == 5
     return [[cell.strip() for cell in row] for row in rows[2:]]
 
@@ -38,9 +40,9 @@ def limits(rows):
     return np.array([[float(cell) for cell in row[2:4]] for row in rows]).T
 
 
-def arguments(name):
+def arguments(name, module=envs):
     """The arguments of a page, and the defaults that it states."""
-    heads = [line.split(":")[0] for line in section(name, "Arguments").splitlines() if line.startswith("- `")]
+    heads = [line.split(":")[0] for line in section(name, "Arguments", module).splitlines() if line.startswith("- `")]
     return {key: value for head in heads for key, value in re.findall(r"`(\w+)`(?: \(`(.*?)`\))?", head)}
 
 
@@ -124,6 +126,41 @@ def test_starts_of_a_page_are_those_of_episodes(name):
         most = math.pi if high == "π" else float(high)
         assert low == high and np.abs(column).max() <= most
         assert column.max() > 0.99 * most and column.min() < -0.99 * most
+
+
+@pytest.mark.parametrize("name", TWINS)
+def test_help_for_a_twin_has_the_sections_of_gymnasium_and_each_argument(name):
+    made = getattr(classic_control, name)
+    assert re.findall(r"^## (.*)$", inspect.getdoc(made), re.MULTILINE) == SECTIONS
+    assert all(section(name, title, classic_control).strip() for title in SECTIONS)
+    kind = f"Classic{name.replace('VectorEnv', 'VectorKeywords').replace('Env', 'Keywords')}"
+    typed = set(getattr(keywords, kind).__optional_keys__)
+    assert set(arguments(name, classic_control)) == typed | ({"num_envs"} if "Vector" in name else set())
+    assert kind in str(inspect.signature(made)) and made.__module__ == "libration.classic_control"
+    assert "an array `(num_envs,)`" in page_of(name, classic_control)
+    common = {*keywords.ClassicKeywords.__optional_keys__, *keywords.BatchKeywords.__optional_keys__}
+    assert typed - common == set(system_of(name.removesuffix("Env").removesuffix("Vector")).parameters)
+
+
+@pytest.mark.parametrize("name", CLASSIC)
+def test_tables_and_defaults_of_the_page_of_a_twin_are_those_of_the_environment(name):
+    single, envs_of = getattr(classic_control, f"{name}Env"), getattr(classic_control, f"{name}VectorEnv")
+    stated = {key: ast.literal_eval(value) for key, value in arguments(f"{name}Env", classic_control).items() if value}
+    assert {"dt", "integrator", "dtype", "starts", *system_of(name).parameters} <= set(stated)
+    assert {key: stated.pop(key) for key in system_of(name).parameters} == system_of(name).parameters
+    env, same, batch = single(), single(**stated), envs_of(3)
+    assert env._all._settings == same._all._settings
+    for class_, made in ((f"{name}Env", env), (f"{name}VectorEnv", batch)):
+        text = section(class_, "Observation space", classic_control)
+        low, high = limits(table(class_, "Observation space", classic_control)).astype(np.float32)
+        assert np.array_equal(low, env.observation_space.low) and np.array_equal(high, env.observation_space.high)
+        assert f"with shape `{str(made.observation_space.shape).replace('3, ', 'num_envs, ', made is batch)}`" in text
+    text, space = section(f"{name}Env", "Action space", classic_control), env.action_space
+    if isinstance(space, gymnasium.spaces.Discrete):
+        assert f"`{space}`" in text and len(re.findall(r"^- \d:", text, re.MULTILINE)) == space.n
+    else:
+        assert np.array_equal(limits(table(f"{name}Env", "Action space", classic_control)), [space.low, space.high])
+    assert f"after {CLASSIC[name].max_episode_steps} actions" in section(f"{name}Env", "Episode end", classic_control)
 
 
 def test_each_integrator_but_the_exact_one_is_that_of_an_environment():

@@ -12,6 +12,8 @@ import numpy as np
 import libration
 from libration import hosts
 from libration import Advice, Analysis, Gaussian, Identification, Results, Trajectory
+from libration.classic_control import AcrobotEnv, CartPoleEnv, CartPoleVectorEnv, MountainCarContinuousVectorEnv, MountainCarEnv
+from libration.classic_control import PendulumEnv as ClassicPendulumEnv
 from libration.envs import DuffingEnv, OscillatorEnv, PendulumEnv, PendulumVectorEnv, SystemEnv, SystemVectorEnv
 
 
@@ -36,6 +38,43 @@ def environments(cart: libration.EquationSystem, identified: Identification) -> 
     vector: gymnasium.vector.VectorEnv = PendulumVectorEnv(4)
     single: gymnasium.Env = PendulumEnv()
     vector.reset(seed=0), single.reset(seed=0)
+
+
+class Upright(CartPoleEnv):
+    def __init__(self, threshold: float = 0.1) -> None:
+        super().__init__(terminated=[f"theta < -{threshold}", f"theta > {threshold}"], length=1.0)
+        self.steps = 0
+
+
+def gravity_of(env: CartPoleEnv, envs: CartPoleVectorEnv | None = None) -> float:
+    return env.gravity if envs is None else envs.get_attr("gravity")[0]
+
+
+def twins() -> None:
+    CartPoleEnv()
+    CartPoleEnv(length=1.0, action_delay=(0.0, 0.04), starts="gymnasium", render_mode="rgb_array")
+    CartPoleVectorEnv(4)
+    CartPoleVectorEnv(num_envs=4, masspole=libration.Uniform(0.05, 0.2), gravity=np.ones(4), max_episode_steps=200, copy=False)
+    ClassicPendulumEnv(g=9.81, m=1, l=libration.Gaussian(0.1, mean=1.0), max_action=3.0)
+    MountainCarEnv(force=0.002, gravity=0.002, goal_velocity=0.01, observe=["x"])
+    MountainCarContinuousVectorEnv(2, power=0.002, autoreset_mode="SameStep")
+    AcrobotEnv(m1=1.0, m2=2.0, l1=1.0, lc1=0.5, lc2=0.5, moi=1.0, actions=[-1.0, 1.0])
+    single: gymnasium.Env = CartPoleEnv()
+    vector: gymnasium.vector.VectorEnv = CartPoleVectorEnv(2)
+    gravity_of(Upright(), CartPoleVectorEnv(2)), single.reset(seed=0), vector.reset(seed=0)
+
+
+def wrong_twins() -> None:
+    CartPoleEnv(lenght=1.0)  # type: ignore[call-arg]
+    CartPoleEnv(num_envs=4)  # type: ignore[call-arg]
+    CartPoleEnv(name="CartPole")  # type: ignore[call-arg]
+    CartPoleEnv(g=9.81)  # type: ignore[call-arg]
+    CartPoleEnv(start_position=0.0)  # type: ignore[call-arg]
+    CartPoleEnv(length="1.0")  # type: ignore[arg-type]
+    CartPoleVectorEnv("CartPole")  # type: ignore[arg-type]
+    ClassicPendulumEnv(length=1.0)  # type: ignore[call-arg]
+    AcrobotEnv(LINK_MASS_1=2.0)  # type: ignore[call-arg]
+    gravity_of(CartPoleVectorEnv(2))  # type: ignore[arg-type]
 
 
 def wrong_environments(cart: libration.EquationSystem) -> None:

@@ -1,0 +1,298 @@
+"""Base classes of the twins of Gymnasium's classic control."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Any, Iterator, Mapping
+
+import gymnasium
+import numpy as np
+from gymnasium.spaces import Box, Discrete
+from gymnasium.utils.seeding import np_random
+from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
+
+from ._attributes import keywords_of
+from ._classic_attributes import ClassicAttributes
+from ._classic_starts import drawn_start, start_bounds, start_ranges
+from ._classic_systems import CLASSIC, ClassicSystem, system_of
+from ._environment_keywords import BatchKeywords, ClassicKeywords
+from ._gymnasium_envs import Env, VectorEnv
+from ._settings import OPTIONS, nearest
+from .environments import Environments
+
+STARTS = ("libration", "gymnasium")
+
+
+def _with_defaults(classic: ClassicSystem, starts: Any, given: dict[str, Any]) -> dict[str, Any]:
+    """Return keywords of the engine with the twin's constants where nothing else is given."""
+    parameters = classic.system["parameters"]
+    for key in given:
+        if key not in OPTIONS and key not in parameters:
+            known = {*BatchKeywords.__optional_keys__, *ClassicKeywords.__optional_keys__, *parameters}
+            raise TypeError(f"unexpected keyword argument {key!r}: {nearest(key, known)}")
+    if starts not in STARTS:
+        raise ValueError(f"starts is {starts!r}: {nearest(str(starts), STARTS)}")
+    if starts == "gymnasium" and given.get("start") is not None:
+        raise TypeError("start is given, but starts='gymnasium' has the starts of Gymnasium")
+    most = math.inf if classic.charges_more else classic.max_action
+    return {"integrator": classic.integrator, "dt": classic.dt, "max_action": most, "dtype": classic.dtype, **given}
+
+
+def _classic(name: str) -> ClassicSystem:
+    if name not in CLASSIC:
+        raise ValueError(f"unknown environment {name!r}: {nearest(str(name), CLASSIC)}")
+    return CLASSIC[name]
+
+
+def _seen(classic: ClassicSystem, settings: Any, given: dict[str, Any], own: Any) -> Box:
+    """Return the observation space: that of Gymnasium, unless keywords change what is observed or how far it goes."""
+    if given.get("observe") is not None or given.get("project") is not None:
+        return Box(np.float32(own.low), np.float32(own.high), dtype=np.float32)
+    low, high = (np.array(ends, np.float32) for ends in zip(*classic.limits))
+    if any(std > 0 for _, std in settings["subject"]["noise"]):
+        low, high = np.full_like(low, -np.inf), np.full_like(high, np.inf)
+    return Box(low, high, dtype=np.float32)
+
+
+def _action_space(classic: ClassicSystem, given: dict[str, Any], space: Any) -> Any:
+    if isinstance(space, Discrete):
+        return space
+    if classic.charges_more and given.get("max_action") is None:
+        return Box(-classic.max_action, classic.max_action, space.shape, np.float32)
+    return Box(np.float32(space.low), np.float32(space.high), dtype=np.float32)
+
+
+class _Picture:
+    """Pictures of Gymnasium's environment."""
+
+    def __init__(self, classic: ClassicSystem) -> None:
+        self._places = [system_of(classic.name).states.index(name) for name in classic.order]
+        self._env: Any = gymnasium.make(classic.id, render_mode="rgb_array").unwrapped
+        self._env.reset(seed=0)
+
+    def __call__(self, state: NDArray[Any], lengths: Mapping[str, Any], action: Any = None) -> NDArray[np.uint8]:
+        for name, length in lengths.items():
+            setattr(self._env, name, length)
+        self._env.state = state[self._places].astype(np.float64)
+        # The arrow of the torque.
+        self._env.last_u = action
+        return self._env.render()
+
+    def close(self) -> None:
+        self._env.close()
+
+
+class ClassicVectorEnv(ClassicAttributes, VectorEnv):
+    """Vector environment of a twin of Gymnasium's classic control.
+
+    Parameters
+    ----------
+    name:
+        Name of the twin without its version.
+    num_envs:
+        Number of environments.
+    starts:
+        ``"libration"``: starts depend on seed, environment and episode only. ``"gymnasium"``: those of Gymnasium's ``SyncVectorEnv`` with the
+        same seeds, which NumPy draws; a step at which episodes begin is slower.
+    **given:
+        Keywords of :class:`libration.Environments`, such as ``action_delay``, ``jitter`` and ``skew``, and parameters of the system.
+    """
+
+    _is_vector = True
+
+    def __init__(self, name: str, /, num_envs: int = 1, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
+        self._classic, self._starts = _classic(name), starts
+        given.setdefault("max_episode_steps", self._classic.max_episode_steps)
+        super().__init__(system_of(name), num_envs, **_with_defaults(self._classic, starts, given))
+        self._given = {"num_envs": num_envs, "starts": starts, "render_mode": render_mode, **given}
+        self.render_mode = self._checked_render_mode(render_mode)
+        self._picture: _Picture | None = None
+        self.metadata = {**self.metadata, "render_modes": ["rgb_array"], "render_fps": _FPS[self._classic.name]}
+        self.single_observation_space = _seen(self._classic, self._settings, given, self.single_observation_space)
+        self.single_action_space = _action_space(self._classic, given, self.single_action_space)
+        self.observation_space = batch_space(self.single_observation_space, self.num_envs)
+        self.action_space = batch_space(self.single_action_space, self.num_envs)
+        self._generators: list[np.random.Generator | None] = [None] * self.num_envs
+        self._ended = np.zeros(self.num_envs, bool)
+        self._rows: Iterator[NDArray[np.float32]] | None = None
+        # The start of an episode takes a second array of the engine in the same step.
+        if not given.get("copy", True) and (starts == "gymnasium" or self._settings["dtype"] != "float32"):
+            rows = [np.empty(self.observation_space.shape or (), np.float32) for _ in range(given.get("buffers") or 2)]
+            self._rows = itertools.cycle(rows)
+        self._is_made = True
+
+    def _rounded(self, observations: NDArray[Any]) -> NDArray[np.float32]:
+        """Return observations in the float type of Gymnasium; with ``copy=False`` in arrays that steps fill in turn."""
+        if self._rows is None:
+            return observations.astype(np.float32, copy=False)
+        row = next(self._rows)
+        np.copyto(row, observations, casting="same_kind")
+        return row
+
+    def _checked_render_mode(self, render_mode: str | None) -> str | None:
+        return _render_mode(render_mode)
+
+    def _batch(self) -> VectorEnv:
+        return self
+
+    def get_attr(self, name: str) -> tuple[Any, ...]:
+        if name in self._table() and name not in keywords_of(self):
+            return tuple(self._value(name, n) for n in range(self.num_envs))
+        return super().get_attr(name)
+
+    def set_attr(self, name: str, values: Any) -> None:
+        if name not in keywords_of(self):
+            self._refuse(name, values)
+        super().set_attr(name, values)
+
+    def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
+        options = dict(options or {})
+        if self._starts == "libration":
+            observations, infos = super().reset(seed=seed, options=start_ranges(self._classic, options))
+            return self._rounded(observations), infos
+        bounds = start_bounds(self._classic, options)
+        if "low" in options or "high" in options:
+            raise ValueError("options has ends of ranges, but those of Gymnasium's Pendulum are 'x_init' and 'y_init'")
+        # The first reset begins all environments, also those outside the mask.
+        first = self._seeder is None
+        observations, infos = super().reset(seed=seed, options=options)
+        everyone = np.ones(self.num_envs, bool)
+        mask = options.get("reset_mask", everyone)
+        for n, one in enumerate(self._seeds(seed)):
+            if mask[n] and one is not None:
+                self._generators[n] = np_random(one)[0]
+            elif self._generators[n] is None:
+                self._generators[n] = np_random(None)[0]
+        self._ended[everyone if first else mask] = False
+        if "state" not in options:
+            observations = self._start(mask, bounds)
+        if first and not mask.all():
+            observations = self._start(~mask, {})
+        return self._rounded(observations), infos
+
+    def _start(self, mask: NDArray[np.bool_], bounds: dict[str, Any]) -> np.ndarray:
+        """Put environments at starts of Gymnasium."""
+        states = np.zeros((self.num_envs, len(system_of(self._classic.name).states)))
+        for n in np.flatnonzero(mask):
+            generator = self._generators[n]
+            assert generator is not None, "every environment was reset"
+            states[n] = drawn_start(self._classic, generator, bounds)
+        return super().set_state(states, mask)
+
+    def rollout(self, policy: Any, horizon: int, **given: Any) -> Any:
+        if self._starts == "gymnasium":
+            raise ValueError("starts is 'gymnasium', but rollout requires starts='libration': NumPy draws the starts of Gymnasium between steps")
+        return super().rollout(policy, horizon, **given)
+
+    def set_state(self, states: Any, mask: np.ndarray | None = None) -> np.ndarray:
+        return super().set_state(states, mask).astype(np.float32)
+
+    def step(self, actions: Any) -> Any:
+        observations, rewards, terminated, truncated, infos = super().step(actions)
+        if "final_obs" in infos:
+            final = infos["final_obs"]
+            for n in np.flatnonzero(infos["_final_obs"]):
+                final[n] = final[n].astype(np.float32)
+        if self._starts == "gymnasium":
+            mode = self._settings["autoreset"]
+            ended = terminated | truncated
+            begun = {"NextStep": self._ended, "SameStep": ended}.get(mode)
+            if begun is not None and begun.any():
+                observations = self._start(begun, {})
+            self._ended = ended
+        return self._rounded(observations), rewards, terminated, truncated, infos
+
+    def render(self) -> tuple[np.ndarray, ...] | None:
+        """Return one picture of Gymnasium's per environment, if ``render_mode`` is ``"rgb_array"``; it requires Pygame."""
+        if self.render_mode is None:
+            return super().render()
+        if self._picture is None:
+            self._picture = _Picture(self._classic)
+        return tuple(self._picture(state, self._lengths(n)) for n, state in enumerate(self.states))
+
+    def close_extras(self, **kwargs: Any) -> None:
+        if (picture := self.__dict__.get("_picture")) is not None:
+            picture.close()
+        super().close_extras(**kwargs)
+
+    def _extras(self) -> dict[str, Any]:
+        return {**super()._extras(), "_generators": self._generators, "_ended": self._ended}
+
+    def __reduce__(self) -> Any:
+        function, (cls, _, *rest) = super().__reduce__()
+        return function, (cls, (self._classic.name, self._given), *rest)
+
+    @classmethod
+    def _construct(cls, name: Any, given: dict[str, Any]) -> Any:
+        make: Any = cls
+        return make(name, **given) if cls is ClassicVectorEnv else make(**given)
+
+
+class ClassicEnv(ClassicAttributes, Env):
+    """Single environment of a twin of Gymnasium's classic control; see :class:`ClassicVectorEnv`."""
+
+    def __init__(self, name: str, /, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
+        self._classic, self._starts = _classic(name), starts
+        super().__init__(system_of(name), **_with_defaults(self._classic, starts, given))
+        self.render_mode = self._checked_render_mode(render_mode)
+        self._picture: _Picture | None = None
+        self._action: Any = None
+        self.metadata = {"render_modes": ["rgb_array"], "render_fps": _FPS[self._classic.name]}
+        self.observation_space = _seen(self._classic, self._all._settings, given, self.observation_space)
+        self.action_space = _action_space(self._classic, given, self.action_space)
+        self._is_made = True
+
+    def _checked_render_mode(self, render_mode: str | None) -> str | None:
+        return _render_mode(render_mode)
+
+    def _batch(self) -> Environments:
+        return self._all
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Surfaces of Pygame cannot be copied.
+        return {**self.__dict__, "_picture": None}
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
+        options, self._action = dict(options or {}), None
+        if self._starts == "libration":
+            observation, info = super().reset(seed=seed, options=start_ranges(self._classic, options))
+            return observation.astype(np.float32), info
+        bounds = start_bounds(self._classic, options)
+        if "low" in options or "high" in options:
+            raise ValueError("options has ends of ranges, but those of Gymnasium's Pendulum are 'x_init' and 'y_init'")
+        observation, info = super().reset(seed=seed, options=options)
+        if "state" in options:
+            return observation.astype(np.float32), info
+        return self.set_state(drawn_start(self._classic, self.np_random, bounds)), info
+
+    def set_state(self, state: Any) -> np.ndarray:
+        return super().set_state(state).astype(np.float32)
+
+    def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        observation, reward, terminated, truncated, info = super().step(action)
+        if self.render_mode is not None and not isinstance(self.action_space, Discrete):
+            self._action = float(np.clip(np.ravel(action)[0], -self._classic.max_action, self._classic.max_action))
+        return observation.astype(np.float32), reward, terminated, truncated, info
+
+    def render(self) -> np.ndarray | None:
+        if self.render_mode is None:
+            return super().render()
+        if self._picture is None:
+            self._picture = _Picture(self._classic)
+        return self._picture(self.state, self._lengths(0), self._action)
+
+    def close(self) -> None:
+        if (picture := self.__dict__.get("_picture")) is not None:
+            picture.close()
+        super().close()
+
+
+def _render_mode(render_mode: str | None) -> str | None:
+    if render_mode not in (None, "rgb_array"):
+        raise ValueError(f"render_mode is {render_mode!r}, but it must be 'rgb_array' or None")
+    return render_mode
+
+
+_FPS = {"CartPole": 50, "Pendulum": 30, "MountainCar": 30, "MountainCarContinuous": 30, "Acrobot": 15}
