@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import itertools
 import math
 from typing import Any, Iterator, Mapping
@@ -13,7 +14,7 @@ from gymnasium.utils.seeding import np_random
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from ._attributes import keywords_of
+from ._attributes import copied
 from ._classic_attributes import ClassicAttributes
 from ._classic_starts import drawn_start, start_bounds, start_ranges
 from ._classic_systems import CLASSIC, ClassicSystem, system_of
@@ -23,6 +24,8 @@ from ._settings import OPTIONS, nearest
 from .environments import Environments
 
 STARTS = ("libration", "gymnasium")
+_RESTORED = {"_arguments", "_given", "_picture", "_rows", "_seeder", "_settings", "preset"}
+"""Attributes of vector environments that a copy has from its construction."""
 
 
 def _with_defaults(classic: ClassicSystem, starts: Any, given: dict[str, Any]) -> dict[str, Any]:
@@ -106,7 +109,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
         self._classic, self._starts = _classic(name), starts
         given.setdefault("max_episode_steps", self._classic.max_episode_steps)
         super().__init__(system_of(name), num_envs, **_with_defaults(self._classic, starts, given))
-        self._given = {"num_envs": num_envs, "starts": starts, "render_mode": render_mode, **given}
+        self._given = copied({"num_envs": num_envs, "starts": starts, "render_mode": render_mode, **given})
         self.render_mode = self._checked_render_mode(render_mode)
         self._picture: _Picture | None = None
         self.metadata = {**self.metadata, "render_modes": ["rgb_array"], "render_fps": _FPS[self._classic.name]}
@@ -121,7 +124,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
         if not given.get("copy", True) and (starts == "gymnasium" or self._settings["dtype"] != "float32"):
             rows = [np.empty(self.observation_space.shape or (), np.float32) for _ in range(given.get("buffers") or 2)]
             self._rows = itertools.cycle(rows)
-        self._is_made = True
+        self._finish()
 
     def _rounded(self, observations: NDArray[Any]) -> NDArray[np.float32]:
         """Return observations in the float type of Gymnasium; with ``copy=False`` in arrays that steps fill in turn."""
@@ -138,12 +141,23 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
         return self
 
     def get_attr(self, name: str) -> tuple[Any, ...]:
-        if name in self._table() and name not in keywords_of(self):
-            return tuple(self._value(name, n) for n in range(self.num_envs))
-        return super().get_attr(name)
+        """Return the value in use of an attribute or a keyword of each environment.
+
+        Where it varies, it is that of the current episode: under ``length=Uniform(0.3, 0.7)`` ``get_attr("length")`` has numbers, those of
+        :attr:`parameters`.
+
+        Raises
+        ------
+        AttributeError
+            For an unknown attribute; the message has the nearest name.
+        """
+        if name in vars(self) or not self._is_known(name):
+            return super().get_attr(name)
+        value, is_each = self._in_use(name)
+        return tuple(value.tolist()) if is_each else tuple(copied(value) for _ in range(self.num_envs))
 
     def set_attr(self, name: str, values: Any) -> None:
-        if name not in keywords_of(self):
+        if name not in self._given_keywords:
             self._refuse(name, values)
         super().set_attr(name, values)
 
@@ -210,28 +224,40 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
             return super().render()
         if self._picture is None:
             self._picture = _Picture(self._classic)
-        return tuple(self._picture(state, self._lengths(n)) for n, state in enumerate(self.states))
+        return tuple(self._picture(*one) for one in zip(self.states, self._lengths()))
 
     def close_extras(self, **kwargs: Any) -> None:
+        self._keep_numbers()
         if (picture := self.__dict__.get("_picture")) is not None:
             picture.close()
         super().close_extras(**kwargs)
 
     def _extras(self) -> dict[str, Any]:
-        return {**super()._extras(), "_generators": self._generators, "_ended": self._ended}
+        return {name: value for name, value in vars(self).items() if name not in _RESTORED}
 
     def __reduce__(self) -> Any:
-        function, (cls, _, *rest) = super().__reduce__()
-        return function, (cls, (self._classic.name, self._given), *rest)
+        function, (cls, _, state, seeder, extras) = super().__reduce__()
+        # As a state, after the arguments: an attribute may refer to the environment.
+        return function, (cls, (self._classic.name, self._given), state, seeder, {}), extras
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Any:
+        function, arguments, extras = self.__reduce__()
+        other = memo[id(self)] = function(*copy.deepcopy(arguments, memo))
+        vars(other).update(copy.deepcopy(extras, memo))
+        return other
 
     @classmethod
     def _construct(cls, name: Any, given: dict[str, Any]) -> Any:
-        make: Any = cls
-        return make(name, **given) if cls is ClassicVectorEnv else make(**given)
+        # A subclass may have a signature of its own.
+        envs = cls.__new__(cls)
+        ClassicVectorEnv.__init__(envs, name, **given)
+        return envs
 
 
 class ClassicEnv(ClassicAttributes, Env):
     """Single environment of a twin of Gymnasium's classic control; see :class:`ClassicVectorEnv`."""
+
+    _last_state: NDArray[Any] | None = None
 
     def __init__(self, name: str, /, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
         self._classic, self._starts = _classic(name), starts
@@ -242,13 +268,20 @@ class ClassicEnv(ClassicAttributes, Env):
         self.metadata = {"render_modes": ["rgb_array"], "render_fps": _FPS[self._classic.name]}
         self.observation_space = _seen(self._classic, self._all._settings, given, self.observation_space)
         self.action_space = _action_space(self._classic, given, self.action_space)
-        self._is_made = True
+        self._finish()
 
     def _checked_render_mode(self, render_mode: str | None) -> str | None:
         return _render_mode(render_mode)
 
     def _batch(self) -> Environments:
         return self._all
+
+    def get_wrapper_attr(self, name: str) -> Any:
+        """Return an attribute or a keyword; where it varies, the number of the current episode."""
+        if name in vars(self) or not self._is_known(name):
+            return super().get_wrapper_attr(name)
+        value, is_each = self._in_use(name)
+        return float(value[0]) if is_each else value
 
     def __getstate__(self) -> dict[str, Any]:
         # Surfaces of Pygame cannot be copied.
@@ -281,9 +314,17 @@ class ClassicEnv(ClassicAttributes, Env):
             return super().render()
         if self._picture is None:
             self._picture = _Picture(self._classic)
-        return self._picture(self.state, self._lengths(0), self._action)
+        return self._picture(self.state, self._lengths()[0], self._action)
+
+    @property
+    def state(self) -> np.ndarray:
+        """States of the system, without noise and latency; after ``close`` the last ones."""
+        return super().state if self._last_state is None else self._last_state.copy()
 
     def close(self) -> None:
+        self._keep_numbers()
+        if self._is_made and self._last_state is None:
+            self._last_state = self.state
         if (picture := self.__dict__.get("_picture")) is not None:
             picture.close()
         super().close()

@@ -146,7 +146,7 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
             return tuple({key: float(values[n]) for key, values in table.items()} for n in range(self.num_envs))
         keywords = keywords_of(self)
         given: Any = keywords.get(name)
-        if name in self.parameters and np.shape(given) == (self.num_envs,):
+        if np.shape(given) == (self.num_envs,) and name in self.parameters:
             # One for each environment.
             return tuple(given)
         if name == "metadata":

@@ -75,5 +75,12 @@ def _set_spec(env: Any, spec: Any) -> None:
     vars(env)["_spec"] = spec
 
 
-JSON_SPEC: Any = property(_spec, _set_spec, doc="Spec of Gymnasium, whose keywords are values of JSON.")
+class _Spec(property):
+    """A property of environments that is None on their class, as in Gymnasium."""
+
+    def __get__(self, env: Any, cls: type | None = None) -> Any:
+        return None if env is None else super().__get__(env, cls)
+
+
+JSON_SPEC: Any = _Spec(_spec, _set_spec, doc="Spec of Gymnasium, whose keywords are values of JSON.")
 """An attribute ``spec`` of environments."""
