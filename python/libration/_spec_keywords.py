@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import copy
 from enum import Enum
+from numbers import Real
 from typing import Any, Mapping
 
 import numpy as np
 
-from ._settings import is_several
+from ._settings import is_several, number, shown
 from .equations import EquationSystem
 from .perturbations import PD, Gaussian, LogUniform, Uniform
 
@@ -34,34 +35,52 @@ def json_value(value: Any) -> Any:
         return {"text": text, "file": file, "parameters": dict(given)}
     if isinstance(value, Enum):
         return value.value
-    if isinstance(value, (np.ndarray, np.generic)):
-        # Of largest actions (num_envs, inputs) a list for each input.
-        return value.T.tolist()
     if isinstance(value, np.dtype) or (isinstance(value, type) and issubclass(value, np.generic)):
         return np.dtype(value).name
+    if hasattr(value, "shape") and hasattr(value, "tolist"):
+        # Of largest actions (num_envs, inputs) a list for each input.
+        return json_value(np.asarray(value).T.tolist())
+    if isinstance(value, Real) and not isinstance(value, (int, float)):
+        return float(value)
     if isinstance(value, Mapping):
         return {key: json_value(one) for key, one in value.items()}
     return [json_value(one) for one in value] if is_several(value) else value
 
 
 def keyword_value(value: Any) -> Any:
-    """Return the keyword of a value of JSON: ``["uniform", 10, 20]`` is ``Uniform(10, 20)``."""
+    """Return the keyword of a value of JSON: ``["uniform", 10, 20]`` is ``Uniform(10, 20)``; arrays of the caller are copied."""
+    if isinstance(value, np.ndarray):
+        return value.copy()
     if isinstance(value, Mapping):
         return {key: keyword_value(one) for key, one in value.items()}
     if not is_several(value) or not value:
         return value
     kind, *numbers = value
-    if isinstance(kind, str) and kind in _KINDS and len(numbers) == 2 and not any(isinstance(x, (str, list, tuple)) for x in numbers):
+    if isinstance(kind, str) and kind in _KINDS and len(numbers) == 2 and all(map(_is_number, numbers)):
         return _KINDS[kind](*numbers)
     # A range of the standard deviation of a law, or a distribution for each input.
     return type(value)(keyword_value(one) for one in value) if type(value) in (list, tuple) else value
 
 
+def _is_number(value: Any) -> bool:
+    return isinstance(value, Real) or getattr(value, "shape", None) == ()
+
+
 def system_value(value: Any) -> Any:
-    """Return the system of a value of JSON."""
-    if isinstance(value, Mapping) and set(value) == _SYSTEM_KEYS:
-        return EquationSystem._again(value["text"], value["file"], [(name, float(x)) for name, x in value["parameters"].items()])
-    return value
+    """Return the system of a value of JSON.
+
+    Raises
+    ------
+    TypeError
+        For a dictionary whose entries have other types.
+    """
+    if not isinstance(value, Mapping) or set(value) != _SYSTEM_KEYS:
+        return value
+    for key, kind, expected in (("text", str, "a string"), ("file", str, "a string"), ("parameters", Mapping, "a dictionary of numbers")):
+        if not isinstance(value[key], kind):
+            raise TypeError(f"{key} of system is {shown(value[key])}, but it must be {expected}")
+    given = [(name, number(f"parameter {name!r} of system", x, "finite")) for name, x in value["parameters"].items()]
+    return EquationSystem._again(value["text"], value["file"], given)
 
 
 def _spec(env: Any) -> Any:

@@ -1,6 +1,8 @@
 """Specs of Gymnasium with distributions, arrays and systems: JSON, text, and the environments that they make."""
 
+import copy
 import json
+from fractions import Fraction
 
 import gymnasium
 import numpy as np
@@ -24,6 +26,7 @@ CASES = [
     (PENDULUM, {"action_delay": (0.0, 0.05), "observation_delay": Uniform(0, 0.1), "jitter": Uniform(0.1), "skew": Gaussian(0.01)}),
     (PENDULUM, {"jitter": Uniform(0, 0.1), "observation_noise": ("uniform", Uniform(0, 0.02)), "max_action": Uniform(2, 4)}),
     (PENDULUM, {"dtype": np.float64, "omega2": np.float64(12.0), "threads": np.int64(1)}),
+    (PENDULUM, {"dt": Fraction(1, 50), "omega2": Uniform(Fraction(21, 2), np.float32(12)), "start_position": (Fraction(-1, 2), np.array(0.5))}),
     (CART, {"length": Uniform(0.3, 0.7), "starts": "gymnasium"}),
     (OWN, {"system": SYSTEM, "dt": 0.01, "k": LogUniform(1, 10), "start": {"q": Uniform(-2, 2)}}),
     (OWN, {"system": SYSTEM, "dt": 0.02, "inner": PD(40.0, 6.0), "inner_period": 0.01}),
@@ -80,11 +83,42 @@ def test_a_spec_shows_distributions_in_words():
         ({"omega2": ["log-uniform", 0, 10]}, "low is 0"),
         ({"omega2": ["uniform", 0.1]}, "omega2"),
         ({"omega2": ["unifrom", 1, 2]}, "omega2"),
+        ({"omega2": ["uniform", None, 2]}, "omega2"),
+        ({"velocity_cost": ["log-uniform", {}, 2], "num_envs": 3}, r"velocity_cost\[0\] must be a number"),
+        ({"jitter": ["gaussian", None, 0.1]}, "jitter"),
+        ({"action_delay": ["uniform", 0.0, None]}, "action_delay"),
     ],
 )
 def test_wrong_distributions_in_words_are_refused(given, text):
     with pytest.raises((TypeError, ValueError), match=text):
         libration.Environments("Pendulum", **given)
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ({"parameters": [1]}, r"parameters of system is \[1\], but it must be a dictionary of numbers"),
+        ({"parameters": {"k": "1"}}, "parameter 'k' of system must be a number, not str"),
+        ({"text": 1}, "text of system is 1, but it must be a string"),
+        ({"file": None}, "file of system is None, but it must be a string"),
+    ],
+)
+def test_a_wrong_dictionary_of_a_system_is_an_error_with_its_entry(entry, text):
+    system = gymnasium.make(OWN, system=SYSTEM, dt=0.01).spec.kwargs["system"]
+    assert gymnasium.make(OWN, system=system, dt=0.01).unwrapped.parameters == {}
+    with pytest.raises(TypeError, match=text):
+        libration.envs.SystemEnv({**system, **entry}, dt=0.01)
+
+
+def test_a_change_of_what_was_given_leaves_the_environment_and_its_copies():
+    costs, actions = np.array([0.1, 0.2]), [-1.0, 1.0]
+    envs, twins = libration.VectorEnv("Pendulum", 2, velocity_cost=costs), gymnasium.make_vec(CART, 2, actions=actions, length=costs)
+    costs[:] = 5.0
+    actions.append(2.0)
+    for other in (copy.deepcopy(envs), copy.deepcopy(twins.unwrapped)):
+        other.reset(seed=0)
+        assert other.get_attr("velocity_cost" if other.get_attr("dt")[0] == 0.05 else "length") == (0.1, 0.2)
+    assert copy.deepcopy(twins.unwrapped).single_action_space.n == 2
 
 
 def test_what_json_cannot_have_fails_as_gymnasium_says():
