@@ -164,9 +164,9 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
         options = dict(options or {})
         if self._starts == "libration":
-            observations, infos = super().reset(seed=seed, options=start_ranges(self._classic, options))
+            observations, infos = super().reset(seed=seed, options=start_ranges(self._classic, options, self._settings["dtype"]))
             return self._rounded(observations), infos
-        bounds = start_bounds(self._classic, options)
+        bounds = start_bounds(self._classic, options, self._settings["dtype"])
         if "low" in options or "high" in options:
             raise ValueError("options has ends of ranges, but those of Gymnasium's Pendulum are 'x_init' and 'y_init'")
         # The first reset begins all environments, also those outside the mask.
@@ -290,9 +290,9 @@ class ClassicEnv(ClassicAttributes, Env):
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
         options, self._action = dict(options or {}), None
         if self._starts == "libration":
-            observation, info = super().reset(seed=seed, options=start_ranges(self._classic, options))
+            observation, info = super().reset(seed=seed, options=start_ranges(self._classic, options, self._all._settings["dtype"]))
             return observation.astype(np.float32), info
-        bounds = start_bounds(self._classic, options)
+        bounds = start_bounds(self._classic, options, self._all._settings["dtype"])
         if "low" in options or "high" in options:
             raise ValueError("options has ends of ranges, but those of Gymnasium's Pendulum are 'x_init' and 'y_init'")
         observation, info = super().reset(seed=seed, options=options)

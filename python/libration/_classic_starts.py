@@ -11,30 +11,46 @@ from ._classic_systems import ClassicSystem, system_of
 from ._settings import number
 
 
-def start_bounds(classic: ClassicSystem, options: dict[str, Any]) -> dict[str, Any]:
-    """Take the ends of starts out of options of Gymnasium, and return the keywords of :func:`drawn_start`."""
+_MOST = float(np.finfo(np.float64).max)
+
+
+def start_bounds(classic: ClassicSystem, options: dict[str, Any], dtype: str) -> dict[str, Any]:
+    """Take the ends of starts out of options of Gymnasium, and return the keywords of :func:`drawn_start`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For ends that are no range of numbers that are finite in the float type of the states.
+    """
     names = ("x_init", "y_init") if classic.name == "Pendulum" else ("low", "high")
     given = {name: number(f"options[{name!r}]", options.pop(name), "finite") for name in names if name in options}
-    if classic.rounds_start:
-        for name, value in given.items():
-            number(f"options[{name!r}]", value, "finite in float32", lambda x: bool(np.isfinite(np.float32(x))))
+    if classic.rounds_start or dtype == "float32":
+        with np.errstate(over="ignore"):
+            for name, value in given.items():
+                number(f"options[{name!r}]", value, "finite in float32", lambda x: bool(np.isfinite(np.float32(x))))
     if given and "state" in options:
         raise ValueError(f"options has 'state' and {next(iter(given))!r}, but it must have one of them")
     if classic.name == "Pendulum":
         for name, value in given.items():
             if value < 0:
                 raise ValueError(f"options[{name!r}] is {value}, but it must be at least 0")
-    elif given and (low := given.get("low", classic.start[0])) > (high := given.get("high", classic.start[1])):
-        raise ValueError(f"options has low = {low} and high = {high}, but low must be at most high")
+            if value > _MOST / 2:
+                raise ValueError(f"options[{name!r}] is {value}, but it must be at most {_MOST / 2:.3g}: NumPy draws between its negative and it")
+    elif given:
+        low, high = given.get("low", classic.start[0]), given.get("high", classic.start[1])
+        if low > high:
+            raise ValueError(f"options has low = {low} and high = {high}, but low must be at most high")
+        if high - low > _MOST:
+            raise ValueError(f"options has low = {low} and high = {high}, but high - low must be finite")
     return given
 
 
-def start_ranges(classic: ClassicSystem, options: dict[str, Any]) -> dict[str, Any]:
+def start_ranges(classic: ClassicSystem, options: dict[str, Any], dtype: str) -> dict[str, Any]:
     """Return options of the engine for those of Gymnasium, whose numbers are for the states that it draws."""
     options = dict(options)
     if classic.name != "Pendulum" and any(np.ndim(options.get(name, 0.0)) != 0 or isinstance(options.get(name), Mapping) for name in ("low", "high")):
         return options
-    given = start_bounds(classic, options)
+    given = start_bounds(classic, options, dtype)
     if not given:
         return options
     if "low" in options or "high" in options:

@@ -272,6 +272,33 @@ def test_wrong_options_of_twins_are_refused_before_a_reset(starts, options):
         assert np.array_equal(each.unwrapped.states if each is envs else each.unwrapped.state, before)
 
 
+@pytest.mark.parametrize("starts", ["libration", "gymnasium"])
+@pytest.mark.parametrize(
+    ("id", "options", "text"),
+    [
+        ("CartPole-v1", {"low": -1e308, "high": 1e308}, "low = -1e[+]308 and high = 1e[+]308, but high - low must be finite"),
+        ("CartPole-v1", {"low": 1e39, "high": 1e39, "dtype": "float32"}, "'low'.* finite in float32"),
+        ("Pendulum-v1", {"x_init": 1e308}, "'x_init'.* at most 8.99e[+]307"),
+        ("Pendulum-v1", {"y_init": 1e39, "dtype": "float32"}, "'y_init'.* finite in float32"),
+        ("MountainCarContinuous-v0", {"low": 1e300, "high": 1e300}, "'low'.* finite in float32"),
+        ("Acrobot-v1", {"high": 1e300}, "'high'.* finite in float32"),
+    ],
+)
+def test_starts_without_a_float_are_refused_before_a_reset(recwarn, starts, id, options, text):
+    options = dict(options)
+    given = {"starts": starts} | ({"dtype": options.pop("dtype")} if "dtype" in options else {})
+    envs, env = gymnasium.make_vec(f"libration/{id}", 2, **given), gymnasium.make(f"libration/{id}", **given).unwrapped
+    for each, states in ((envs, lambda: envs.unwrapped.states), (env, lambda: env.state)):
+        each.reset(seed=0)
+        before = states()
+        with pytest.raises(ValueError, match=text):
+            each.reset(seed=1, options=options)
+        assert np.array_equal(states(), before)
+        twin = copy.deepcopy(each)
+        assert np.array_equal(each.reset()[0], twin.reset()[0])
+    assert not [str(one.message) for one in recwarn if "overflow" in str(one.message)]
+
+
 def test_keywords_that_change_what_is_observed_change_the_space():
     envs = gymnasium.make_vec("libration/CartPole-v1", 2, observe=["x", "100*theta"])
     assert envs.single_observation_space.shape == (2,) and np.isinf(envs.single_observation_space.high).all()
