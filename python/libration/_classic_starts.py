@@ -11,9 +11,6 @@ from ._classic_systems import ClassicSystem, system_of
 from ._settings import number
 
 
-_MOST = float(np.finfo(np.float64).max)
-
-
 def start_bounds(classic: ClassicSystem, options: dict[str, Any], dtype: str) -> dict[str, Any]:
     """Take the ends of starts out of options of Gymnasium, and return the keywords of :func:`drawn_start`.
 
@@ -30,18 +27,19 @@ def start_bounds(classic: ClassicSystem, options: dict[str, Any], dtype: str) ->
                 number(f"options[{name!r}]", value, "finite in float32", lambda x: bool(np.isfinite(np.float32(x))))
     if given and "state" in options:
         raise ValueError(f"options has 'state' and {next(iter(given))!r}, but it must have one of them")
+    most = float(np.finfo(dtype).max)
     if classic.name == "Pendulum":
         for name, value in given.items():
             if value < 0:
                 raise ValueError(f"options[{name!r}] is {value}, but it must be at least 0")
-            if value > _MOST / 2:
-                raise ValueError(f"options[{name!r}] is {value}, but it must be at most {_MOST / 2:.3g}: NumPy draws between its negative and it")
+            if value > most / 2:
+                raise ValueError(f"options[{name!r}] is {value}, but it must be at most {most / 2:.3g}: twice of it must be finite in {dtype}")
     elif given:
         low, high = given.get("low", classic.start[0]), given.get("high", classic.start[1])
         if low > high:
             raise ValueError(f"options has low = {low} and high = {high}, but low must be at most high")
-        if high - low > _MOST:
-            raise ValueError(f"options has low = {low} and high = {high}, but high - low must be finite")
+        if high - low > most:
+            raise ValueError(f"options has low = {low} and high = {high}, but high - low must be finite in {dtype}")
     return given
 
 

@@ -277,6 +277,8 @@ def test_wrong_options_of_twins_are_refused_before_a_reset(starts, options):
     ("id", "options", "text"),
     [
         ("CartPole-v1", {"low": -1e308, "high": 1e308}, "low = -1e[+]308 and high = 1e[+]308, but high - low must be finite"),
+        ("CartPole-v1", {"low": -3e38, "high": 3e38, "dtype": "float32"}, "high - low must be finite in float32"),
+        ("Pendulum-v1", {"y_init": 2e38, "dtype": "float32"}, "'y_init'.* at most 1.7e[+]38: twice of it must be finite in float32"),
         ("CartPole-v1", {"low": 1e39, "high": 1e39, "dtype": "float32"}, "'low'.* finite in float32"),
         ("Pendulum-v1", {"x_init": 1e308}, "'x_init'.* at most 8.99e[+]307"),
         ("Pendulum-v1", {"y_init": 1e39, "dtype": "float32"}, "'y_init'.* finite in float32"),
@@ -375,3 +377,14 @@ def test_rewards_that_are_not_finite_are_compared():
     assert compare((np.nan, 1.0), (np.nan, 1.0)) and compare((-np.inf, 1.0), (-np.inf, 1.0))
     for one, other in (((np.nan, 0.0), (0.0, 0.0)), ((-np.inf, 0.0), (0.0, 0.0)), ((-np.inf, 5.0), (-np.inf, 0.0))):
         assert "reward" in compare(one, other).difference
+
+
+def test_an_environment_from_a_pickle_has_the_errors_of_gymnasium():
+    for id in ("libration/CartPole-v1", "libration/PendulumSwingUp-v0"):
+        env = gymnasium.make(id).unwrapped
+        for other in (pickle.loads(pickle.dumps(env)), copy.deepcopy(env)):
+            with pytest.raises(gymnasium.error.ResetNeeded):
+                other.step(other.action_space.sample())
+            other.close()
+            with pytest.raises(gymnasium.error.ClosedEnvironmentError):
+                other.reset()
