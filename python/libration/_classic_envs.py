@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import itertools
 import math
-from typing import Any, Iterator, Mapping
+from typing import Any, Mapping, Sequence
 
 import gymnasium
 import numpy as np
@@ -19,12 +19,14 @@ from ._classic_attributes import ClassicAttributes
 from ._classic_starts import drawn_start, start_bounds, start_ranges
 from ._classic_systems import CLASSIC, ClassicSystem, system_of
 from ._environment_keywords import BatchKeywords, ClassicKeywords
+from ._episode_states import options_of
 from ._gymnasium_envs import Env, VectorEnv
-from ._settings import OPTIONS, nearest
+from ._settings import OPTIONS, ends, nearest
+from ._spec_keywords import keyword_value
 from .environments import Environments
 
 STARTS = ("libration", "gymnasium")
-_RESTORED = {"_arguments", "_given", "_picture", "_rows", "_seeder", "_settings", "preset"}
+_RESTORED = {"_arguments", "_given", "_picture", "_seeder", "_settings", "_turns", "preset"}
 """Attributes of vector environments that a copy has from its construction."""
 
 
@@ -51,12 +53,20 @@ def _classic(name: str) -> ClassicSystem:
 
 def _seen(classic: ClassicSystem, settings: Any, given: dict[str, Any], own: Any) -> Box:
     """Return the observation space: that of Gymnasium, unless keywords change what is observed or how far it goes."""
-    if given.get("observe") is not None or given.get("project") is not None:
+    is_changed = any(given.get(name) is not None for name in ("observe", "project", "terminated"))
+    if is_changed or _starts_outside(classic, keyword_value(given.get("start"))):
         return Box(np.float32(own.low), np.float32(own.high), dtype=np.float32)
     low, high = (np.array(ends, np.float32) for ends in zip(*classic.limits))
     if any(std > 0 for _, std in settings["subject"]["noise"]):
         low, high = np.full_like(low, -np.inf), np.full_like(high, np.inf)
     return Box(low, high, dtype=np.float32)
+
+
+def _starts_outside(classic: ClassicSystem, start: Mapping[str, Any] | None) -> bool:
+    """Whether an episode can start where Gymnasium's observation space ends."""
+    limits = dict(zip(classic.system["task"]["observe"], classic.limits))
+    ranges = {name: (ends(f"start of {name}", value), limits[name]) for name, value in (start or {}).items() if name in limits}
+    return any(low < least or high > most for (low, high), (least, most) in ranges.values())
 
 
 def _action_space(classic: ClassicSystem, given: dict[str, Any], space: Any) -> Any:
@@ -104,6 +114,8 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
     """
 
     _is_vector = True
+    # Observations of twins have the float type of Gymnasium, in arrays of their own.
+    _has_own_arrays = True
 
     def __init__(self, name: str, /, num_envs: int = 1, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
         self._classic, self._starts = _classic(name), starts
@@ -119,20 +131,24 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self._generators: list[np.random.Generator | None] = [None] * self.num_envs
         self._ended = np.zeros(self.num_envs, bool)
-        self._rows: Iterator[NDArray[np.float32]] | None = None
-        # The start of an episode takes a second array of the engine in the same step.
-        if not given.get("copy", True) and (starts == "gymnasium" or self._settings["dtype"] != "float32"):
-            rows = [np.empty(self.observation_space.shape or (), np.float32) for _ in range(given.get("buffers") or 2)]
-            self._rows = itertools.cycle(rows)
+        turns: list[list[NDArray[Any]]] = [[] for _ in range(self._buffers)]
+        self._turns = itertools.cycle(turns)
         self._finish()
 
-    def _rounded(self, observations: NDArray[Any]) -> NDArray[np.float32]:
-        """Return observations in the float type of Gymnasium; with ``copy=False`` in arrays that steps fill in turn."""
-        if self._rows is None:
-            return observations.astype(np.float32, copy=False)
-        row = next(self._rows)
-        np.copyto(row, observations, casting="same_kind")
-        return row
+    def _in_turn(self, *results: NDArray[Any]) -> Sequence[NDArray[Any]]:
+        """Return the results of a step; with ``copy=False`` in the arrays that steps fill in turn."""
+        if not self._buffers:
+            return results
+        arrays = next(self._turns)
+        # The caller may have made an array read-only, or changed its shape.
+        if any(not array.flags.writeable or array.shape != result.shape for array, result in zip(arrays, results)):
+            arrays.clear()
+        if not arrays:
+            arrays += [result.copy() for result in results]
+            return tuple(arrays)
+        for array, result in zip(arrays, results):
+            np.copyto(array, result)
+        return tuple(arrays)
 
     def _checked_render_mode(self, render_mode: str | None) -> str | None:
         return _render_mode(render_mode)
@@ -162,10 +178,10 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
         super().set_attr(name, values)
 
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
-        options = dict(options or {})
+        options = options_of(options)
         if self._starts == "libration":
             observations, infos = super().reset(seed=seed, options=start_ranges(self._classic, options, self._settings["dtype"]))
-            return self._rounded(observations), infos
+            return observations.astype(np.float32, copy=False), infos
         bounds = start_bounds(self._classic, options, self._settings["dtype"])
         if "low" in options or "high" in options:
             raise ValueError("options has ends of ranges, but those of Gymnasium's Pendulum are 'x_init' and 'y_init'")
@@ -184,7 +200,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
             observations = self._start(mask, bounds)
         if first and not mask.all():
             observations = self._start(~mask, {})
-        return self._rounded(observations), infos
+        return observations.astype(np.float32, copy=False), infos
 
     def _start(self, mask: NDArray[np.bool_], bounds: dict[str, Any]) -> np.ndarray:
         """Put environments at starts of Gymnasium."""
@@ -216,7 +232,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
             if begun is not None and begun.any():
                 observations = self._start(begun, {})
             self._ended = ended
-        return self._rounded(observations), rewards, terminated, truncated, infos
+        return *self._in_turn(observations.astype(np.float32, copy=False), rewards, terminated, truncated), infos
 
     def render(self) -> tuple[np.ndarray, ...] | None:
         """Return one picture of Gymnasium's per environment, if ``render_mode`` is ``"rgb_array"``; it requires Pygame."""
@@ -288,7 +304,7 @@ class ClassicEnv(ClassicAttributes, Env):
         return {**self.__dict__, "_picture": None}
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
-        options, self._action = dict(options or {}), None
+        options, self._action = options_of(options), None
         if self._starts == "libration":
             observation, info = super().reset(seed=seed, options=start_ranges(self._classic, options, self._all._settings["dtype"]))
             return observation.astype(np.float32), info

@@ -164,6 +164,7 @@ mod tests {
                 "test_check_vector_env.py",
                 "test_classic_attributes.py",
                 "test_classic_control.py",
+                "test_copies.py",
                 "test_custom.py",
                 "test_environment_pages.py",
                 "test_first_hour.py",
@@ -171,6 +172,7 @@ mod tests {
                 "test_gymnasium_vector_wrappers.py",
                 "test_probe_gymnasium.py",
                 "test_sb3.py",
+                "test_spaces.py",
                 "test_specs.py",
                 "test_system_environments.py",
                 "test_vector.py"
