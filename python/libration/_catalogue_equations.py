@@ -21,6 +21,9 @@ ACCELERATIONS: Mapping[str, Mapping[str, str]] = {
     "henon-heiles": {"x": "-x - lambda*(x*y + x*y)", "y": "-y - lambda*(x*x - y*y)"},
 }
 
+_STARTS: Mapping[str, Mapping[str, float]] = {"kepler": {"x": 1.0, "y'": 1.0}}
+"""Starts of systems that have none at zero."""
+
 
 def commanded(name: str, has_mass: bool) -> dict[str, str]:
     """Return the accelerations of a system with its commands: ``u`` of one coordinate, ``u_x`` and ``u_y`` of two.
@@ -39,4 +42,5 @@ def equations_of(system: Any, **given: Any) -> EquationSystem:
     accelerations = commanded(system.name, "m" in system.parameters)
     inputs = ["u"] if len(accelerations) == 1 else [f"u_{q}" for q in accelerations]
     of_system = {"acceleration": accelerations, "parameters": dict(system.parameters), "inputs": inputs, "name": system.name}
+    of_system["start"] = _STARTS.get(system.name)
     return EquationSystem(**{**of_system, **given})

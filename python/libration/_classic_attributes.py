@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from functools import cache
 from math import inf, pi
@@ -88,13 +89,14 @@ def _limit(given: Mapping[str, Any]) -> Any:
 
 def _car_limit(given: Mapping[str, Any]) -> Any:
     most = _limit(given)
-    return np.where(np.isinf(most), 1.0, most) if isinstance(most, np.ndarray) else 1.0 if most == inf else most
+    # The car takes at most 1, whatever a policy may command.
+    return np.minimum(most, 1.0) if isinstance(most, np.ndarray) else min(most, 1.0)
 
 
-def _limit_advice(sign: int) -> Advice:
+def _limit_advice(sign: int, most: float = inf) -> Advice:
     def advice(value: Any) -> str:
         is_number = isinstance(value, (int, float, np.number))
-        return f"max_action={_text(sign * value)}" if is_number and sign * value > 0 else "max_action=…"
+        return f"max_action={_text(sign * value)}" if is_number and 0 < sign * value <= most else "max_action=…"
 
     return advice
 
@@ -143,8 +145,8 @@ _ATTRIBUTES: Mapping[str, Mapping[str, Attribute]] = {
         "low_state": _LOW,
         "high_state": _HIGH,
         "goal_position": _end(_AT_GOAL, 1, f'terminated=["{_REACHED}"], reward="if({_REACHED}, 100, 0) - u^2*0.1"'),
-        "max_action": Attribute(_car_limit, _limit_advice(1)),
-        "min_action": Attribute(lambda given: -_car_limit(given), _limit_advice(-1)),
+        "max_action": Attribute(_car_limit, _limit_advice(1, 1.0)),
+        "min_action": Attribute(lambda given: -_car_limit(given), _limit_advice(-1, 1.0)),
     },
     "Acrobot": {
         "dt": _of("dt"),
@@ -232,6 +234,15 @@ class ClassicAttributes:
                 absent[name] = other.args[0]
         self._given_keywords, self._constants, self._varying, self._absent = given, constants, frozenset(varying), absent
         self._is_made = True
+        self._refuse_hidden()
+
+    def _refuse_hidden(self) -> None:
+        """Raise an error for an attribute of a subclass, or one that was set before the construction, that hides one of Gymnasium's."""
+        classes = itertools.takewhile(lambda cls: not cls.__module__.startswith("libration."), type(self).__mro__)
+        for place in [vars(self), *(vars(cls) for cls in classes)]:
+            for name in place.keys() & self._table().keys():
+                if not isinstance(place[name], property):
+                    self._refuse(name, place[name])
 
     def _keep_numbers(self) -> None:
         """Keep the numbers of the episodes before the engine releases them."""

@@ -14,6 +14,7 @@ import numpy as np
 
 from ._settings import is_several, number, shown
 from .equations import EquationSystem
+from .systems import with_commands
 from .perturbations import PD, Gaussian, LogUniform, Uniform
 
 _KINDS = {"uniform": Uniform, "log-uniform": LogUniform, "gaussian": Gaussian, "pd": PD}
@@ -30,6 +31,7 @@ def json_value(value: Any) -> Any:
         return ["gaussian", float(value.std), float(value.mean)]
     if isinstance(value, PD):
         return ["pd", float(value.kp), float(value.kd)]
+    value = with_commands(value)
     if isinstance(value, EquationSystem):
         text, file, given = value._text
         return {"text": text, "file": file, "parameters": dict(given)}

@@ -14,6 +14,7 @@ from ._progress import Progress, ProgressDisplay
 from ._settings import count
 from ._toml import text_of
 from .equations import EquationSystem, check_system
+from .systems import System, with_commands
 
 __all__ = ["Flaw", "SETTINGS", "Written", "environment_spec", "recover_environment", "verify", "write"]
 
@@ -53,7 +54,7 @@ def write(
     out: str | os.PathLike[str],
     settings: Mapping[str, Any] | str | os.PathLike[str] | None = None,
     *,
-    system: EquationSystem | None = None,
+    system: EquationSystem | System | None = None,
     transitions: int | None = None,
     format: str = "parquet",
     shard: tuple[int, int] = (1, 1),
@@ -70,7 +71,7 @@ def write(
     settings:
         A dictionary with the keys of :data:`SETTINGS`, or the path of a settings file (default: the settings of the report).
     system:
-        A system by equations (:class:`libration.EquationSystem`) in place of that of the settings, as ``libration rollout --system FILE``. Its
+        A system by equations (:class:`libration.EquationSystem`), or one of the catalogue as its equations, in place of that of the settings, as ``libration rollout --system FILE``. Its
         task is ``{"task": {"expressions": {...}}}`` of the settings, or else its own. ``{"system": {"equations": {"max_action": 10.0}}}`` of
         the settings limits actions. Keys of a dictionary that belong to systems of the catalogue are errors; those of a file are ignored.
     transitions:
@@ -105,10 +106,11 @@ def write(
         "resume": bool(resume),
         "threads": count("threads", threads, 0, 1024),
     }
-    check_system("datasets.write", system, settings=settings)
-    if system is not None and isinstance(settings, Mapping):
+    subject = with_commands(system)
+    check_system("datasets.write", subject, settings=settings)
+    if subject is not None and isinstance(settings, Mapping):
         _check_replaced(settings)
-    source = None if system is None else system._text
+    source = None if subject is None else subject._text
     text = text_of("settings", settings)
     with ProgressDisplay(progress) as display:
 

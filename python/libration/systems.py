@@ -114,7 +114,8 @@ class System:
         Parameters
         ----------
         **keywords:
-            Keywords of :class:`libration.EquationSystem`, in place of those of this system.
+            Keywords of :class:`libration.EquationSystem`, in place of those of this system. ``inputs`` requires ``acceleration``, whose
+            expressions have the commands.
 
         Returns
         -------

@@ -61,3 +61,26 @@ def test_commands_of_a_system_with_a_mass_are_forces():
 def test_a_name_of_the_catalogue_that_is_no_preset_is_told_how_to_be_an_environment():
     with pytest.raises(ValueError, match=r"unknown environment 'kepler'.*help: System\('kepler'\) and a task"):
         libration.VectorEnv("kepler", 2)
+
+
+def test_an_orbit_starts_where_it_is_no_singularity():
+    env = libration.VectorEnv(System("kepler"), 2, dt=0.01, reward="-1")
+    env.reset(seed=0)
+    seen, _, terminated, _, infos = env.step(np.zeros((2, 2), np.float32))
+    assert np.isfinite(seen).all() and not terminated.any() and "lost" not in infos
+
+
+def test_the_spec_of_an_environment_of_the_catalogue_is_json_and_makes_it_again():
+    gymnasium = pytest.importorskip("gymnasium")
+    env = gymnasium.make("libration/System-v0", system=System("duffing", alpha=-2.0), dt=0.01, reward="-q^2", start={"q": (0.5, 1.0)})
+    again = gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(env.spec.to_json()))
+    assert np.array_equal(env.reset(seed=3)[0], again.reset(seed=3)[0])
+    assert all(np.array_equal(env.step([0.5])[0], again.step([0.5])[0]) for _ in range(20))
+
+
+def test_data_sets_take_systems_of_the_catalogue(tmp_path):
+    settings = {"environments": 4, "steps": 10, "dt": 0.1, "task": {"expressions": {"observe": ["q", "q'"], "reward": "-q^2"}}}
+    written = [libration.datasets.write(tmp_path / name, settings, system=system) for name, system in (
+        ("a", System("pendulum")), ("b", System("pendulum").equations()))]
+    assert written[0].transitions == written[1].transitions == 40
+    assert libration.datasets.verify(tmp_path / "a", replay=True) == []

@@ -91,8 +91,8 @@ def test_the_help_of_an_attribute_makes_the_environment_that_gymnasium_has_with_
     [
         (classic_control.MountainCarEnv, "goal_position", 0.3),
         (classic_control.MountainCarContinuousEnv, "goal_position", 0.3),
-        (classic_control.MountainCarContinuousEnv, "min_action", -2.0),
-        (classic_control.MountainCarContinuousEnv, "max_action", 2),
+        (classic_control.MountainCarContinuousEnv, "min_action", -0.5),
+        (classic_control.MountainCarContinuousEnv, "max_action", 1),
         (PendulumEnv, "max_torque", np.float32(1.5)),
         (AcrobotEnv, "AVAIL_TORQUE", [-2.0, 2.0]),
         (AcrobotEnv, "LINK_LENGTH_1", 2.0),
@@ -127,16 +127,16 @@ def test_no_help_has_a_number_that_the_environment_refuses():
         CartPoleEnv().state = np.zeros(4)
 
 
-@pytest.mark.parametrize("most", [2.0, 2, [2.0], (2.0,), np.array([2.0]), np.float32(2.0)])
+@pytest.mark.parametrize("most", [0.5, [0.5], (0.5,), np.array([0.5]), np.float32(0.5)])
 def test_a_largest_action_is_a_number_in_any_of_its_forms(most):
     env = classic_control.MountainCarContinuousEnv(max_action=most)
-    assert env.max_action == 2.0 and env.min_action == -2.0 and type(env.min_action) is float
-    assert PendulumEnv(max_action=most).max_torque == 2.0 and type(PendulumEnv(max_action=most).max_torque) is float
+    assert env.max_action == 0.5 and env.min_action == -0.5 and type(env.min_action) is float
+    assert PendulumEnv(max_action=most).max_torque == 0.5 and type(PendulumEnv(max_action=most).max_torque) is float
     envs = classic_control.MountainCarContinuousVectorEnv(2, max_action=most)
-    assert envs.min_action == -2.0 and envs.get_attr("max_action") == (2.0, 2.0)
-    envs = classic_control.MountainCarContinuousVectorEnv(2, max_action=np.array([2.0, 3.0]))
+    assert envs.min_action == -0.5 and envs.get_attr("max_action") == (0.5, 0.5)
+    envs = classic_control.MountainCarContinuousVectorEnv(2, max_action=np.array([0.5, 0.25]))
     envs.reset(seed=0)
-    assert envs.get_attr("min_action") == (-2.0, -3.0) and np.array_equal(envs.max_action, [2.0, 3.0])
+    assert envs.get_attr("min_action") == (-0.5, -0.25) and np.array_equal(envs.max_action, [0.5, 0.25])
 
 
 def test_several_largest_actions_are_no_attribute():
@@ -342,3 +342,26 @@ def test_a_picture_has_the_length_of_its_episode(monkeypatch, id, keyword, attri
     envs = gymnasium.make_vec(f"libration/{id}", 3, render_mode="rgb_array", **{keyword: Uniform(0.3, 0.7)})
     envs.reset(seed=0)
     assert envs.render() == tuple(envs.parameters[keyword])
+
+
+def test_what_a_subclass_hides_is_refused_with_the_keyword():
+    class Heavy(classic_control.AcrobotEnv):
+        LINK_MASS_1 = 50.0
+
+    with pytest.raises(AttributeError, match=r"LINK_MASS_1 of AcrobotEnv cannot be set to 50.0; help: .*AcrobotEnv\(m1=50.0\)"):
+        Heavy()
+
+    class Early(classic_control.CartPoleEnv):
+        def __init__(self):
+            self.gravity = 1.0
+            super().__init__()
+
+    with pytest.raises(AttributeError, match="gravity of CartPoleEnv cannot be set to 1.0"):
+        Early()
+
+
+def test_the_largest_action_of_the_car_is_that_of_its_motion():
+    car = classic_control.MountainCarContinuousEnv(max_action=2.0)
+    assert (car.max_action, car.min_action) == (1.0, -1.0)
+    with pytest.raises(AttributeError, match=r"MountainCarContinuousEnv\(max_action=…\)"):
+        car.min_action = -3.0

@@ -250,7 +250,8 @@ def test_the_task_of_a_data_set_is_that_of_the_settings_or_of_the_system(tmp_pat
         ({"system": {"equations": {"max_action": [1.0, 2.0]}}}, {}, ValueError, "max_action.* has 2 numbers"),
         ({}, {"system": spring()}, ValueError, r"has no table \[task\]; expected \[task.expressions\] in the settings"),
         ({}, {"system": pendulum(task={"reward": "1"})}, ValueError, "has no inputs"),
-        ({}, {"system": libration.System("pendulum")}, TypeError, "it must be a system by equations"),
+        ({}, {"system": libration.System("pendulum")}, ValueError, r"has no table \[task\]"),
+        ({}, {"system": "pendulum"}, TypeError, "it must be a system by equations"),
         (spring(task=TASK), {"system": None}, TypeError, r"settings is <EquationSystem.*datasets.write\(system=…\)"),
     ],
 )

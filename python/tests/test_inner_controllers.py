@@ -229,5 +229,5 @@ def test_no_target_has_a_name_of_expressions_with_or_without_a_chunk(name, text,
 
 def test_a_target_of_a_file_has_no_name_of_expressions():
     task = {"reward": "0", "targets": ["t"], "inner": {"u": "t - q"}, "inner_period": 0.1}
-    with pytest.raises(ValueError, match="targets has 't'"):
+    with pytest.raises(ValueError, match="`t` is a name of the language"):
         Environments(System(acceleration={"q": "u"}, inputs=["u"], task=task), 1, dt=0.1)
