@@ -41,6 +41,11 @@ def equations_of(system: Any, **given: Any) -> EquationSystem:
     """Return a system of the catalogue by equations; ``given`` are keywords of :class:`libration.EquationSystem`."""
     accelerations = commanded(system.name, "m" in system.parameters)
     inputs = ["u"] if len(accelerations) == 1 else [f"u_{q}" for q in accelerations]
-    of_system = {"acceleration": accelerations, "parameters": dict(system.parameters), "inputs": inputs, "name": system.name}
-    of_system["start"] = _STARTS.get(system.name)
+    of_system: dict[str, Any] = {
+        "acceleration": accelerations,
+        "parameters": dict(system.parameters),
+        "inputs": inputs,
+        "start": _STARTS.get(system.name),
+        "name": system.name,
+    }
     return EquationSystem(**{**of_system, **given})

@@ -16,10 +16,6 @@ from .perturbations import PD
 
 Table = Mapping[str, Any]
 
-_FUNCTIONS = "abs acos asin atan atan2 cos cosh exp log max min sign sin sinh sqrt tan tanh"
-_RESERVED = ("age", "before", "if", "pi", "t", *_FUNCTIONS.split())
-"""Names that expressions of an inner controller have already."""
-
 
 @dataclass(frozen=True)
 class TaskRequest:
@@ -65,7 +61,6 @@ def task_request(system: EquationSystem, keywords: Table) -> TaskRequest:
         task["actions"] = _levels(task["actions"], keywords["dtype"])
     levels = tuple(_levels(_chosen(task, own, "actions", ()), keywords["dtype"]))
     chunk, length, used, controller_text = keywords["chunk"], 1, 1, None
-    _check_reserved(_chosen(task, own, "targets", ()))
     if chunk is not None:
         if not inner and task["inner_period"] is not None:
             raise TypeError("inner_period is given, but it belongs to an inner controller")
@@ -159,12 +154,6 @@ def _chunk(
     pattern = re.compile("|".join(rf"(?<![A-Za-z0-9_'])({re.escape(name)})(?![A-Za-z0-9_'(])" for name in names))
     texts = {u: pattern.sub(lambda found: f"({commands[found.group()]})", text) for u, text in inner.items()}
     return {"targets": [f"{name}_{i}" for i in range(length) for name in names], "inner": texts}
-
-
-def _check_reserved(targets: Any) -> None:
-    for name in targets if is_several(targets) else ():
-        if name in _RESERVED:
-            raise ValueError(f"targets has {name!r}, but expressions have this name; expected another one, such as 'target'")
 
 
 def _check_targets(system: EquationSystem, targets: Any, inner: Mapping[str, Any]) -> None:

@@ -109,7 +109,7 @@ class System:
         return EquationSystem.from_toml(path, **parameters)
 
     def equations(self, **keywords: Unpack[EquationKeywords]) -> EquationSystem:
-        """Return this system by equations, with a command for each coordinate: for environments, tasks and inputs of one's own.
+        """Return this system by equations, with a command for each coordinate. Environments, tasks and data sets take it.
 
         Parameters
         ----------

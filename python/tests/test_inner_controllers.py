@@ -209,11 +209,11 @@ def test_targets_of_chunks_are_checked_as_without_chunks(given, text):
 @pytest.mark.parametrize(
     ("name", "text"),
     [
-        ("pi", "'pi', but expressions have this name"),
-        ("age", "'age', but expressions have this name"),
-        ("t", "'t', but expressions have this name"),
-        ("if", "'if', but expressions have this name"),
-        ("sin", "'sin', but expressions have this name"),
+        ("pi", "`pi` is a name of the language"),
+        ("age", "`age` is given twice"),
+        ("t", "`t` is a name of the language"),
+        ("if", "`if` is a name of the language"),
+        ("sin", "`sin` is a name of the language"),
         ("pull", "`pull` is given twice"),
         ("", "`` is no name"),
         ("a b", "`a b` is no name"),

@@ -260,9 +260,9 @@ fn errors_against_the_reference_are_those_against_a_circular_orbit_in_closed_for
             // The size of the true state is √2.
             largest = largest.max((off.iter().map(|x| x * x).sum::<f64>() / 2.0).sqrt());
         }
-        // The search adds 0.1 % for the reference, whose own error is 1/4096.
-        let ratio = choice.lost / largest;
-        assert!((1.0..1.0015).contains(&ratio), "{}: {ratio}", choice.integrator);
+        // The search adds 0.1 % for the reference, whose own error is 1/4096 but for terms of higher order: 1/4040 for `suzuki4`.
+        let ratio = choice.lost / largest / 1.001;
+        assert!((ratio - 1.0).abs() < 1.0 / 4000.0, "{}: {ratio}", choice.integrator);
         orders[method.order() as usize / 2] += 1;
     }
     assert!(orders.iter().all(|&count| count >= 2), "{orders:?}");
