@@ -33,7 +33,7 @@ from .linear import (
 )
 from .linear_loops import LinearLoops, LinearRollout
 from .operating_point import OperatingPoint
-from .perturbations import LQR, PD, PID, Gaussian, LogUniform, Observer, Steps, Uniform
+from .perturbations import LQR, PD, PID, Gaussian, LogNormal, LogUniform, Observer, Steps, Uniform
 from .probe_report import ProbeReport
 from .probing import probe
 from .replay import ReplayBuffer
@@ -61,6 +61,7 @@ __all__ = [
     "INTEGRATORS",
     "LQG",
     "LQR",
+    "LogNormal",
     "LogUniform",
     "Lag",
     "LinearLoops",

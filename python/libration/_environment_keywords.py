@@ -12,12 +12,14 @@ if TYPE_CHECKING:
     from typing_extensions import TypeAlias, Unpack
 
     from .identification import Identification
-    from .perturbations import PD, Gaussian, LogUniform, Uniform
+    from .perturbations import PD, Gaussian, LogNormal, LogUniform, Uniform
 
     Range: TypeAlias = SupportsFloat | Sequence[SupportsFloat] | NDArray[Any] | Uniform
     """A number, or a pair ``(low, high)``."""
-    Varied: TypeAlias = SupportsFloat | Sequence[SupportsFloat] | NDArray[Any] | Uniform | LogUniform | Gaussian
+    Varied: TypeAlias = SupportsFloat | Sequence[SupportsFloat] | NDArray[Any] | Uniform | LogUniform | LogNormal | Gaussian
     """A number, a distribution of episodes, or a number for each environment."""
+    Inference: TypeAlias = SupportsFloat | tuple[str, float, float] | LogNormal | LogUniform | Uniform | None
+    """The time of an inference in s, or its distribution."""
     Delay: TypeAlias = Range | Identification
     """A latency in s, a range of it, or an identified loop."""
     Law: TypeAlias = SupportsFloat | tuple[str, float] | list[str | float] | Gaussian | Uniform | None
@@ -42,6 +44,8 @@ class EngineKeywords(TypedDict, total=False):
     observation_delay: Delay
     jitter: Law
     skew: Law
+    inference: Inference
+    inference_mode: str
     observation_noise: LawOfEach
     max_action: Varied | Sequence[Varied] | None
     dtype: DTypeLike

@@ -8,7 +8,7 @@ from typing import Any, Callable, Sequence
 import numpy as np
 
 from ._settings import is_several, number
-from .perturbations import Gaussian, LogUniform, Uniform
+from .perturbations import Gaussian, LogNormal, LogUniform, Uniform
 
 Request = tuple[str, list[float]]
 """A kind of number and what it needs, in the format of the engine."""
@@ -16,7 +16,7 @@ Request = tuple[str, list[float]]
 
 def is_varied(value: Any) -> bool:
     """Whether a number differs between episodes or environments."""
-    return isinstance(value, (Gaussian, LogUniform, Uniform)) or _has_values(value)
+    return isinstance(value, (Gaussian, LogNormal, LogUniform, Uniform)) or _has_values(value)
 
 
 def episode_number(name: str, value: Any, num_envs: int, allowed: str = "finite", holds: Any = math.isfinite) -> Request:
@@ -33,6 +33,8 @@ def episode_number(name: str, value: Any, num_envs: int, allowed: str = "finite"
         return "uniform", [number(f"an end of {name}", x, allowed, holds) for x in value.ends]
     if isinstance(value, LogUniform):
         return "log-uniform", [number(f"an end of {name}", x, allowed, holds) for x in (value.low, value.high)]
+    if isinstance(value, LogNormal):
+        return "lognormal", [number(f"{key} of {name}", x, "finite", math.isfinite) for key, x in (("mean", value.mean), ("std", value.std))]
     if isinstance(value, Gaussian):
         if not holds(-1.0):
             raise ValueError(f"{name} is {value!r}, but it must be {allowed}: Uniform(low, high) or LogUniform(low, high)")

@@ -36,7 +36,8 @@ _RANGES = ("jitter", "observation_noise")
 def has_varied(given: Mapping[str, Any]) -> bool:
     """Whether a number of the environments of a preset varies."""
     ranges = any(_is_range(given[name]) for name in _RANGES)
-    return ranges or any(is_varied(x) for x in [given["max_action"], *given["parameters"].values()])
+    answers = given["inference"] is not None or given["inference_mode"] != "asynchronous"
+    return ranges or answers or any(is_varied(x) for x in [given["max_action"], *given["parameters"].values()])
 
 
 def _is_range(value: Any) -> bool:

@@ -235,6 +235,8 @@ OPTIONS = (
     "inner",
     "inner_period",
     "chunk",
+    "inference",
+    "inference_mode",
     "dtype",
     "threads",
     "copy",

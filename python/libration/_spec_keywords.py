@@ -15,9 +15,9 @@ import numpy as np
 from ._settings import is_several, number, shown
 from .equations import EquationSystem
 from .systems import with_commands
-from .perturbations import PD, Gaussian, LogUniform, Uniform
+from .perturbations import PD, Gaussian, LogNormal, LogUniform, Uniform
 
-_KINDS = {"uniform": Uniform, "log-uniform": LogUniform, "gaussian": Gaussian, "pd": PD}
+_KINDS = {"uniform": Uniform, "log-uniform": LogUniform, "lognormal": LogNormal, "gaussian": Gaussian, "pd": PD}
 _SYSTEM_KEYS = {"text", "file", "parameters"}
 
 
@@ -27,6 +27,8 @@ def json_value(value: Any) -> Any:
         return ["uniform", *([float(value.std)] if value.ends is None else value.ends)]  # type: ignore[arg-type]
     if isinstance(value, LogUniform):
         return ["log-uniform", float(value.low), float(value.high)]
+    if isinstance(value, LogNormal):
+        return ["lognormal", float(value.mean), float(value.std)]
     if isinstance(value, Gaussian):
         return ["gaussian", float(value.std), float(value.mean)]
     if isinstance(value, PD):

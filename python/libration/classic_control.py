@@ -43,7 +43,7 @@ __all__ = [
 Class = TypeVar("Class", bound=type[Any])
 
 _ARGUMENTS = """
-    Each of these numbers may vary: `Uniform(low, high)`, `LogUniform(low, high)`, `Gaussian(std, mean)`, or an array `(num_envs,)`.
+    Each of these numbers may vary: `Uniform(low, high)`, `LogUniform(low, high)`, `LogNormal(mean, std)`, `Gaussian(std, mean)`, or an array `(num_envs,)`.
 
     Task (default: that of Gymnasium):
 
@@ -60,6 +60,7 @@ _ARGUMENTS = """
     Timing and noise (all 0 by default):
 
     - `action_delay`, `observation_delay`: latency in s; a pair `(low, high)` is drawn for each episode.
+    - `inference`, `inference_mode` (`\"asynchronous\"`): the time in s of each answer of the policy, `LogNormal(mean, std)` or another distribution; `\"synchronous\"` for a system that waits.
     - `jitter`: standard deviation of the length of each step of the integrator, relative to its length; or `("uniform", std)`.
     - `skew`: standard deviation of the rate of the clock of an episode; or `("uniform", std)`.
     - `observation_noise`: standard deviation of the noise of each observed number, in its unit; or `("uniform", std)`.

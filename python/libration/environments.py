@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from gymnasium.spaces import Box, Discrete, Space
     from numpy.typing import DTypeLike
 
-    from ._environment_keywords import Autoreset, Delay, Law, LawOfEach, Range, Varied
+    from ._environment_keywords import Autoreset, Delay, Inference, Law, LawOfEach, Range, Varied
 
 __all__ = ["Environments"]
 
@@ -98,9 +98,17 @@ class Environments(_native.Batch):
         Latencies and ``max_action`` are those of the targets.
     chunk:
         ``(H, s)`` for a policy that answers with a chunk of ``H`` actions, one for each ``dt``, of which ``s`` are used: a step of the
-        environment takes ``s·dt``, and an action has ``H`` numbers for each input or target, time by time. ``action_delay`` is the time that
-        the policy needs to answer. The chunk before is in effect until then; of a chunk that arrives late, the actions whose time has passed are
+        environment takes ``s·dt``, and an action has ``H`` numbers for each input or target, time by time. ``action_delay`` or ``inference`` is
+        the time that the policy needs to answer. The chunk before is in effect until then; of a chunk that arrives late, the actions whose time has passed are
         left out.
+    inference:
+        The time in s that a policy takes to answer an observation: a number, or a distribution from which every action draws its own:
+        ``LogNormal(mean, std)`` or ``("lognormal", mean, std)``, ``Uniform(low, high)``, ``LogUniform(low, high)``. What is
+        drawn above ``mean + 8·std`` counts as that. ``action_delay`` comes on top.
+    inference_mode:
+        ``"asynchronous"``: the system goes on under the newest action that has arrived. Times are rounded to steps of the integrator, of
+        which the mean has at least eight where ``substeps`` is not given, with at most 20 of them in ``dt``. ``"synchronous"``: the
+        system waits for each answer under its last command, and a step takes ``dt`` and the time of the answer.
     threads:
         Number of threads (0: one per core). The results are independent of it.
     copy:
@@ -112,7 +120,7 @@ class Environments(_native.Batch):
     **parameters:
         Parameters of the system (``omega2``, or ``m`` and ``k``; ``alpha``, ``beta``) and of the task (``position_cost``, ``velocity_cost``,
         ``effort_cost``, ``bound``); of a system by equations all of its parameters. A number; ``Uniform(low, high)``, ``LogUniform(low,
-        high)`` or ``Gaussian(std, mean)``, from which each episode draws; or an array ``(num_envs,)``. ``max_action`` takes the same, and
+        high)``, ``LogNormal(mean, std)`` or ``Gaussian(std, mean)``, from which each episode draws; or an array ``(num_envs,)``. ``max_action`` takes the same, and
         ``jitter`` and ``observation_noise`` take ``Uniform(low, high)`` for the standard deviation of an episode.
 
     Raises
@@ -177,6 +185,8 @@ class Environments(_native.Batch):
         inner: PD | Mapping[str, str] | None = None,
         inner_period: float | None = None,
         chunk: tuple[int, int] | None = None,
+        inference: Inference = None,
+        inference_mode: str = "asynchronous",
         dtype: DTypeLike = "float32",
         threads: int = 1,
         copy: bool = True,
@@ -218,6 +228,8 @@ class Environments(_native.Batch):
             "inner": inner,
             "inner_period": inner_period,
             "chunk": chunk,
+            "inference": inference,
+            "inference_mode": inference_mode,
             "dtype": _name_of(dtype),
             "threads": threads,
             "copy": copy,

@@ -96,11 +96,12 @@ class SystemEnv(Env):
     - `inner`, `targets`, `inner_period`: a controller between actions and inputs.
     - `chunk`: `(H, s)`, of whose `H` actions `s` are used.
     - `max_action` (`math.inf`): largest action, or one for each input.
-    - Parameters of the system by name: a number, `Uniform(low, high)`, `LogUniform(low, high)`, `Gaussian(std, mean)`, or an array `(num_envs,)`.
+    - Parameters of the system by name: a number, `Uniform(low, high)`, `LogUniform(low, high)`, `LogNormal(mean, std)`, `Gaussian(std, mean)`, or an array `(num_envs,)`.
 
     Timing and noise (all 0 by default):
 
     - `action_delay`, `observation_delay`: latency in s; of a pair `(low, high)` each episode draws whole steps of the integrator.
+    - `inference`, `inference_mode` (`\"asynchronous\"`): the time in s of each answer of the policy, `LogNormal(mean, std)` or another distribution; `\"synchronous\"` for a system that waits.
     - `jitter`: standard deviation of the length of each step of the integrator, relative to its length; or `("uniform", std)`.
     - `skew`: standard deviation of the rate of the clock of an episode; or `("uniform", std)`.
     - `observation_noise`: standard deviation of the noise of each observed number, in its unit; or `("uniform", std)`.
@@ -209,6 +210,7 @@ class OscillatorEnv(Env):
     Timing and noise (all 0 by default):
 
     - `action_delay`, `observation_delay`: latency in s; of a pair `(low, high)` each episode draws whole steps of the integrator.
+    - `inference`, `inference_mode` (`\"asynchronous\"`): the time in s of each answer of the policy, `LogNormal(mean, std)` or another distribution; `\"synchronous\"` for a system that waits.
     - `jitter`: standard deviation of the length of each step of the integrator, relative to its length; or `("uniform", std)`.
     - `skew`: standard deviation of the rate of the clock of an episode; or `("uniform", std)`.
     - `observation_noise`: standard deviation of the noise of each observed number, in its unit; or `("uniform", std)`.
@@ -292,6 +294,7 @@ class PendulumEnv(Env):
     Timing and noise (all 0 by default):
 
     - `action_delay`, `observation_delay`: latency in s; of a pair `(low, high)` each episode draws whole steps of the integrator.
+    - `inference`, `inference_mode` (`\"asynchronous\"`): the time in s of each answer of the policy, `LogNormal(mean, std)` or another distribution; `\"synchronous\"` for a system that waits.
     - `jitter`: standard deviation of the length of each step of the integrator, relative to its length; or `("uniform", std)`.
     - `skew`: standard deviation of the rate of the clock of an episode; or `("uniform", std)`.
     - `observation_noise`: standard deviation of the noise of each observed number, in its unit; or `("uniform", std)`.
@@ -375,6 +378,7 @@ class DuffingEnv(Env):
     Timing and noise (all 0 by default):
 
     - `action_delay`, `observation_delay`: latency in s; of a pair `(low, high)` each episode draws whole steps of the integrator.
+    - `inference`, `inference_mode` (`\"asynchronous\"`): the time in s of each answer of the policy, `LogNormal(mean, std)` or another distribution; `\"synchronous\"` for a system that waits.
     - `jitter`: standard deviation of the length of each step of the integrator, relative to its length; or `("uniform", std)`.
     - `skew`: standard deviation of the rate of the clock of an episode; or `("uniform", std)`.
     - `observation_noise`: standard deviation of the noise of each observed number, in its unit; or `("uniform", std)`.

@@ -9,7 +9,7 @@ from typing import Any, Sequence
 from ._settings import ends, is_several, number
 from ._settings import law as _law
 
-__all__ = ["Gaussian", "LQR", "LogUniform", "Observer", "PD", "PID", "Steps", "Uniform"]
+__all__ = ["Gaussian", "LQR", "LogNormal", "LogUniform", "Observer", "PD", "PID", "Steps", "Uniform"]
 
 
 @dataclass(frozen=True)
@@ -81,6 +81,21 @@ class LogUniform:
     def __post_init__(self) -> None:
         number("low", self.low, "finite and greater than 0", lambda x: 0 < x < math.inf)
         number("high", self.high, "finite and at least low", lambda x: self.low <= x < math.inf)
+
+
+@dataclass(frozen=True)
+class LogNormal:
+    """Distribution above zero, with a mean and a standard deviation, whose logarithm is normal.
+
+    Of a parameter of an environment, or of the time of an inference.
+    """
+
+    mean: float
+    std: float
+
+    def __post_init__(self) -> None:
+        number("mean", self.mean, "finite and greater than 0", lambda x: 0 < x < math.inf)
+        _check_std(self.std)
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 use libration::ensemble::Execution;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{
-    Autoreset, Delays, Distribution, EpisodeNumber, ErrorScale, ProgramEnvironment,
+    AnswerTimes, Autoreset, Delays, Distribution, EpisodeNumber, ErrorScale, ProgramEnvironment,
 };
 use libration_env::environments::{
     AnyEnvironmentSettings, EnvironmentSettings, EquationEnvironment, Noise, SingleDofSystem, Task,
@@ -71,6 +71,8 @@ struct EquationSubject {
     lengths: Vec<f64>,
     /// Ranges of the factors of errors of the clock and of noise.
     error_scale: [[f64; 2]; 2],
+    /// The distribution of the time of an answer in s, and the steps of the integrator in which the system waits for it.
+    answers: Option<(NumberRequest, u32)>,
 }
 
 /// The kind of a number of an episode, and its numbers.
@@ -81,13 +83,23 @@ fn episode_number((kind, numbers): &NumberRequest) -> PyResult<EpisodeNumber> {
         ("constant", &[value]) => EpisodeNumber::Constant(value),
         ("uniform", &[low, high]) => EpisodeNumber::Drawn(Distribution::Uniform(low, high)),
         ("log-uniform", &[low, high]) => EpisodeNumber::Drawn(Distribution::LogUniform(low, high)),
+        ("lognormal", &[mean, std]) => EpisodeNumber::Drawn(Distribution::LogNormal(mean, std)),
         ("gaussian", &[mean, std]) => EpisodeNumber::Drawn(Distribution::Normal(mean, std)),
         ("each", all) => EpisodeNumber::PerEnvironment(all.into()),
         _ => {
-            let known = ["constant", "uniform", "log-uniform", "gaussian", "each"];
+            let known = ["constant", "uniform", "log-uniform", "lognormal", "gaussian", "each"];
             return Err(unknown("distribution", kind, known));
         }
     })
+}
+
+fn answer_times((law, waits): &(NumberRequest, u32)) -> PyResult<AnswerTimes> {
+    match episode_number(law)? {
+        EpisodeNumber::Drawn(time) => Ok(AnswerTimes { time, waits: *waits }),
+        _ => {
+            Err(unknown("distribution of answers", &law.0, ["uniform", "log-uniform", "lognormal"]))
+        }
+    }
 }
 
 impl Settings {
@@ -196,6 +208,7 @@ impl Settings {
             limit: self.limit,
             autoreset: self.autoreset()?,
             delays: self.delays(),
+            answers: subject.answers.as_ref().map(answer_times).transpose()?,
             saturation: saturation.iter().map(episode_number).collect::<PyResult<_>>()?,
             levels: task.levels.clone(),
             inner_steps: task.inner_steps(self.dt).map_err(value_error)?,

@@ -2,7 +2,7 @@
 
 use libration_core::Float;
 use libration_core::control::ControlError;
-use libration_core::random::Purpose;
+use libration_core::random::{Address, Purpose};
 
 use super::start::Episode;
 
@@ -15,9 +15,14 @@ pub enum Distribution {
     LogUniform(f64, f64),
     /// Gaussian, of this mean and standard deviation: any number can be drawn, to 8.6 deviations from the mean.
     Normal(f64, f64),
+    /// Above zero, of this mean and standard deviation, and Gaussian in its logarithm.
+    LogNormal(f64, f64),
     /// One of two values: the first with this probability.
     Either(f64, [f64; 2]),
 }
+
+/// Standard deviations from the mean of a normal distribution to the largest number that is drawn.
+const FARTHEST: f64 = 8.6;
 
 impl Distribution {
     /// Checks the parameters, in the float type as well.
@@ -53,8 +58,16 @@ impl Distribution {
                 ensure(name, deviation, allowed, deviation >= 0.0)?;
                 finite(
                     "sum of mean and standard deviations of the variation",
-                    mean.abs() + 8.6 * deviation,
+                    mean.abs() + FARTHEST * deviation,
                 )
+            }
+            Distribution::LogNormal(mean, deviation) => {
+                let held = T::from_f64(mean) > T::zero();
+                ensure("mean of the variation", mean, "above 0 in the float type", held)?;
+                let (name, allowed) = ("standard deviation of the variation", "at least 0");
+                ensure(name, deviation, allowed, deviation >= 0.0)?;
+                let [middle, width] = of_logarithm(mean, deviation);
+                finite("largest number of the variation", libm::exp(middle + FARTHEST * width))
             }
             Distribution::Either(first, values) => {
                 let holds = (0.0..=1.0).contains(&first);
@@ -72,13 +85,31 @@ impl Distribution {
             Distribution::Uniform(low, _) | Distribution::LogUniform(low, _) => low,
             Distribution::Normal(mean, 0.0) => mean,
             Distribution::Normal(..) => f64::NEG_INFINITY,
+            Distribution::LogNormal(..) => 0.0,
             Distribution::Either(_, [a, b]) => a.min(b),
+        }
+    }
+
+    /// The largest number; of normal distributions, also of the logarithm, eight standard deviations above the mean.
+    // As above.
+    #[cfg(not(test))]
+    pub(super) fn largest(&self) -> f64 {
+        match *self {
+            Distribution::Uniform(_, high) | Distribution::LogUniform(_, high) => high,
+            Distribution::Normal(mean, deviation) | Distribution::LogNormal(mean, deviation) => {
+                mean + 8.0 * deviation
+            }
+            Distribution::Either(_, [a, b]) => a.max(b),
         }
     }
 
     /// The `i`-th number of an episode.
     pub(super) fn draw(&self, episode: Episode, purpose: Purpose, i: usize) -> f64 {
-        let address = episode.address(purpose, i);
+        self.draw_at(episode.address(purpose, i))
+    }
+
+    /// The number of an address.
+    pub(super) fn draw_at(&self, address: Address) -> f64 {
         let [share, _] = address.uniform();
         match *self {
             Distribution::Uniform(low, high) => low + share * (high - low),
@@ -88,6 +119,10 @@ impl Distribution {
                 libm::exp(least + share * (most - least)).clamp(low, high)
             }
             Distribution::Normal(mean, deviation) => mean + deviation * address.gaussian()[0],
+            Distribution::LogNormal(mean, deviation) => {
+                let [middle, width] = of_logarithm(mean, deviation);
+                libm::exp(middle + width * address.gaussian()[0])
+            }
             Distribution::Either(first, [a, b]) => {
                 if share < first {
                     a
@@ -97,6 +132,15 @@ impl Distribution {
             }
         }
     }
+}
+
+/// Mean and standard deviation of the logarithm of a number with these.
+///
+/// N. L. Johnson, S. Kotz, N. Balakrishnan, *Continuous univariate distributions*, volume 1, 1994, chapter 14.
+fn of_logarithm(mean: f64, deviation: f64) -> [f64; 2] {
+    let ratio = deviation / mean;
+    let variance = libm::log1p(ratio * ratio);
+    [libm::log(mean) - variance / 2.0, variance.sqrt()]
 }
 
 #[cfg(test)]
@@ -129,6 +173,8 @@ mod tests {
                 [1.0, 4.0],
             ),
             (Distribution::Normal(1.0, 0.5), 1.0, 0.25, [1.0 - 4.3, 1.0 + 4.3]),
+            // A fourth moment of 2.7 squared variances of the sample is below the three that the tolerance allows.
+            (Distribution::LogNormal(2.0, 0.2), 2.0, 0.04, [0.0, 2.0 * 2.36]),
             (Distribution::Either(ratio, [2.0, 5.0]), 4.1, 9.0 * ratio * (1.0 - ratio), [2.0, 5.0]),
         ] {
             let found = drawn(distribution);

@@ -16,7 +16,7 @@ pub(super) struct History {
     substeps: usize,
     /// Rows of a state.
     coordinates: usize,
-    /// Rows of an action.
+    /// Rows of an action, with its own latency where it has one.
     commands: usize,
 }
 
@@ -25,6 +25,7 @@ type Rows<'a, T> = &'a [[T; LANES]];
 type RowsMut<'a, T> = &'a mut [[T; LANES]];
 
 impl History {
+    /// The layout for these latencies, actions being held for `substeps` steps of the integrator.
     pub(super) fn new(delays: Delays, substeps: u32, [coordinates, commands]: [usize; 2]) -> Self {
         let substeps = substeps as usize;
         let places = |most: u32| if most == 0 { 0 } else { most as usize + 1 };
@@ -128,6 +129,49 @@ impl History {
     #[inline(always)]
     pub(super) fn periods(&self, latency: u32, substep: u64) -> usize {
         (u64::from(latency).saturating_sub(substep) as usize).div_ceil(self.substeps)
+    }
+
+    /// Stores the latencies of the actions of step `now`, in steps of the integrator.
+    // Compiled environments have none.
+    #[cfg(not(test))]
+    pub(super) fn act_late<T: Copy>(&self, past: &mut [T], now: u64, latencies: &[T; LANES]) {
+        let rows = &mut past.as_chunks_mut::<LANES>().0[self.states * self.coordinates..];
+        rows[(ring(now, self.actions) + 1) * self.commands - 1] = *latencies;
+    }
+
+    /// How many actions ago the newest action that has arrived was given, in a substep of step `now`. All have latencies of their own.
+    #[cfg(not(test))]
+    pub(super) fn arrived<T: Float>(&self, past: &[T], now: u64, substep: u64) -> [u32; LANES] {
+        let rows = &past.as_chunks::<LANES>().0[self.states * self.coordinates..];
+        let now = ring(now, self.actions);
+        let mut ages = [self.actions as u32 - 1; LANES];
+        for age in (0..self.actions).rev() {
+            let latencies = &rows[(back(now, age, self.actions) + 1) * self.commands - 1];
+            let passed = T::from_f64((age * self.substeps) as f64 + substep as f64);
+            for (newest, &latency) in ages.iter_mut().zip(latencies) {
+                if latency <= passed {
+                    *newest = age as u32;
+                }
+            }
+        }
+        ages
+    }
+
+    /// The actions that were given so many actions before those of step `now`.
+    #[cfg(not(test))]
+    pub(super) fn given<T: Copy>(
+        &self,
+        past: &[T],
+        now: u64,
+        ages: &[u32; LANES],
+        held: RowsMut<'_, T>,
+    ) {
+        let rows = &past.as_chunks::<LANES>().0[self.states * self.coordinates..];
+        let now = ring(now, self.actions);
+        for (l, &age) in ages.iter().enumerate() {
+            let rows = &rows[back(now, age as usize, self.actions) * self.commands..];
+            held.iter_mut().zip(rows).for_each(|(held, row)| held[l] = row[l]);
+        }
     }
 
     /// The actions that are in effect in a substep of step `now`.

@@ -63,7 +63,8 @@ pub use plan::{Layout, Plan, TransitionWork, Writes};
 pub use policy::{ActionSample, Policy, StepIndex};
 #[cfg(not(test))]
 pub use program::{
-    EpisodeEnds, ProgramEnvironment, ProgramEnvironments, ProgramPolicy, ProgramRollout,
+    AnswerTimes, EpisodeEnds, ProgramEnvironment, ProgramEnvironments, ProgramPolicy,
+    ProgramRollout,
 };
 pub use rollout::Rollout;
 pub use rollout_run::StepBuffers;

@@ -52,12 +52,10 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
         definition.check::<T>(len)?;
         let world = definition.world();
         let episodes = Episodes::shard(world, first, len, seed, execution)?;
-        let ProgramEnvironment { delays, substeps, .. } = definition;
-        let sizes = [definition.coordinates(), definition.actions()];
-        let history = History::new(delays, substeps, sizes);
+        let history = definition.history();
         let blocks = len.div_ceil(LANES);
-        let [rows, drawn] =
-            [sizes[0], definition.numbers().count()].map(|each| blocks.saturating_mul(each));
+        let [rows, drawn] = [definition.coordinates(), definition.numbers().count()]
+            .map(|each| blocks.saturating_mul(each));
         let numbers = rows.saturating_add(drawn).saturating_mul(LANES);
         let numbers = numbers.saturating_add(blocks.saturating_mul(history.len()));
         InsufficientMemory::check(numbers as u128 * size_of::<T>() as u128)?;

@@ -1,18 +1,16 @@
 //! The parts of a step of a block.
 
 use libration_core::control::clock::Noise;
-use libration_core::control::{Clock, Memory};
 use libration_core::random::{Purpose, Streams};
 
 use super::ProgramPolicy;
 use super::block_state::{BlockState, Row, row_of, set_times};
 use super::command_limits::CommandLimits;
 use super::environment::World;
-use super::episodes::EpisodeBlock;
 use super::row_program::ProgramRows;
 use super::state::Programs;
 use crate::ensemble::{BatchFloat, InstructionSet};
-use crate::rl::block::{ClockMemory, LOST};
+use crate::rl::block::LOST;
 use crate::rl::block_size::LANES;
 use crate::rl::deviation::scale_deviation;
 use crate::rl::episode_streams::begin_epochs;
@@ -23,18 +21,18 @@ use crate::rl::{ProgramEnvironment, StepIndex};
 pub(super) struct BlockStep<'s, T> {
     pub(super) definition: &'s ProgramEnvironment,
     pub(super) history: History,
-    world: World,
-    instructions: InstructionSet,
+    pub(super) world: World,
+    pub(super) instructions: InstructionSet,
     /// The length of a step of the integrator without jitter.
-    dt: T,
+    pub(super) dt: T,
     /// The time from action to action, in seconds.
-    span: f64,
+    pub(super) span: f64,
     limits: CommandLimits<T>,
     /// Whether observation and verdict depend on time.
     is_timed: [bool; 2],
-    step: ProgramRows<'s, T>,
-    projection: Option<ProgramRows<'s, T>>,
-    inner: Option<ProgramRows<'s, T>>,
+    pub(super) step: ProgramRows<'s, T>,
+    pub(super) projection: Option<ProgramRows<'s, T>>,
+    pub(super) inner: Option<ProgramRows<'s, T>>,
     observation: ProgramRows<'s, T>,
     verdict: ProgramRows<'s, T>,
     pub(super) seen: Vec<Row<T>>,
@@ -44,16 +42,20 @@ pub(super) struct BlockStep<'s, T> {
     pub(super) log_probabilities: Row<T>,
     pub(super) rewards: Row<T>,
     pub(super) overs: [u8; LANES],
-    commands: Vec<Row<T>>,
-    held: Vec<Row<T>>,
+    pub(super) commands: Vec<Row<T>>,
+    pub(super) held: Vec<Row<T>>,
     /// The commands of the inner controller.
-    inner_commands: Vec<Row<T>>,
+    pub(super) inner_commands: Vec<Row<T>>,
     /// Positions and velocities at other times than now.
     other: Vec<Row<T>>,
     /// Positions and velocities before a step of the integrator, for its projection.
-    previous: Vec<Row<T>>,
-    lengths: Row<T>,
-    times: Row<T>,
+    pub(super) previous: Vec<Row<T>>,
+    pub(super) lengths: Row<T>,
+    /// The times of the answers of this step in s, where they are drawn.
+    pub(super) answer_times: [f64; LANES],
+    /// How many actions ago those in effect were given.
+    pub(super) ages: [u32; LANES],
+    pub(super) times: Row<T>,
     judged: [Row<T>; 2],
 }
 
@@ -99,12 +101,14 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
             other: rows(coordinates),
             previous: rows(projection.map_or(0, |_| coordinates)),
             lengths: [dt; LANES],
+            answer_times: [0.0; LANES],
+            ages: [0; LANES],
             times: zeros,
             judged: [zeros; 2],
         }
     }
 
-    fn substeps(&self) -> u64 {
+    pub(super) fn substeps(&self) -> u64 {
         self.definition.substeps.into()
     }
 
@@ -183,25 +187,20 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
         if self.history.delays_actions() {
             self.history.act(block.past, now, &self.commands);
         }
+        if let Some(answers) = self.definition.answers {
+            self.answer_times = answers.draw(block, now);
+            self.store_latencies(now, block);
+        }
         for substep in 0..substeps {
             if self.history.delays_actions() {
-                let late = &block.episodes.delays[1];
-                self.history.effective(block.past, now, substep, late, &mut self.held);
+                self.take_commands(now, substep, block);
             }
             if substep > 0 && self.history.delays_observations() {
                 let (q, v) = block.states.split_at(block.states.len() / 2);
                 self.history.pass(block.past, now * substeps + substep, q, v);
             }
-            if let Some(&length) = self.definition.lengths.get(substep as usize) {
-                self.dt = T::from_f64(length);
-                self.lengths = [self.dt; LANES];
-            }
-            if self.definition.is_jittered() {
-                self.draw_lengths([now, substeps, substep], block.episodes, words);
-            }
-            if substep % u64::from(self.definition.inner_steps) == 0 {
-                self.control(substep, block);
-            }
+            self.set_lengths([now, substeps, substep], block.episodes, words);
+            self.control(substep, block);
             self.integrate(block.states, block.numbers);
         }
         self.judge(now, block);
@@ -210,66 +209,6 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
             *paid = *paid + reward;
         }
         self.overs[..count].iter().fold(0, |all, over| all | over) != 0
-    }
-
-    /// Draws the lengths of a step of the integrator.
-    fn draw_lengths(
-        &mut self,
-        now: [u64; 3],
-        block: &mut EpisodeBlock<T>,
-        words: &mut Streams<LANES>,
-    ) {
-        begin_epochs(words, block, now, Purpose::StepTime);
-        let [step, substeps, substep] = now;
-        let clock = self.world.clock;
-        let beat = Clock::<T>::beat(&clock, step * substeps + substep);
-        for l in 0..LANES {
-            let mut memory = ClockMemory::<T, World, 0, 0>::lane(&block.clock, l);
-            let ratio: T = clock.ratio(&mut memory, beat, &mut || words.next(l));
-            ClockMemory::<T, World, 0, 0>::set_lane(&mut block.clock, l, memory);
-            let ratio = scale_deviation(ratio, T::one(), block.error_scale[0][l]);
-            let ratio = if ratio < T::zero() { T::zero() } else { ratio };
-            self.lengths[l] = self.dt * ratio;
-        }
-    }
-
-    /// Computes the commands of the inner controller, if there is one, at the beginning of a substep.
-    fn control(&mut self, substep: u64, block: &BlockState<'_, T>) {
-        let Some(inner) = &mut self.inner else { return };
-        if inner.reads_last() {
-            let within = self.definition.time_of(substep as u32);
-            for (age, &late) in self.times.iter_mut().zip(&block.episodes.delays[1]) {
-                let periods = self.history.periods(late, substep);
-                *age = T::from_f64(periods as f64 * self.span + within);
-            }
-        }
-        let held = if self.history.delays_actions() { &self.held } else { &self.commands };
-        let parameters = &block.numbers[..self.definition.parameters.len()];
-        let rows = [&*block.states, parameters, held];
-        let input = |i: usize| row_of(rows, i).unwrap_or(&self.times);
-        inner.run(input, &mut self.inner_commands, self.instructions);
-    }
-
-    /// A step of the integrator, and its projection.
-    fn integrate(&mut self, states: &mut [Row<T>], numbers: &[Row<T>]) {
-        let held = match (&self.inner, self.history.delays_actions()) {
-            (Some(_), _) => &self.inner_commands,
-            (None, true) => &self.held,
-            (None, false) => &self.commands,
-        };
-        let parameters = &numbers[..self.definition.parameters.len()];
-        let lengths = &self.lengths;
-        let inputs = [&held[..], parameters];
-        let rest = |i: usize| row_of(inputs, i).unwrap_or(lengths);
-        let Some(projection) = &mut self.projection else {
-            return self.step.run_in_place(states, rest, self.instructions);
-        };
-        self.previous.copy_from_slice(states);
-        self.step.run_in_place(states, rest, self.instructions);
-        let count = held.len() + parameters.len() + 1;
-        let previous = &self.previous;
-        let rest = |i: usize| if i < count { rest(i) } else { &previous[i - count] };
-        projection.run_in_place(states, rest, self.instructions);
     }
 
     /// Computes rewards and terminations of the step from [`other`](BlockStep::other) to these states.
