@@ -1,31 +1,42 @@
 //! `cargo xtask ci`: every check in order, up to the first that fails.
 
 use std::fmt::Write;
-use std::path::Path;
 use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::{
-    Outcome, codegen, command, dependencies, examples, processor_time, python, report, test, tidy,
+    Outcome, codegen, command, dependencies, examples, lints, processor_time, python, report, test,
+    tidy,
 };
 
 /// Name and function of a step.
 type Step = (&'static str, fn() -> Outcome);
 
-const STEPS: [Step; 9] = [
+const STEPS: [Step; 8] = [
     ("format", || command::run(&mut command::cargo("fmt --all --check"))),
     ("tidy", tidy::run),
     ("dependencies", dependencies::run),
     ("codegen", codegen::unless_read),
-    ("clippy", clippy),
-    ("documentation", documentation),
+    ("lints", || command::run(&mut command::cargo("test --workspace --no-run"))),
     ("report", report::run),
-    ("test", || test::all(Some(&report::folder()))),
+    ("tests", || test::all(Some(&report::folder()))),
     ("examples", examples::run),
 ];
 
-/// Runs the steps and prints what each cost.
+/// Runs the steps under the lints, in a program of its own.
+///
+/// Whatever cargo compiles for the tests is linted on the way, and its documentation is checked with the examples in it: a check of its own
+/// would read all dependencies and crates once more.
 pub(crate) fn run() -> Outcome {
+    if lints::are_on() {
+        return steps();
+    }
+    let program = std::env::current_exe().map_err(|error| format!("this program: {error}"))?;
+    command::run(lints::switch_on(command::program(program).arg("ci"))?)
+}
+
+/// Runs the steps and prints what each cost.
+fn steps() -> Outcome {
     // Nothing but the tests needs the packages, which take a while to install: they say what failed.
     let packages = thread::spawn(|| python::interpreter().is_ok());
     let mut costs = Vec::new();
@@ -46,29 +57,6 @@ pub(crate) fn run() -> Outcome {
     let _ = packages.join();
     print!("\n{}", summary(&STEPS.map(|(name, _)| name), &costs, failure.is_some()));
     failure.map_or(Ok(()), Err)
-}
-
-/// What `clippy` is given; [`documentation`] uses what it has checked.
-const LINTS: &str = "-D warnings";
-
-fn clippy() -> Outcome {
-    command::run(&mut command::cargo(&format!("clippy --workspace --all-targets -- {LINTS}")))
-}
-
-/// With the compiler and the arguments of `cargo clippy`: otherwise cargo would check all crates of the workspace once more.
-fn documentation() -> Outcome {
-    let flags = std::env::var("RUSTDOCFLAGS").unwrap_or_default();
-    let flags = format!("{flags} -D warnings");
-    let mut doc = command::cargo("doc --workspace --no-deps");
-    doc.env("RUSTDOCFLAGS", flags.trim_start());
-    let driver =
-        std::env::var_os("CARGO").map(|cargo| Path::new(&cargo).with_file_name("clippy-driver"));
-    if let Some(driver) = driver.filter(|driver| driver.exists()) {
-        let arguments: String =
-            LINTS.split(' ').map(|word| format!("{word}__CLIPPY_HACKERY__")).collect();
-        doc.env("RUSTC_WORKSPACE_WRAPPER", driver).env("CLIPPY_ARGS", arguments);
-    }
-    command::run(&mut doc)
 }
 
 /// The table at the end, with the duration and the processor time of each step.

@@ -6,6 +6,7 @@ mod command;
 mod dependencies;
 mod examples;
 mod instructions;
+mod lints;
 mod processor_time;
 mod python;
 mod release;
@@ -18,6 +19,7 @@ mod torture;
 mod wheel;
 mod workspace;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 /// Result of a task: nothing, or an error message.
@@ -101,7 +103,12 @@ const TASKS: [Task; 12] = [
 ];
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let given: Vec<OsString> = std::env::args_os().skip(1).collect();
+    if let Some(outcome) = lints::documented(&given) {
+        return ended("as rustdoc", outcome);
+    }
+    let arguments: Vec<String> =
+        given.iter().map(|argument| argument.to_string_lossy().into_owned()).collect();
     let (name, rest) = match arguments.split_first() {
         Some((name, rest)) if !["help", "-h", "--help"].contains(&name.as_str()) => (name, rest),
         _ => {
@@ -115,6 +122,10 @@ fn main() -> ExitCode {
         Some(Action::Plain(_)) => return misuse(&format!("`{name}` takes no arguments")),
         None => return misuse(&format!("there is no task `{name}`")),
     };
+    ended(name, outcome)
+}
+
+fn ended(name: &str, outcome: Outcome) -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(reason) => {
