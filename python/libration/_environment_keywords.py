@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     """A number, or a pair ``(low, high)``."""
     Varied: TypeAlias = SupportsFloat | Sequence[SupportsFloat] | NDArray[Any] | Uniform | LogUniform | LogNormal | Gaussian
     """A number, a distribution of episodes, or a number for each environment."""
-    Inference: TypeAlias = SupportsFloat | tuple[str, float, float] | LogNormal | LogUniform | Uniform | None
+    Inference: TypeAlias = SupportsFloat | tuple[str, float, float] | list[str | float] | LogNormal | LogUniform | Uniform | None
     """The time of an inference in s, or its distribution."""
     Delay: TypeAlias = Range | Identification
     """A latency in s, a range of it, or an identified loop."""

@@ -100,6 +100,8 @@ def episode_numbers(settings: Mapping[str, Any], inputs: Sequence[str], drawn: N
         low, high = subject.get("error_scale", [[1.0, 1.0]] * 2)[i]
         if low != high:
             found[name] = drawn[:, len(names) + 2 + i] * drawn.dtype.type(std)
+    if subject.get("answers") is not None:
+        found["inference"] = drawn[:, len(names) + 4].copy()
     return found
 
 

@@ -30,7 +30,9 @@ def _metadata(name: str | EquationSystem, settings: Any) -> dict[str, Any]:
     """Return what is known of an environment, with pictures in real time; a system by equations has none."""
     if isinstance(name, EquationSystem):
         return {"render_modes": []}
-    return {"render_modes": [*METADATA["render_modes"]], "render_fps": max(1, round(1.0 / (settings["dt"] * settings["substeps"])))}
+    # A system that waits for its answers takes their time as well.
+    step = settings["dt"] * settings["substeps"] + settings.get("mean_wait", 0.0)
+    return {"render_modes": [*METADATA["render_modes"]], "render_fps": max(1, round(1.0 / step))}
 
 
 def _render_mode(name: str | EquationSystem, render_mode: str | None) -> str | None:

@@ -4,11 +4,25 @@ from __future__ import annotations
 
 import math
 import numbers
+import warnings
 from dataclasses import dataclass
 from typing import Any, Mapping
 
 from ._episode_numbers import Request, episode_number
-from ._settings import MANY_SUBSTEPS, MOST_SUBSTEPS, ends, equal_steps, inner_count, nearest, number, positive
+from ._settings import (
+    MANY_SUBSTEPS,
+    MOST_SUBSTEPS,
+    common,
+    delays,
+    ends,
+    equal_steps,
+    inner_count,
+    nearest,
+    number,
+    positive,
+    shown,
+    warn_of,
+)
 from .perturbations import LogNormal, LogUniform, Uniform
 
 MODES = ("asynchronous", "synchronous")
@@ -29,6 +43,12 @@ class Inference:
     waits: bool
     """Whether the system waits for the answer."""
 
+    @property
+    def is_latency(self) -> bool:
+        """Whether all answers take the same time and the system does not wait: a latency."""
+        low, high = self.law[1]
+        return not self.waits and self.law[0] == "uniform" and low == high
+
 
 def inference_of(value: Any, mode: Any) -> Inference | None:
     """Return the times of answers; None for no time.
@@ -38,8 +58,8 @@ def inference_of(value: Any, mode: Any) -> Inference | None:
     TypeError, ValueError
         With the name of the keyword, its value and what is allowed.
     """
-    if mode not in MODES:
-        raise ValueError(f"inference_mode is {mode!r}: {nearest(str(mode), MODES)}")
+    if not isinstance(mode, str) or mode not in MODES:
+        raise ValueError(f"inference_mode is {shown(mode)}: {nearest(str(mode), MODES)}")
     if value is None:
         if mode != "asynchronous":
             raise TypeError(f"inference_mode is {mode!r}, but inference is not given: the time of an answer in s")
@@ -74,40 +94,51 @@ def with_inference(given: Mapping[str, Any], inference: Inference, period: float
             if most > 0:
                 raise ValueError(f"{name} is {most!r} s, but with inference_mode='synchronous' it must be 0")
         return dict(given)
-    low, high = inference.law[1]
-    if inference.law[0] == "uniform" and low == high:
-        return {**given, "action_delay": tuple(x + low for x in late["action_delay"])}
+    if inference.is_latency:
+        return {**given, "action_delay": tuple(x + inference.mean for x in late["action_delay"])}
     if asked is None:
         periods = inner_count(dt, period, None, used)
-        least = min(MANY_SUBSTEPS, math.ceil(_PARTS * dt / inference.mean)) if inference.mean > 0 else 1
+        least = min(MANY_SUBSTEPS * used, math.ceil(_PARTS * dt / inference.mean)) if inference.mean > 0 else 1
         tried = range(math.ceil(least / periods) * periods, MOST_SUBSTEPS + 1, periods)
         found = equal_steps(dt, tried, late)
-        # Latencies that no number of steps serves are told with the others.
-        asked = None if found is None else found[0]
+        # Steps of different lengths have no place for times that are rounded: latencies that no number of equal steps serves are refused.
+        asked = delays(dt, None, late, periods)[0] if found is None else found[0]
+        if asked > max(MANY_SUBSTEPS * used, periods):
+            warn_of(asked, dt, late)
     return {**given, "substeps": asked}
 
 
-def native_answers(inference: Inference, settings: dict[str, Any]) -> tuple[Request, int] | None:
-    """Return times of answers in the format of the engine; those of a system that waits lengthen its steps in ``settings``.
+def common_with(given: dict[str, Any], inference: Inference | None, period: float | None, used: int) -> dict[str, Any]:
+    """Return the settings that environments of all systems have, with ``answers``, the times of answers in the format of the engine.
 
     Raises
     ------
-    ValueError
-        For answers that take longer than the engine keeps.
+    TypeError, ValueError
+        As :func:`libration._settings.common`, and for answers that take longer than the engine keeps.
     """
-    low, high = inference.law[1]
-    if not inference.waits and inference.law[0] == "uniform" and low == high:
-        return None
+    if inference is None:
+        return {**common(given, period, used), "answers": None}
+    stated = with_inference(given, inference, period, used)
+    try:
+        settings = common(stated, period, used)
+    except ValueError as error:
+        if not inference.is_latency or not str(error).startswith("action_delay"):
+            raise
+        name = "inference" if given["action_delay"] == 0.0 else "action_delay and inference"
+        raise ValueError(f"{name}{str(error).removeprefix('action_delay')}") from None
+    if inference.is_latency:
+        return {**settings, "answers": None}
     steps = inference.largest / settings["dt"]
-    if not steps < 4096:
+    if not steps + settings["action_delay"][1] < 4096:
         raise ValueError(
             f"inference takes up to {inference.largest:.6g} s, which is {steps:.6g} steps of {settings['dt']:g} s, but it must be at most "
-            "4096 of them"
+            f"{4095 - settings['action_delay'][1]} of them"
         )
-    waits = 0
     if inference.waits:
-        # No step of waiting is longer than one of the integrator.
-        waits = max(1, math.ceil(steps))
-        settings["substeps"] += waits
-        settings["action_delay"] = [waits, waits]
-    return inference.law, waits
+        return {**settings, "answers": (inference.law, max(1, math.ceil(steps))), "mean_wait": inference.mean}
+    if settings["dt"] > inference.mean > 0:
+        warnings.warn(
+            f"inference has a mean of {inference.mean:.6g} s, but its times are rounded to steps of {settings['dt']:.6g} s; help: more substeps",
+            stacklevel=2,
+        )
+    return {**settings, "answers": (inference.law, 0)}

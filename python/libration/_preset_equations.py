@@ -99,7 +99,7 @@ def _check_ends(preset: Preset, given: Mapping[str, Any], num_envs: int) -> None
     law("observation_noise", scaled_law("observation_noise", given["observation_noise"])[0])
     numbers_of = {name: episode_number(name, value, num_envs, "a number", lambda x: True) for name, value in given["parameters"].items()}
     for end in (min, max):
-        # Of a Gaussian distribution the mean.
-        constants = {name: values[0] if kind == "gaussian" else end(values) for name, (kind, values) in numbers_of.items()}
+        # Of a normal distribution the mean, also of the logarithm.
+        constants = {name: values[0] if kind in ("gaussian", "lognormal") else end(values) for name, (kind, values) in numbers_of.items()}
         plain = {"parameters": constants, "num_envs": 1, "jitter": 0.0, "observation_noise": 0.0, "max_action": None}
         _native.Batch()._set_up(native(preset, {**given, **plain, "action_delay": 0.0, "observation_delay": 0.0}), 0)

@@ -101,7 +101,8 @@ def law(name: str, value: Any) -> tuple[str, float]:
     if hasattr(value, "std") and not hasattr(value, "shape"):
         # A distribution of :mod:`libration.perturbations`.
         if value.std is None or getattr(value, "mean", 0.0) != 0.0:
-            raise ValueError(f"{name} is {value!r}, but it must be a distribution around zero, like {type(value).__name__}(0.05)")
+            like = "Uniform" if type(value).__name__ == "Uniform" else "Gaussian"
+            raise ValueError(f"{name} is {value!r}, but it must be a distribution around zero, like {like}(0.05)")
         value = (type(value).__name__.lower(), value.std)
     if is_several(value):
         if len(value) != 2 or not isinstance(value[0], str):

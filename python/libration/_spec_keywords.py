@@ -66,6 +66,14 @@ def keyword_value(value: Any) -> Any:
     return type(value)(keyword_value(one) for one in value) if type(value) in (list, tuple) else value
 
 
+def named_keyword_value(name: str, value: Any) -> Any:
+    """Return the keyword of a value of JSON; errors of distributions begin with its name."""
+    try:
+        return keyword_value(value)
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"{name}: {error}") from None
+
+
 def _is_number(value: Any) -> bool:
     return isinstance(value, Real) or getattr(value, "shape", None) == ()
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from ._native import Batch
 from ._episode_numbers import Request, check_float_type, each, episode_number, largest_command_names, largest_commands, scaled_law
-from ._inference import inference_of, native_answers, with_inference
-from ._settings import OPTIONS, common, count, is_several, law, refuse_others
+from ._inference import common_with, inference_of
+from ._settings import OPTIONS, count, is_several, law, refuse_others
 from ._task_requests import TaskRequest, task_request
 from .equations import EquationSystem
 
@@ -69,9 +69,7 @@ def native_equations(
     # A step of the environment takes all used actions of a chunk.
     dt = given["dt"] if task.used == 1 else given["dt"] * task.used
     inference = inference_of(given["inference"], given["inference_mode"])
-    if inference is not None:
-        given = with_inference({**given, "dt": dt}, inference, task.inner_period, task.used)
-    settings = common({**given, "dt": dt, "jitter": jitter, "max_episode_steps": limit}, task.inner_period, task.used)
+    settings = common_with({**given, "dt": dt, "jitter": jitter, "max_episode_steps": limit}, inference, task.inner_period, task.used)
     if clock[0] != clock[1] and settings["skew"][1] > 0:
         raise ValueError(f"skew is {given['skew']!r}, but it must be 0 where each episode draws its jitter")
     settings["levels"] = list(task.levels)
@@ -89,7 +87,7 @@ def native_equations(
         "noise": [law("observation_noise", x) for x in _each_law(noise, len(task.observed))],
         "error_scale": [clock, sensor],
         "lengths": settings["lengths"],
-        "answers": None if inference is None else native_answers(inference, settings),
+        "answers": settings["answers"],
     }
     if task.controller_text is not None:
         _check_controller(task, settings)

@@ -15,7 +15,7 @@ from ._keywords import check_keywords
 from ._preset_equations import has_varied, native_varied
 from ._presets import PRESETS, Preset
 from ._settings import AUTORESET, count, native, nearest
-from ._spec_keywords import keyword_value
+from ._spec_keywords import named_keyword_value
 from ._tasks import EquationPreset, native_equations
 from .equations import EquationSystem
 from .systems import SYSTEMS, System, with_commands
@@ -104,11 +104,12 @@ class Environments(_native.Batch):
     inference:
         The time in s that a policy takes to answer an observation: a number, or a distribution from which every action draws its own:
         ``LogNormal(mean, std)`` or ``("lognormal", mean, std)``, ``Uniform(low, high)``, ``LogUniform(low, high)``. What is
-        drawn above ``mean + 8·std`` counts as that. ``action_delay`` comes on top.
+        drawn above ``mean + 8·std`` counts as that. ``action_delay`` comes on top. :attr:`parameters` has the time of the next answer.
     inference_mode:
-        ``"asynchronous"``: the system goes on under the newest action that has arrived. Times are rounded to steps of the integrator, of
-        which the mean has at least eight where ``substeps`` is not given, with at most 20 of them in ``dt``. ``"synchronous"``: the
-        system waits for each answer under its last command, and a step takes ``dt`` and the time of the answer.
+        ``"asynchronous"``: the system goes on under the newest action that has arrived. Times are rounded to steps of the integrator, of which
+        the mean has at least eight where ``substeps`` is not given, with at most 20 of them in ``dt`` unless latencies need more.
+        ``"synchronous"``: the system waits for each answer under its last command, and a step takes ``dt`` and the time of the answer, which
+        errors of the clock do not change. Reward and termination are those of the whole step.
     threads:
         Number of threads (0: one per core). The results are independent of it.
     copy:
@@ -242,8 +243,8 @@ class Environments(_native.Batch):
             raise TypeError(f"parameter_infos must be True or False, not {type(parameter_infos).__name__}")
         if copy and buffers is not None:
             raise TypeError("buffers is given, but it belongs to copy=False")
-        given = {key: keyword_value(value) for key, value in given.items()}
-        parameters = {key: keyword_value(value) for key, value in parameters.items()}
+        given = {key: named_keyword_value(key, value) for key, value in given.items()}
+        parameters = {key: named_keyword_value(key, value) for key, value in parameters.items()}
         self._arguments = (subject, {**given, **parameters})
         self._settings: Mapping[str, Any]
         if isinstance(subject, EquationSystem):
@@ -354,8 +355,8 @@ class Environments(_native.Batch):
     def parameters(self) -> dict[str, np.ndarray]:
         """Numbers of the current episodes that differ between episodes or environments, by name, ``(num_envs,)`` each.
 
-        These are parameters, ``max_action`` (with several inputs ``max_action_u``), ``action_delay`` and ``observation_delay`` in s, and the
-        standard deviations ``jitter`` and ``observation_noise``.
+        These are parameters, ``max_action`` (with several inputs ``max_action_u``), ``action_delay`` and ``observation_delay`` in s, the
+        standard deviations ``jitter`` and ``observation_noise``, and ``inference``, the time in s of the answer to the present observation.
         """
         return episode_numbers(self._settings, self.preset.actions, self._episode_numbers())
 

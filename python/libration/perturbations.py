@@ -94,8 +94,8 @@ class LogNormal:
     std: float
 
     def __post_init__(self) -> None:
-        number("mean", self.mean, "finite and greater than 0", lambda x: 0 < x < math.inf)
-        _check_std(self.std)
+        number("mean of LogNormal", self.mean, "finite and greater than 0", lambda x: 0 < x < math.inf)
+        number("std of LogNormal", self.std, "finite and at least 0", lambda x: 0 <= x < math.inf)
 
 
 @dataclass(frozen=True)

@@ -201,14 +201,19 @@ impl Settings {
         };
         let noise = noise.iter().map(|(kind, rms)| law("observation_noise", kind, *rms));
         let dynamics = system.equations.dynamics().clone();
+        let answers = subject.answers.as_ref().map(answer_times).transpose()?;
+        let waits = answers.map_or(0, |answers| answers.waits);
         let definition = ProgramEnvironment {
-            substeps: self.substeps,
+            substeps: self.substeps.saturating_add(waits),
             lengths: subject.lengths.clone(),
             start: task.start.clone(),
             limit: self.limit,
             autoreset: self.autoreset()?,
-            delays: self.delays(),
-            answers: subject.answers.as_ref().map(answer_times).transpose()?,
+            delays: Delays {
+                action: self.action_delay.map(|steps| steps + waits),
+                ..self.delays()
+            },
+            answers,
             saturation: saturation.iter().map(episode_number).collect::<PyResult<_>>()?,
             levels: task.levels.clone(),
             inner_steps: task.inner_steps(self.dt).map_err(value_error)?,

@@ -66,8 +66,10 @@ impl Distribution {
                 ensure("mean of the variation", mean, "above 0 in the float type", held)?;
                 let (name, allowed) = ("standard deviation of the variation", "at least 0");
                 ensure(name, deviation, allowed, deviation >= 0.0)?;
-                let [middle, width] = of_logarithm(mean, deviation);
-                finite("largest number of the variation", libm::exp(middle + FARTHEST * width))
+                let [low, high] = ends_of_logarithm(mean, deviation);
+                let held = T::from_f64(low) > T::zero();
+                ensure("smallest number of the variation", low, "above 0 in the float type", held)?;
+                finite("largest number of the variation", high)
             }
             Distribution::Either(first, values) => {
                 let holds = (0.0..=1.0).contains(&first);
@@ -85,7 +87,7 @@ impl Distribution {
             Distribution::Uniform(low, _) | Distribution::LogUniform(low, _) => low,
             Distribution::Normal(mean, 0.0) => mean,
             Distribution::Normal(..) => f64::NEG_INFINITY,
-            Distribution::LogNormal(..) => 0.0,
+            Distribution::LogNormal(mean, deviation) => ends_of_logarithm(mean, deviation)[0],
             Distribution::Either(_, [a, b]) => a.min(b),
         }
     }
@@ -141,6 +143,12 @@ fn of_logarithm(mean: f64, deviation: f64) -> [f64; 2] {
     let ratio = deviation / mean;
     let variance = libm::log1p(ratio * ratio);
     [libm::log(mean) - variance / 2.0, variance.sqrt()]
+}
+
+/// The smallest and the largest number that is drawn.
+fn ends_of_logarithm(mean: f64, deviation: f64) -> [f64; 2] {
+    let [middle, width] = of_logarithm(mean, deviation);
+    [middle - FARTHEST * width, middle + FARTHEST * width].map(libm::exp)
 }
 
 #[cfg(test)]

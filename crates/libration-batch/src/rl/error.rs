@@ -54,6 +54,11 @@ pub enum EnvironmentError {
          draw the rates from a distribution, or use one seed for the batch"
     )]
     Seeded,
+    /// The task of a system that waits for its answers depends on time.
+    #[error(
+        "observation, reward or termination depends on the time t, which a system that waits for its answers does not count"
+    )]
+    Waits,
     /// The time limit is 0.
     #[error("the time limit is 0 actions; it must be at least 1, or absent")]
     Limit,

@@ -97,7 +97,8 @@ pub trait AnyEnvironments<T>: Send + Sync {
     fn episode(&self, n: usize) -> Option<Episode>;
 
     /// What is drawn of the episode of environment `n`, if it exists: parameters that vary, largest commands unless all are constants,
-    /// latencies of observations and actions in steps, and error scales of clock and sensor.
+    /// latencies of observations and actions in steps, error scales of clock and sensor, and the time of the answer to the present
+    /// observation in seconds, if answers take times of their own.
     fn episode_numbers(&self, n: usize) -> Option<Vec<T>>;
 
     /// The complete state as bytes.
@@ -261,6 +262,8 @@ impl<T: BatchFloat> AnyEnvironments<T> for ProgramEnvironments<T> {
     }
 
     fn episode_numbers(&self, n: usize) -> Option<Vec<T>> {
-        self.numbers(n).zip(self.perturbations(n)).map(|(numbers, all)| flat(numbers, all))
+        let mut all = flat(self.numbers(n)?, self.perturbations(n)?);
+        all.extend(self.answer_time(n).map(T::from_f64));
+        Some(all)
     }
 }

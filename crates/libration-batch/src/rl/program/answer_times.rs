@@ -5,10 +5,9 @@ use libration_core::control::error::ensure;
 use libration_core::control::{ControlError, Latency};
 use libration_core::random::Purpose;
 
-use super::ProgramEnvironment;
-use super::block_state::{BlockState, Row};
-use crate::rl::Distribution;
 use crate::rl::block_size::LANES;
+use crate::rl::start::Episode;
+use crate::rl::{Delays, Distribution};
 
 /// Times from observation to action that are drawn for every action, as of a policy whose inference takes now longer, now shorter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,8 +17,9 @@ pub struct AnswerTimes {
     /// The number of steps of the integrator in which the system waits for its action at the beginning of each period; 0 if it does not
     /// wait.
     ///
-    /// A system that waits goes on under the command before. These steps are as long as the time that was drawn takes, and belong to
-    /// the [substeps](ProgramEnvironment::substeps); the others are `dt` long. The latency of actions must be these steps.
+    /// A system that waits goes on under the command before. These steps are `dt` long until the time that was drawn is over, without
+    /// errors of the clock, and belong to the [substeps](super::ProgramEnvironment::substeps). The latency of actions must be these
+    /// steps. An inner controller begins a new period with the answer.
     ///
     /// A system that does not wait goes on under the newest action that has arrived: an action that arrives after a newer one is never
     /// used. Times are rounded to whole steps and added to the latency of actions.
@@ -35,39 +35,32 @@ impl AnswerTimes {
 
     pub(super) fn check<T: Float>(
         &self,
-        definition: &ProgramEnvironment,
+        dt: f64,
+        substeps: u32,
+        delays: Delays,
     ) -> Result<(), ControlError> {
         self.time.check::<T>(0).map_err(|error| ControlError { index: None, ..error })?;
         let least = self.time.least();
         ensure("shortest time of an answer", least, "at least 0", |least| least >= 0.0)?;
-        let [_, latency] = definition.delays.action;
-        let steps = f64::from(latency) + f64::from(self.most_steps(definition.dt));
+        let steps = f64::from(delays.action[1]) + f64::from(self.most_steps(dt));
         let allowed = "at most 4096 steps of the integrator";
         ensure("longest time of an answer", steps, allowed, |steps| {
             steps <= Latency::MOST_STEPS as f64
         })?;
         let (waits, allowed) = (f64::from(self.waits), "less than the substeps");
         ensure("steps of waiting for an answer", waits, allowed, |waits| {
-            waits < f64::from(definition.substeps)
+            waits < f64::from(substeps)
         })?;
-        if self.waits == 0 {
-            return Ok(());
-        }
         let allowed = "the steps of waiting for an answer";
-        for latency in definition.delays.action {
+        for latency in delays.action.into_iter().filter(|_| self.waits > 0) {
             ensure("latency of actions", latency.into(), allowed, |_| latency == self.waits)?;
         }
         Ok(())
     }
 
-    /// Draws the times of the answers to the observations of step `now`, in seconds.
-    pub(super) fn draw<T: Float>(&self, block: &BlockState<'_, T>, now: u64) -> [f64; LANES] {
-        let longest = self.time.largest();
-        core::array::from_fn(|l| {
-            let age = now.saturating_sub(block.episodes.began[l]);
-            let address = block.episodes.episode(l).epoch(Purpose::Latency, age);
-            self.time.draw_at(address).min(longest)
-        })
+    /// The time of the answer to the observation after so many actions of an episode, in seconds.
+    pub(super) fn draw(&self, episode: Episode, age: u64) -> f64 {
+        self.time.draw_at(episode.epoch(Purpose::Latency, age)).min(self.time.largest())
     }
 
     /// The latencies of these answers in whole steps of the integrator.
@@ -76,7 +69,17 @@ impl AnswerTimes {
         times: &[f64; LANES],
         dt: f64,
         base: &[u32; LANES],
-    ) -> Row<T> {
+    ) -> [T; LANES] {
         core::array::from_fn(|l| T::from_f64((times[l] / dt).round() + f64::from(base[l])))
+    }
+
+    /// The lengths of a step of waiting for these answers.
+    pub(super) fn waiting<T: Float>(
+        &self,
+        times: &[f64; LANES],
+        dt: f64,
+        substep: u64,
+    ) -> [T; LANES] {
+        times.map(|time| T::from_f64((time - substep as f64 * dt).clamp(0.0, dt)))
     }
 }

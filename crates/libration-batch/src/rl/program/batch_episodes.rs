@@ -92,6 +92,14 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
         Some(block.iter().map(|row| row[n % LANES]).collect())
     }
 
+    /// The time of the answer to the present observation of environment `n` in seconds, if answers take times of their own; none if
+    /// `n` is out of range.
+    pub fn answer_time(&self, n: usize) -> Option<f64> {
+        let answers = self.definition.answers.filter(|_| n < self.len())?;
+        let (block, l) = (&self.episodes.blocks[n / LANES], n % LANES);
+        Some(answers.draw(block.episode(l), self.step().saturating_sub(block.began[l])))
+    }
+
     /// See [`Environments::perturbations`](crate::rl::Environments::perturbations).
     pub fn perturbations(&self, n: usize) -> Option<([u32; 2], [T; 2])> {
         self.episodes.perturbations(n)

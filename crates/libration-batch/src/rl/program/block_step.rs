@@ -50,6 +50,8 @@ pub(super) struct BlockStep<'s, T> {
     other: Vec<Row<T>>,
     /// Positions and velocities before a step of the integrator, for its projection.
     pub(super) previous: Vec<Row<T>>,
+    /// Positions and velocities before a step of waiting.
+    pub(super) kept: Vec<Row<T>>,
     pub(super) lengths: Row<T>,
     /// The times of the answers of this step in s, where they are drawn.
     pub(super) answer_times: [f64; LANES],
@@ -100,6 +102,7 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
             ),
             other: rows(coordinates),
             previous: rows(projection.map_or(0, |_| coordinates)),
+            kept: rows(if definition.waits() > 0 { coordinates } else { 0 }),
             lengths: [dt; LANES],
             answer_times: [0.0; LANES],
             ages: [0; LANES],
@@ -188,7 +191,9 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
             self.history.act(block.past, now, &self.commands);
         }
         if let Some(answers) = self.definition.answers {
-            self.answer_times = answers.draw(block, now);
+            let episodes = &block.episodes;
+            let age = |l: usize| now.saturating_sub(episodes.began[l]);
+            self.answer_times = core::array::from_fn(|l| answers.draw(episodes.episode(l), age(l)));
             self.store_latencies(now, block);
         }
         for substep in 0..substeps {
@@ -201,7 +206,14 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
             }
             self.set_lengths([now, substeps, substep], block.episodes, words);
             self.control(substep, block);
+            let waits = substep < self.definition.waits().into();
+            if waits {
+                self.kept.copy_from_slice(block.states);
+            }
             self.integrate(block.states, block.numbers);
+            if waits {
+                self.keep_answered(block.states);
+            }
         }
         self.judge(now, block);
         self.settle(block.states);

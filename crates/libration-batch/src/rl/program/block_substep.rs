@@ -57,10 +57,10 @@ impl<T: BatchFloat> BlockStep<'_, T> {
         if self.definition.is_jittered() {
             self.draw_lengths([now, substeps, substep], block, words);
         }
-        let waits = self.definition.waits();
-        if substep < u64::from(waits) {
-            self.lengths = self.answer_times.map(|time| T::from_f64(time / f64::from(waits)));
-        } else if substep == u64::from(waits) && waits > 0 && !self.definition.is_jittered() {
+        let waits = u64::from(self.definition.waits());
+        if let Some(answers) = self.definition.answers.filter(|_| substep < waits) {
+            self.lengths = answers.waiting(&self.answer_times, self.definition.dt, substep);
+        } else if substep == waits && waits > 0 && !self.definition.is_jittered() {
             self.lengths = [self.dt; LANES];
         }
     }
@@ -87,15 +87,13 @@ impl<T: BatchFloat> BlockStep<'_, T> {
     }
 
     /// Computes the commands of the inner controller, if there is one, in a substep that begins with new ones.
-    ///
-    /// While the system waits, all substeps do.
     pub(super) fn control(&mut self, substep: u64, block: &BlockState<'_, T>) {
         let waits = u64::from(self.definition.waits());
         let own = substep.checked_sub(waits);
         // The time of a chunk of actions goes on until the robot begins to wait, in the last step before.
         let last = self.substeps() - waits - 1;
         let Some(inner) = &mut self.inner else { return };
-        if own.is_some_and(|own| !own.is_multiple_of(self.definition.inner_steps.into())) {
+        if !own.unwrap_or(substep).is_multiple_of(self.definition.inner_steps.into()) {
             return;
         }
         if inner.reads_last() {
@@ -132,5 +130,14 @@ impl<T: BatchFloat> BlockStep<'_, T> {
         let previous = &self.previous;
         let rest = |i: usize| if i < count { rest(i) } else { &previous[i - count] };
         projection.run_in_place(states, rest, self.instructions);
+    }
+
+    /// Puts back what has its answer: a step without length is none.
+    pub(super) fn keep_answered(&self, states: &mut [Row<T>]) {
+        for (row, kept) in states.iter_mut().zip(&self.kept) {
+            for ((x, &was), &length) in row.iter_mut().zip(kept).zip(&self.lengths) {
+                *x = if length > T::zero() { *x } else { was };
+            }
+        }
     }
 }

@@ -170,6 +170,12 @@ impl ProgramEnvironment {
         self.answers.map_or(0, |answers| answers.waits)
     }
 
+    /// The inputs of observation and verdict that are the time.
+    pub(super) fn time_inputs(&self) -> [usize; 2] {
+        let seen = self.coordinates() + self.parameters.len();
+        [seen, seen + self.coordinates() + self.actions()]
+    }
+
     /// The layout of the past of a block.
     pub(super) fn history(&self) -> History {
         let ProgramEnvironment { mut delays, substeps, .. } = *self;

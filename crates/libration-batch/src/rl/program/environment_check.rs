@@ -4,6 +4,8 @@ use libration_core::Float;
 use libration_core::control::ControlError;
 use libration_core::control::error::{ensure, ensure_finite, ensure_not_negative};
 
+use libration_equations::Program;
+
 use super::ProgramEnvironment;
 use crate::rl::start::uniform;
 use crate::rl::{EnvironmentError, EpisodeNumber};
@@ -22,9 +24,7 @@ impl ProgramEnvironment {
         if !self.noise.is_empty() {
             EnvironmentError::shape("laws of noise", self.noise.len(), self.observations())?;
         }
-        let most = |program: &libration_equations::Program| {
-            program.inputs_in_use().max().map_or(0, |input| input + 1)
-        };
+        let most = |program: &Program| program.inputs_in_use().max().map_or(0, |input| input + 1);
         for (name, found, wanted) in [
             (
                 "inputs of the observation",
@@ -50,15 +50,15 @@ impl ProgramEnvironment {
             EnvironmentError::shape(name, found, found.min(wanted))?;
         }
         if let Some(answers) = &self.answers {
-            answers.check::<T>(self)?;
-            let timed = [
-                (&self.task.observation, 2 * degrees + parameters),
-                (&self.task.verdict, 4 * degrees + actions + parameters),
-            ];
-            let timed = timed.iter().filter(|(all, time)| most(all) > *time).count();
+            answers.check::<T>(self.dt, self.substeps, self.delays)?;
+            EnvironmentError::shape("lengths of steps", self.lengths.len(), 0)?;
+            let [seen, judged] = self.time_inputs();
+            let reads = |program: &Program, time| program.inputs_in_use().any(|i| i == time);
             // How long a system has waited is known to nothing that reads the time.
-            let allowed = if self.waits() > 0 { 0 } else { timed };
-            EnvironmentError::shape("programs that read the time", timed, allowed)?;
+            let timed = reads(&self.task.observation, seen) || reads(&self.task.verdict, judged);
+            if timed && answers.waits > 0 {
+                return Err(EnvironmentError::Waits);
+            }
         }
         EnvironmentError::shape("outputs of the verdict", self.task.verdict.outputs().len(), 2)?;
         if let Some(inner) = &self.task.inner {
