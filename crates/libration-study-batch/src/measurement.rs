@@ -118,7 +118,9 @@ impl From<&Rates> for Ratio {
     }
 }
 
-/// A ratio that is to reach a bar, but for twice the error of its median; without a verdict where the machine was
+/// A ratio of speeds that is to reach a bar, but for twice the error of its median.
+///
+/// To fall short of it is no disagreement: what else the machine does decides that, and no theory. There is no verdict where the machine was
 /// too noisy for one, where there is no bar, and in a build that is not for speed.
 pub(super) fn judge(
     record: &mut Record,
@@ -127,22 +129,32 @@ pub(super) fn judge(
     bar: Option<f64>,
     ratio: impl Into<Ratio>,
 ) {
-    let Ratio { median, spread, error } = ratio.into();
     let bar = bar.filter(|_| !cfg!(debug_assertions));
+    record.find(judged(id, text, bar, ratio.into()));
+}
+
+fn judged(id: String, text: String, bar: Option<f64>, ratio: Ratio) -> Finding {
+    let Ratio { median, spread, error } = ratio;
+    let Some(bar) = bar else { return Finding::measured(id, text, "1", median) };
+    let without =
+        |reason| Finding::measured(id.clone(), text.clone(), "1", median).undecided(reason);
     // Where rounds lie far apart, the bar must lie further off to be told from their median.
-    let is_clear = |bar: f64| spread <= NOISY * median || (median - bar).abs() > spread;
-    record.find(match bar {
-        Some(bar) if is_clear(bar) => {
-            let reason = "twice the standard error of the median of the rounds, by their quartiles";
-            let tolerance = Tolerance::absolute(2.0 * error, reason);
-            Finding::related(id, text, "1", Relation::AtLeast, bar, median, tolerance)
-        }
-        Some(bar) => Finding::measured(id, text, "1", median).undecided(Undecided::Noisy(format!(
-            "the machine was too noisy: the quartiles of the rounds are {spread:.2} apart; target: \
-             {bar}"
-        ))),
-        None => Finding::measured(id, text, "1", median),
-    });
+    if spread > NOISY * median && (median - bar).abs() <= spread {
+        return without(Undecided::Noisy(format!(
+            "the machine was too noisy: the quartiles of the rounds are {spread:.2} apart; target: {bar}"
+        )));
+    }
+    let reason = "twice the standard error of the median of the rounds, by their quartiles";
+    let tolerance = Tolerance::absolute(2.0 * error, reason);
+    let (own, words) = (id.clone(), text.clone());
+    let reached = Finding::related(own, words, "1", Relation::AtLeast, bar, median, tolerance);
+    if reached.agrees() {
+        return reached;
+    }
+    without(Undecided::Beyond(format!(
+        "not reached: the target is {bar}, and twice the standard error of the median is {:.2}",
+        2.0 * error
+    )))
 }
 
 /// A ratio that is wanted to reach a bar which no theory tells: to fall short of it is no disagreement, and stands there with
@@ -168,7 +180,24 @@ pub(super) fn aim(
 
 #[cfg(test)]
 mod tests {
+    use libration_report::record::Verdict;
+
     use super::*;
+
+    #[test]
+    fn a_speed_reaches_its_target_or_not_or_is_too_noisy_and_never_disagrees() {
+        let judged = |bar, median, spread| {
+            let finding = judged("a.b".into(), String::new(), bar, Ratio::new(median, spread, 20));
+            assert_ne!(finding.verdict, Verdict::Disagrees);
+            (finding.agrees(), finding.undecided.map(|reason| reason.to_string()))
+        };
+        assert_eq!(judged(Some(0.9), 0.95, 0.01), (true, None));
+        assert_eq!(judged(None, 0.5, 0.01), (false, None));
+        let (_, missed) = judged(Some(0.9), 0.8, 0.01);
+        assert!(missed.unwrap().starts_with("not reached: the target is 0.9"));
+        let (_, noisy) = judged(Some(0.9), 0.8, 0.79);
+        assert!(noisy.unwrap().starts_with("the machine was too noisy"));
+    }
 
     #[test]
     fn the_median_of_four_times_as_many_rounds_is_twice_as_sure() {

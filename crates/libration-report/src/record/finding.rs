@@ -40,7 +40,7 @@ fn number_or_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::E
 pub enum Undecided {
     /// The measurement was too noisy; another run may judge it.
     Noisy(String),
-    /// The target was not reached and is beyond the machine.
+    /// The target, which no theory predicts, was not reached.
     Beyond(String),
 }
 
