@@ -16,10 +16,22 @@ use super::{Letter, Tableau};
 pub struct OrderCertificate {
     /// The largest difference of a coefficient among the words of 1, 2, … letters, times `n!`.
     pub residuals: Vec<Wide>,
+    /// What the rounding of weights to `f64` may leave of them.
+    rounding: Vec<f64>,
 }
 
-/// Residuals below this are the rounding of weights to `f64`.
-const ROUNDING: f64 = 1e-13;
+/// The most that weights which are rounded to `f64` change coefficients of the words of `letters` letters, times `n!`, where the sizes of
+/// all weights add up to `path`.
+///
+/// The sizes of all these coefficients add up to `pathⁿ/n!`, and each is a product of `n` weights.
+pub(super) fn rounding_of_words(letters: usize, path: f64) -> f64 {
+    letters as f64 * path.powi(letters as i32) * f64::EPSILON
+}
+
+/// The sum of the sizes of the weights.
+pub(super) fn path_of(word: &[Letter]) -> f64 {
+    word.iter().map(|letter| letter.weight().to_f64().abs()).sum()
+}
 
 impl OrderCertificate {
     /// Compares all words of up to `degree` letters; none if the method is not a splitting method.
@@ -31,12 +43,15 @@ impl OrderCertificate {
             let words = series.coefficients[n].iter();
             words.fold(Wide::ZERO, |worst, &c| larger(worst, (c * factorial - Wide::one()).abs()))
         });
-        Some(OrderCertificate { residuals: residuals.collect() })
+        let path = path_of(&word);
+        let rounding = (1..=degree).map(|letters| rounding_of_words(letters, path)).collect();
+        Some(OrderCertificate { residuals: residuals.collect(), rounding })
     }
 
     /// The order: the number of leading degrees without a residual, up to the rounding of weights.
     pub fn order(&self) -> usize {
-        self.residuals.iter().take_while(|r| r.to_f64() < ROUNDING).count()
+        let pairs = self.residuals.iter().zip(&self.rounding);
+        pairs.take_while(|(residual, rounding)| residual.to_f64() <= **rounding).count()
     }
 }
 

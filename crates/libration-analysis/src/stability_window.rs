@@ -34,10 +34,23 @@ impl SymbolicStep {
 ///
 /// At a pole, where the denominator is zero, one of the conditions is violated or all entries have a common factor.
 pub(super) fn windows<const N: usize>(
-    numerators: [&Poly<N>; 4],
+    [a, b, c, d]: [&Poly<N>; 4],
     denominator: &Poly<N>,
 ) -> Vec<StabilityWindow> {
-    let Some(conditions) = Conditions::of(numerators, denominator) else { return Vec::new() };
+    // All of them times a number, with as many digits as it takes: the determinant may outgrow exact fractions.
+    let Some(whole) = WholePoly::over_one_denominator([a, b, c, d, denominator]) else {
+        return Vec::new();
+    };
+    let ([a, b, c, d, denominator], _) = whole;
+    whole_windows([a, b, c, d], &denominator)
+}
+
+/// As [`windows`], of whole polynomials.
+pub(super) fn whole_windows(
+    numerators: [WholePoly; 4],
+    denominator: &WholePoly,
+) -> Vec<StabilityWindow> {
+    let conditions = Conditions::of(numerators, denominator);
     let cells = Cells::of(&conditions.polynomials());
     let mut windows: Vec<StabilityWindow> = Vec::new();
     let mut before = false;
@@ -77,16 +90,15 @@ struct Conditions {
 
 impl Conditions {
     /// Those of the matrix with these numerators over one denominator, whose square is a factor of all of them.
-    fn of<const N: usize>([a, b, c, d]: [&Poly<N>; 4], denominator: &Poly<N>) -> Option<Self> {
-        // All of them times a number, with as many digits as it takes: the determinant may outgrow exact fractions.
-        let ([a, b, c, d, s], _) = WholePoly::over_one_denominator([a, b, c, d, denominator])?;
-        let (one, trace) = (&s * &s, &s * &(&a + &d));
+    fn of([a, b, c, d]: [WholePoly; 4], denominator: &WholePoly) -> Self {
+        let s = denominator;
+        let (one, trace) = (s * s, s * &(&a + &d));
         let determinant = &(&a * &d) - &(&b * &c);
         let even = &one + &determinant;
         let [area, plus, minus] = [&one - &determinant, &even - &trace, &even + &trace];
         let polynomials = [area, plus, minus, b, c].map(WholePoly::primitive);
         let ([area, plus, minus, b, c], squares) = IntegerPoly::in_squares(polynomials.each_ref());
-        Some(Conditions { area, plus, minus, off_diagonal: [b, c], squares })
+        Conditions { area, plus, minus, off_diagonal: [b, c], squares }
     }
 
     fn polynomials(&self) -> [&IntegerPoly; 3] {

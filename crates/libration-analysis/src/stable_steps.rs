@@ -1,15 +1,12 @@
 //! The time steps at which an integrator is stable on a linear plant.
 
+use libration_core::AnyMethod;
 use libration_core::system::DampedOscillator;
-use libration_core::{AnyMethod, Model};
 use libration_linear::eigenvalues;
 use num_complex::Complex64;
 
 use super::step_search::{DAMPED, searched_windows};
-use super::{
-    LinearStepper, RationalStep, StabilityFunction, StabilityWindow, StepWindow, SymbolicStep,
-    UnknownStep,
-};
+use super::{LinearStepper, StabilityFunction, StabilityWindow, StepWindow, oscillator_windows};
 
 /// Part of the largest eigenvalue that is a rounding of another one.
 const ROUNDING: f64 = 1e-13;
@@ -120,14 +117,7 @@ impl LinearStepper {
 
 /// The stability windows of a method on an oscillator, from exact polynomials; none if these outgrow their arithmetic.
 fn windows_of(method: AnyMethod, one: &DampedOscillator<f64>) -> Option<Vec<StepWindow>> {
-    let windows = match method {
-        AnyMethod::Explicit(method) => {
-            SymbolicStep::of(method, &Model::on::<UnknownStep>(one))?.stability_windows()
-        }
-        AnyMethod::Implicit(method) => {
-            RationalStep::damped(method, one.omega2, one.gamma)?.stability_windows()
-        }
-    };
+    let windows = oscillator_windows(method, one)?;
     let ends = |window: &StabilityWindow| StepWindow {
         from: window.from.to_f64(),
         to: window.to.map_or(f64::INFINITY, |to| to.to_f64()),

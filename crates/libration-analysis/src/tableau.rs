@@ -2,16 +2,14 @@
 
 use core::cell::RefCell;
 
-use libration_core::number::Ratio;
+use libration_core::number::{Poly, Ratio};
 use libration_core::{Integrator, Scalar, State, System};
-
-use super::UnknownStep;
 
 /// The coefficients of an integrator on `q̈ = a(q)`, by running one step on formal symbols.
 ///
 /// ```text
 /// Qᵢ = q + cᵢΔt·v + Δt² Σⱼ aᵢⱼ·a(Qⱼ)
-/// q' = q + Δt·v + Δt² Σ b̄ᵢ·a(Qᵢ),   v' = v + Δt Σ bᵢ·a(Qᵢ)
+/// q' = q + c·Δt·v + Δt² Σ b̄ᵢ·a(Qᵢ),   v' = v + Δt Σ bᵢ·a(Qᵢ)
 /// ```
 ///
 /// Hairer, Nørsett, Wanner: Solving Ordinary Differential Equations I, 2nd ed., §II.14.
@@ -25,6 +23,8 @@ pub struct Tableau {
     pub b_position: Vec<Ratio>,
     /// `bᵢ`.
     pub b: Vec<Ratio>,
+    /// `c`, one up to the rounding of weights.
+    pub time: Ratio,
 }
 
 /// A factor of a splitting method, in the order of time.
@@ -36,6 +36,9 @@ pub enum Letter {
     Drift(Ratio),
 }
 
+/// A sum of symbols: positions, velocities and 37 forces.
+type Symbol = Poly<40>;
+
 /// Powers of the unknown stand for symbols: `q`, `v`, then the forces in turn. With `Δt = 1` a step
 /// only multiplies symbols by constants, so they never mix.
 const POSITION: usize = 1;
@@ -44,29 +47,29 @@ const FIRST_FORCE: usize = 3;
 
 /// A system whose force is a new symbol at each evaluation.
 struct Symbols {
-    arguments: RefCell<Vec<UnknownStep>>,
+    arguments: RefCell<Vec<Symbol>>,
 }
 
-impl System<UnknownStep, 1> for Symbols {
-    fn acceleration(&self, state: &State<UnknownStep, 1>) -> [UnknownStep; 1] {
+impl System<Symbol, 1> for Symbols {
+    fn acceleration(&self, state: &State<Symbol, 1>) -> [Symbol; 1] {
         let mut arguments = self.arguments.borrow_mut();
         arguments.push(state.q[0]);
         [symbol(FIRST_FORCE + arguments.len() - 1)]
     }
 }
 
-fn symbol(k: usize) -> UnknownStep {
-    UnknownStep::monomial(Ratio::ONE, k)
+fn symbol(k: usize) -> Symbol {
+    Symbol::monomial(Ratio::ONE, k)
 }
 
 impl Tableau {
-    /// The tableau of `integrator`; none if it evaluates the force more than 29 times a step.
+    /// The tableau of `integrator`; none if it evaluates the force more than 37 times a step.
     pub fn new(integrator: impl Integrator) -> Option<Self> {
         let symbols = Symbols { arguments: RefCell::default() };
         let start = State { q: [symbol(POSITION)], v: [symbol(VELOCITY)] };
-        let State { q: [q], v: [v] } = integrator.step(&symbols, start, UnknownStep::one());
+        let State { q: [q], v: [v] } = integrator.step(&symbols, start, Symbol::one());
         let arguments = symbols.arguments.into_inner();
-        let forces = |p: &UnknownStep, n: usize| -> Vec<Ratio> {
+        let forces = |p: &Symbol, n: usize| -> Vec<Ratio> {
             (0..n).map(|j| p.coefficient(FIRST_FORCE + j)).collect()
         };
         let n = arguments.len();
@@ -75,6 +78,7 @@ impl Tableau {
             a: arguments.iter().enumerate().map(|(i, p)| forces(p, i)).collect(),
             b_position: forces(&q, n),
             b: forces(&v, n),
+            time: q.coefficient(VELOCITY),
         })
     }
 
@@ -87,14 +91,14 @@ impl Tableau {
             .iter()
             .enumerate()
             .all(|(i, row)| row.iter().enumerate().all(|(j, &a)| a == lever(j, self.c[i])));
-        let outer = (0..self.b.len()).all(|i| self.b_position[i] == lever(i, Ratio::ONE));
+        let outer = (0..self.b.len()).all(|i| self.b_position[i] == lever(i, self.time));
         let mut time = Ratio::ZERO;
         let mut word = Vec::new();
         for (&b, &c) in self.b.iter().zip(&self.c) {
             word.extend([Letter::Drift(c - time), Letter::Kick(b)]);
             time = c;
         }
-        word.push(Letter::Drift(Ratio::ONE - time));
+        word.push(Letter::Drift(self.time - time));
         word.retain(|letter| !letter.weight().is_zero());
         (inner && outer).then_some(word)
     }

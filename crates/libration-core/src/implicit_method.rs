@@ -131,7 +131,7 @@ pub enum AnyMethod {
 impl AnyMethod {
     /// All of them, the explicit ones first.
     pub fn all() -> impl Iterator<Item = AnyMethod> {
-        let explicit = Method::ALL.into_iter().map(AnyMethod::Explicit);
+        let explicit = Method::all().map(AnyMethod::Explicit);
         explicit.chain(ImplicitMethod::ALL.into_iter().map(AnyMethod::Implicit))
     }
 

@@ -1,5 +1,7 @@
 //! The integrators as a value, for callers that choose one at run time.
 
+use crate::integrator::SplittingTable;
+
 /// Every built-in integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Method {
@@ -21,6 +23,8 @@ pub enum Method {
     Yoshida4,
     /// [`SUZUKI4`](crate::integrator::SUZUKI4).
     Suzuki4,
+    /// One of the [published splitting methods](SplittingTable::ALL).
+    Splitting(&'static SplittingTable),
 }
 
 /// Names `$m` the integrator behind a [`Method`] and evaluates `$body` once for its type.
@@ -30,7 +34,7 @@ pub enum Method {
 macro_rules! with_method {
     ($method:expr, |$m:ident| $body:expr) => {{
         use $crate::{Method, integrator};
-        match $method {
+        match Method::clone(&$method) {
             Method::ExplicitEuler => {
                 let $m = integrator::ExplicitEuler;
                 $body
@@ -67,12 +71,16 @@ macro_rules! with_method {
                 let $m = integrator::SUZUKI4;
                 $body
             }
+            Method::Splitting(table) => {
+                let $m = table;
+                $body
+            }
         }
     }};
 }
 
 impl Method {
-    /// All of them, by rising order.
+    /// Those with code of their own, by rising order; [`Method::all`] has the others, too.
     pub const ALL: [Method; 9] = [
         Method::ExplicitEuler,
         Method::SymplecticEuler,
@@ -97,6 +105,7 @@ impl Method {
             Method::Rk4 => "rk4",
             Method::Yoshida4 => "yoshida4",
             Method::Suzuki4 => "suzuki4",
+            Method::Splitting(table) => table.name,
         }
     }
 
@@ -112,6 +121,7 @@ impl Method {
             Method::Rk4 => "RK4",
             Method::Yoshida4 => "Yoshida 4",
             Method::Suzuki4 => "Suzuki 4",
+            Method::Splitting(table) => table.title,
         }
     }
 
@@ -129,6 +139,7 @@ impl Method {
             Method::Rk4 => "order 4; classical Runge-Kutta; not symplectic",
             Method::Yoshida4 => "order 4; symplectic, time-reversible; three Verlet substeps",
             Method::Suzuki4 => "order 4; symplectic, time-reversible; five Verlet substeps",
+            Method::Splitting(table) => table.summary,
         }
     }
 
@@ -140,11 +151,18 @@ impl Method {
             }
             Method::VelocityVerlet | Method::TextbookVerlet | Method::Leapfrog => 2,
             Method::Rk4 | Method::Yoshida4 | Method::Suzuki4 => 4,
+            Method::Splitting(table) => table.order,
         }
+    }
+
+    /// All of them: those with code of their own, then the published splitting methods.
+    pub fn all() -> impl Iterator<Item = Method> {
+        let tables = SplittingTable::ALL.into_iter().flatten().map(Method::Splitting);
+        Method::ALL.into_iter().chain(tables)
     }
 
     /// The method of that name, if there is one.
     pub fn from_name(name: &str) -> Option<Method> {
-        Method::ALL.into_iter().find(|m| m.name() == name)
+        Method::all().find(|method| method.name() == name)
     }
 }

@@ -12,6 +12,7 @@ pub(super) fn path_of_unit_step(method: Method) -> f64 {
     match method {
         Method::Yoshida4 => YOSHIDA4.weights.iter().map(|w| w.abs()).sum(),
         Method::Suzuki4 => SUZUKI4.weights.iter().map(|w| w.abs()).sum(),
+        Method::Splitting(table) => table.coefficients.path(),
         _ => 1.0,
     }
 }
@@ -21,6 +22,7 @@ pub(super) fn substeps(method: Method) -> usize {
     match method {
         Method::Yoshida4 => YOSHIDA4.weights.len(),
         Method::Suzuki4 => SUZUKI4.weights.len(),
+        Method::Splitting(table) => table.coefficients.kicks(),
         _ => 1,
     }
 }

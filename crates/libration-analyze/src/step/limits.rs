@@ -1,12 +1,12 @@
 //! Limits of the time step, and the order of splitting methods.
 
 use libration::analysis::{
-    Criterion, LargestStep, Letter, OrbitStart, OrderCertificate, RationalStep, SymbolicStep,
-    Tableau, UnknownStep,
+    Criterion, LargestStep, Letter, OrbitStart, OrderCertificate, SplittingCertificate,
+    SymbolicStep, oscillator_windows,
 };
 use libration::number::Wide;
 use libration::system::DampedOscillator;
-use libration::{AnyMethod, AnySystem, Elementary, Method, Model, Scalar, State};
+use libration::{AnyMethod, AnySystem, Elementary, Method, Scalar, State};
 use serde::Serialize;
 
 use super::Request;
@@ -42,14 +42,24 @@ pub struct LargestDt {
 pub struct OrderOfWord {
     /// The letters of the word in the order of time.
     pub word: Vec<String>,
-    /// The order.
+    /// Force evaluations of a step, where neighbouring steps share those at their ends.
+    pub stages: usize,
+    /// The order for a sum of any two parts.
     pub order: usize,
+    /// The order for forces of positions.
+    pub nystrom_order: usize,
+    /// The order of the errors that are linear in the strength of the kicks.
+    pub weak_order: usize,
+    /// Whether a step back undoes a step.
+    pub symmetric: bool,
+    /// The norm of the leading error for forces of positions, over the power of the step.
+    pub error_constant: f64,
     /// The largest relative difference of a coefficient from that of the exact flow, for words of 1, 2, …
     /// letters.
     pub residuals: Vec<f64>,
 }
 
-/// Largest length of the compared words.
+/// Length of the compared words, or more for methods of higher order.
 const LETTERS: usize = 6;
 
 impl OrderOfWord {
@@ -59,12 +69,18 @@ impl OrderOfWord {
             Letter::Kick(w) => format!("kick {}", w.to_f64()),
             Letter::Drift(w) => format!("drift {}", w.to_f64()),
         };
-        let word = Tableau::new(method)?.word()?;
-        let certificate = OrderCertificate::new(method, LETTERS)?;
+        let order = method.order() as usize;
+        let certificate = SplittingCertificate::new(method, order + 1)?;
+        let words = OrderCertificate::new(method, LETTERS.max(order + 1))?;
         Some(OrderOfWord {
-            word: word.iter().map(shown).collect(),
-            order: certificate.order(),
-            residuals: certificate.residuals.iter().map(|r| r.to_f64()).collect(),
+            word: certificate.word.iter().map(shown).collect(),
+            stages: certificate.stages,
+            order: certificate.order,
+            nystrom_order: certificate.nystrom_order,
+            weak_order: certificate.weak_order,
+            symmetric: certificate.is_symmetric,
+            error_constant: certificate.error_constant,
+            residuals: words.residuals.iter().map(|r| r.to_f64()).collect(),
         })
     }
 }
@@ -86,14 +102,7 @@ pub(crate) fn stability_windows(
         _ => return None,
     };
     let in_seconds = |z: Wide| (z * unit).to_f64();
-    let windows = match method {
-        AnyMethod::Explicit(method) => {
-            SymbolicStep::of(method, &Model::on::<UnknownStep>(&damped))?.stability_windows()
-        }
-        AnyMethod::Implicit(method) => {
-            RationalStep::damped(method, damped.omega2, damped.gamma)?.stability_windows()
-        }
-    };
+    let windows = oscillator_windows(method, &damped)?;
     let ends = windows.iter().map(|w| [Some(in_seconds(w.from)), w.to.map(in_seconds)]);
     // A window between two neighbouring floats holds no time step.
     Some(ends.filter(|[from, to]| from != to).collect())

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod analyze;
+mod comparison;
 mod dimensions;
 mod export;
 mod implicit;
@@ -10,6 +11,7 @@ mod linear_analysis;
 mod loop_growth;
 mod overflow;
 mod reference;
+mod reference_flow;
 mod stability_windows;
 #[path = "../../src/trajectory/three_digits.rs"]
 mod three_digits;

@@ -125,7 +125,7 @@ pub(crate) trait Target: Copy + Send + Sync {
 
 /// [`InstructionSet::Baseline`].
 #[derive(Clone, Copy)]
-pub(super) struct Baseline;
+pub(crate) struct Baseline;
 
 impl Target for Baseline {
     const REGISTERS: usize = if cfg!(target_arch = "aarch64") { 32 } else { 16 };

@@ -7,7 +7,7 @@ use libration_core::{Float, Integrator, State, System};
 
 use super::block_size::LANES;
 use crate::ensemble::Loop;
-use crate::ensemble::instructions::Target;
+use crate::ensemble::instructions::{Baseline, Target};
 use crate::ensemble::kernel::{at, put};
 
 /// The state, commands and lengths of a step.
@@ -49,7 +49,11 @@ where
     #[inline(always)]
     fn integrator<M: Integrator>(self, method: M) {
         let Dispatch { lanes, target, system } = self;
-        target.vectorize(Known { lanes, system, method });
+        let known = Known { lanes, system, method };
+        match const { M::BASELINE_ONLY } {
+            true => Baseline.vectorize(known),
+            false => target.vectorize(known),
+        }
     }
 }
 

@@ -27,7 +27,7 @@ pub(crate) struct AnalyzeArgs {
         value_name = "NAME",
         value_parser = integrators(),
         hide_possible_values = true,
-        required_unless_present_any = ["plant", "config"]
+        required_unless_present_any = ["plant", "config", "compare"]
     )]
     pub(crate) integrator: Option<Stepping>,
     /// Time step in s
@@ -36,7 +36,7 @@ pub(crate) struct AnalyzeArgs {
         value_name = "SECONDS",
         value_parser = time_step,
         allow_hyphen_values = true,
-        required_unless_present_any = ["plant", "config"]
+        required_unless_present_any = ["plant", "config", "compare"]
     )]
     pub(crate) dt: Option<f64>,
     #[command(flatten)]
@@ -61,6 +61,33 @@ pub(crate) struct AnalyzeArgs {
     /// Print the largest dt with an error below ERROR times the amplitude over --steps (oscillator; any start)
     #[arg(long, value_name = "ERROR", value_parser = criterion, allow_hyphen_values = true)]
     pub(crate) max_error: Option<f64>,
+    /// Compare all explicit integrators on the motion from the start: the cheapest for --tolerance over --horizon
+    #[arg(
+        long,
+        requires_all = ["tolerance", "horizon"],
+        conflicts_with_all = [
+            "integrator", "dt", "plant", "config", "feedback", "max_drift", "max_amplitude", "max_error"
+        ]
+    )]
+    pub(crate) compare: bool,
+    /// Largest error of a state with --compare, relative to the largest size of that state (1e-13 to 0.1)
+    #[arg(
+        long,
+        value_name = "ERROR",
+        value_parser = criterion,
+        allow_hyphen_values = true,
+        requires = "compare"
+    )]
+    pub(crate) tolerance: Option<f64>,
+    /// Time of the motion in s with --compare
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        value_parser = criterion,
+        allow_hyphen_values = true,
+        requires = "compare"
+    )]
+    pub(crate) horizon: Option<f64>,
     /// Print the result as JSON, with all digits
     #[arg(long)]
     pub(crate) json: bool,
@@ -68,6 +95,7 @@ pub(crate) struct AnalyzeArgs {
 
 const USAGE: &str = "\
 libration analyze --system <NAME> --integrator <NAME> --dt <SECONDS> [OPTIONS]
+       libration analyze --system <NAME> --compare --tolerance <ERROR> --horizon <SECONDS>
        libration analyze --plant <FILE> [--dt <SECONDS>] [--integrator <NAME>] [--lqr <STATES/INPUTS>] [OPTIONS]
        libration analyze --config <FILE> [--dt <SECONDS>] [--integrator <NAME>] [OPTIONS]";
 
@@ -78,6 +106,7 @@ Examples:
   libration analyze --system oscillator --set omega2=10 --integrator exact --dt 0.01 \\
       --feedback 10,2 --latency 0.015 --jitter gaussian:0.1
   libration analyze --system pendulum --q 2.5 --integrator velocity-verlet --dt 0.05 --json
+  libration analyze --system kepler --compare --tolerance 1e-8 --horizon 100
   libration analyze --plant drive.toml --dt 0.001
   libration analyze --plant drive.toml --dt 0.001 --integrator rk4
   libration analyze --plant drive.toml --lqr 1,100,0,1/0.1 --period 0.001 --latency 0.0008

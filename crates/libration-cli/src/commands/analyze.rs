@@ -5,19 +5,23 @@ use std::io;
 use std::io::Write as _;
 
 use libration_analyze::{
-    Analysis, Criteria, ModifiedHamiltonian, Request, Stepping, Timing, analyze,
+    Analysis, Criteria, ModifiedHamiltonian, OrderOfWord, Request, Stepping, Timing, analyze,
 };
+use libration_report::notation::plural;
 use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::limits;
 
 use super::closed_loop::{dephasing, describe_loop};
 use super::simulate::linear_file;
-use super::{analyze_equations, analyze_linear, equation_file};
+use super::{analyze_equations, analyze_linear, compare_integrators, equation_file};
 use crate::args::{AnalyzeArgs, CostArgs};
 use crate::error::Failure;
 
 /// Analyzes one step and prints the result.
 pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
+    if args.compare {
+        return print(&compare_integrators::run(args)?);
+    }
     if let Some(request) = args.linear_request(linear_file) {
         return print(&analyze_linear::run(&request?, args.json)?);
     }
@@ -47,6 +51,21 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
         false => describe(&analysis, &request),
     };
     print(&text)
+}
+
+/// The properties of a splitting method.
+fn certified(word: &OrderOfWord) -> String {
+    let OrderOfWord { stages, order, nystrom_order, weak_order, symmetric, error_constant, .. } =
+        word;
+    let mut text = plural(*stages, "evaluation") + " a step";
+    if nystrom_order > order {
+        text += &format!(", order {nystrom_order} for forces of positions");
+    }
+    if weak_order > nystrom_order {
+        text += &format!(", order {weak_order} in weak kicks");
+    }
+    text += if *symmetric { ", symmetric" } else { ", not symmetric" };
+    text + &format!(", error constant {error_constant:.3e}")
 }
 
 /// Prints the result.
@@ -133,6 +152,7 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
     }
     if let Some(word) = &analysis.order_of_word {
         line("splitting", format!("order {}: {}", word.order, word.word.join(", ")));
+        line("", certified(word));
     }
     line("symplecticity defect", format!("{:e}", analysis.symplecticity_defect));
     line("reversibility defect", format!("{:e}", analysis.reversibility_defect));

@@ -15,6 +15,7 @@ mod clock_page;
 mod clock_report;
 mod clock_text;
 mod closed_loop;
+mod compare_integrators;
 mod completions;
 mod config_file;
 mod disagreements;

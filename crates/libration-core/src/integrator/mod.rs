@@ -12,6 +12,8 @@ mod implicit;
 mod leapfrog;
 mod runge_kutta;
 mod splitting;
+mod splitting_table;
+mod splitting_tables;
 mod substeps;
 mod textbook_verlet;
 mod velocity_verlet;
@@ -28,6 +30,7 @@ pub use implicit::{
 pub use leapfrog::Leapfrog;
 pub use runge_kutta::Rk4;
 pub use splitting::Splitting;
+pub use splitting_table::{SplittingCoefficients, SplittingScope, SplittingTable};
 pub use substeps::Substeps;
 pub use textbook_verlet::TextbookVerlet;
 pub use velocity_verlet::VelocityVerlet;
@@ -46,6 +49,9 @@ pub trait Integrator: Copy + Send + Sync {
 
     /// Whether the integrator dispatches over several methods at run time.
     const DISPATCHES: bool = false;
+
+    /// Whether batches are compiled for the baseline instruction set alone.
+    const BASELINE_ONLY: bool = false;
 
     /// Force evaluations of a step, of which one that [carries](Integrator::CARRIES) takes the first from the step before.
     fn evaluations(&self) -> usize {

@@ -174,7 +174,9 @@ impl Compared {
     fn alike(&self) -> f64 {
         match self.method {
             Method::Rk4 => 1.0,
-            Method::Yoshida4 | Method::Suzuki4 => 2.0 * path_of_unit_step(self.method),
+            Method::Yoshida4 | Method::Suzuki4 | Method::Splitting(_) => {
+                2.0 * path_of_unit_step(self.method)
+            }
             _ => 0.1,
         }
     }

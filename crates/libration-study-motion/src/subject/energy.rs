@@ -6,8 +6,8 @@ use libration::simulation::SimulationError;
 use libration::{Float, Method, Scalar};
 use libration_study::{Fit, StudyError, log_spaced_steps};
 
-use super::flow::{Rates, distance, flow, size};
 use super::{Halvings, Problem};
+use libration_analyze::reference_flow::{Rates, distance, flow, size};
 
 /// Turns over which the mean change of the energy is taken. A method of first order needs few,
 /// since its change is of the order of its swing, and small steps, since both are large.

@@ -5,8 +5,8 @@ use libration::simulation::SimulationError;
 use libration::{Float, Method};
 use libration_study::{Fit, StudyError};
 
-use super::flow::{Rates, flow};
 use super::{Halvings, Problem, StudiedState};
+use libration_analyze::reference_flow::{Rates, flow};
 
 /// Samples from which orbits start. The configured start itself may be special: where the force or
 /// the velocity vanishes, symplectic Euler is of order two in one of the coordinates. Of two points

@@ -5,11 +5,12 @@ use libration::ensemble::Execution;
 use libration::linear::Matrix;
 use libration::{Float, Method};
 use libration_analyze::equation_analysis::step_order;
+use libration_analyze::reference_flow::{Rates, size};
 use libration_study::StudyError;
 
 use super::{
     Change, Changes, Errors, Halvings, Horizon, Kind, Law, Orbits, Portrait, Problem,
-    StabilityLimit, StudiedState, Symmetry, energy, errors, flow, portrait, rounding, stability,
+    StabilityLimit, StudiedState, Symmetry, energy, errors, portrait, rounding, stability,
     symmetry,
 };
 
@@ -118,12 +119,12 @@ impl Problem {
         let mut start = self.start.clone();
         start.resize(start.len() + self.dynamics.inputs(), 0.0);
         let places: Vec<usize> = self.states.iter().map(|state| state.place).collect();
-        step_order(self.step_program(method), &start, &places, self.step(ORDER_STEPS))
+        step_order(&self.step_program(method), &start, &places, self.step(ORDER_STEPS))
     }
 
     /// Errors below this are rounding of the reference, which is known to some 10⁻²⁸ of its size.
     pub fn rounding(&self) -> f64 {
-        let sizes = self.orbit().states().iter().map(|state| flow::size(state));
+        let sizes = self.orbit().states().iter().map(|state| size(state));
         RESOLVED * sizes.fold(0.0, f64::max)
     }
 
@@ -166,7 +167,7 @@ impl Problem {
 
     /// Whether no state under study changes at the start.
     pub fn rests_at_start(&self) -> bool {
-        let rates = flow::Rates::new(&self.dynamics).at(&self.start);
+        let rates = Rates::new(&self.dynamics).at(&self.start);
         !self.depends_on_time() && self.states.iter().all(|state| rates[state.place] == 0.0)
     }
 

@@ -4,7 +4,6 @@ mod catalogue;
 mod energy;
 mod equations;
 mod errors;
-mod flow;
 mod measurements;
 mod orbit;
 mod orbits;
@@ -13,7 +12,6 @@ mod problem;
 mod rounding;
 pub(crate) mod settings;
 mod stability;
-mod stepper;
 mod sweep;
 mod symmetry;
 

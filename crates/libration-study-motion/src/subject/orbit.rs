@@ -4,7 +4,7 @@ use libration::Scalar;
 use libration::number::TwoFloat;
 
 use super::Halvings;
-use super::flow::{Point, Rates, flow};
+use libration_analyze::reference_flow::{Point, Rates, flow};
 
 /// Samples of an orbit at which errors are taken: three quarters of a turn, so that no symmetry of
 /// a closed orbit falls on the end.

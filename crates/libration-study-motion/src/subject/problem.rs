@@ -1,15 +1,16 @@
 //! A system with a start and the time of a turn.
 
-use std::sync::OnceLock;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use libration::equations::{Dynamics, StepProgram};
 use libration::number::TwoFloat;
 use libration::simulation::SimulationError;
 use libration::{Float, Method, Model, Scalar, State};
 
-use super::flow::Rates;
 use super::orbit::Orbit;
-use super::stepper::Stepper;
+use libration_analyze::program_stepper::ProgramStepper;
+use libration_analyze::reference_flow::Rates;
 
 /// A system of any kind under study: all that the laboratory must know of it.
 ///
@@ -37,7 +38,7 @@ pub struct Problem {
     /// The states under study: all positions and velocities but for those that only carry time or an integral.
     pub(super) states: Vec<StudiedState>,
     orbit: OnceLock<Orbit>,
-    steps: [OnceLock<StepProgram>; Method::ALL.len()],
+    steps: Mutex<BTreeMap<Method, Arc<StepProgram>>>,
 }
 
 /// A position, a velocity or a state of first order.
@@ -96,7 +97,7 @@ impl Problem {
             equilibrium: None,
             states,
             orbit: OnceLock::new(),
-            steps: [const { OnceLock::new() }; Method::ALL.len()],
+            steps: Mutex::default(),
         }
     }
 
@@ -135,9 +136,10 @@ impl Problem {
     }
 
     /// The program of a step, made once.
-    pub(super) fn step_program(&self, method: Method) -> &StepProgram {
-        let place = Method::ALL.iter().position(|&one| one == method).unwrap_or_default();
-        self.steps[place].get_or_init(|| StepProgram::new(method, &self.dynamics))
+    pub(super) fn step_program(&self, method: Method) -> Arc<StepProgram> {
+        let mut steps = self.steps.lock().unwrap_or_else(PoisonError::into_inner);
+        let new = || Arc::new(StepProgram::new(method, &self.dynamics));
+        Arc::clone(steps.entry(method).or_insert_with(new))
     }
 
     /// `turn / steps` on numbers of type `S`.
@@ -157,7 +159,8 @@ impl Problem {
         if !(dt > S::zero() && dt.is_finite()) {
             return Err(SimulationError::TimeStep { dt: dt.to_f64(), float: S::NAME });
         }
-        let mut stepper = Stepper::new(self.step_program(method), &self.dynamics, start);
+        let step = self.step_program(method);
+        let mut stepper = ProgramStepper::new(&step, &self.dynamics, start);
         watch(0, stepper.state());
         for step in 1..=steps {
             stepper.step(dt);

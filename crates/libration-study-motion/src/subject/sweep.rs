@@ -90,7 +90,8 @@ impl Bound {
 
     /// A step from positions, velocities, the time step and how far the orbit has come, to the same.
     fn watched_step(&self, problem: &Problem, method: Method) -> Program {
-        let step = problem.step_program(method).program();
+        let step = problem.step_program(method);
+        let step = step.program();
         let states = 2 * problem.degrees();
         Program::record(states + 2, |x| {
             let (dt, furthest) = (x[states], x[states + 1]);

@@ -7,7 +7,7 @@ use libration::system::Oscillator;
 use libration::{Elementary, Float, Method, Scalar, State};
 
 use super::Problem;
-use super::stepper::Stepper;
+use libration_analyze::program_stepper::ProgramStepper;
 
 /// Defects of this size are rounding: 1024 bits carry a step to 2⁻¹⁰²⁰, and their products and
 /// sums to far below 2⁻⁹⁰⁰.
@@ -43,18 +43,18 @@ impl Symmetry {
 
 /// The root of the mean square of each defect along the orbit.
 pub(super) fn measure(problem: &Problem, method: Method, steps: u64) -> Symmetry {
-    let step = problem.step_program(method);
+    let step = &*problem.step_program(method);
     let (h, dt) = (problem.step::<TwoFloat>(steps), Wide::from_f64(problem.step(steps)));
     // Every third sample is enough: no symmetric point of an orbit recurs so.
     let at: Vec<_> = problem.orbit().states().iter().skip(1).step_by(3).collect();
     let mut sums = [0.0_f64; 3];
     for &at in &at {
         let rounded: Vec<Wide> = at.iter().map(|x| Wide::from_f64(x.to_f64())).collect();
-        let mut stepper = Stepper::new(step, &problem.dynamics, &rounded);
+        let mut stepper = ProgramStepper::new(step, &problem.dynamics, &rounded);
         let end = stepper.step(dt).to_vec();
         let there = StepJacobian::new(problem, step, &rounded, dt);
         let back = StepJacobian::new(problem, step, &end, -dt);
-        let mut stepper = Stepper::new(step, &problem.dynamics, at);
+        let mut stepper = ProgramStepper::new(step, &problem.dynamics, at);
         stepper.step(h);
         let returned = stepper.step(-h);
         let missed: Vec<f64> = returned.iter().zip(at).map(|(&a, &b)| (a - b).to_f64()).collect();
@@ -91,7 +91,7 @@ impl StepJacobian {
                 du: if i == j { unit(j) } else { Wide::zero() },
             };
             let start: Vec<Dual<Wide>> = at.iter().enumerate().map(seeded).collect();
-            let mut stepper = Stepper::new(step, &problem.dynamics, &start);
+            let mut stepper = ProgramStepper::new(step, &problem.dynamics, &start);
             let end = stepper.step(Dual::constant(dt));
             end.iter().zip(&inverses).map(|(x, &inverse)| x.du * inverse).collect()
         };

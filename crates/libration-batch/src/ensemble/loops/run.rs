@@ -48,7 +48,7 @@ where
     Sys: System<T, D>,
     O: Observer<T, D>,
 {
-    const BASELINE_ONLY: bool = Sys::BASELINE_ONLY;
+    const BASELINE_ONLY: bool = Sys::BASELINE_ONLY || M::BASELINE_ONLY;
 
     type Output = ();
 

@@ -5,7 +5,7 @@ use libration::equations::{Dynamics, Evaluation, StepProgram};
 
 /// A trajectory whose inputs are zero, on numbers of type `S`.
 #[derive(Debug)]
-pub(super) struct Stepper<'p, S> {
+pub struct ProgramStepper<'p, S> {
     step: Evaluation<'p, S>,
     /// Positions, velocities, inputs and the time step.
     inputs: Vec<S>,
@@ -14,18 +14,18 @@ pub(super) struct Stepper<'p, S> {
     next: Vec<S>,
 }
 
-impl<'p, S: Elementary> Stepper<'p, S> {
+impl<'p, S: Elementary> ProgramStepper<'p, S> {
     /// From positions and velocities.
-    pub(super) fn new(step: &'p StepProgram, dynamics: &Dynamics, start: &[S]) -> Self {
+    pub fn new(step: &'p StepProgram, dynamics: &Dynamics, start: &[S]) -> Self {
         let mut inputs = start.to_vec();
         inputs.resize(start.len() + dynamics.inputs() + 1, S::zero());
         let next = Vec::with_capacity(start.len());
-        Stepper { step: step.program().on(), inputs, states: start.len(), next }
+        ProgramStepper { step: step.program().on(), inputs, states: start.len(), next }
     }
 
     /// Positions and velocities after a step of `dt` seconds.
-    pub(super) fn step(&mut self, dt: S) -> &[S] {
-        let Stepper { step, inputs, next, .. } = self;
+    pub fn step(&mut self, dt: S) -> &[S] {
+        let ProgramStepper { step, inputs, next, .. } = self;
         if let Some(last) = inputs.last_mut() {
             *last = dt;
         }
@@ -36,7 +36,7 @@ impl<'p, S: Elementary> Stepper<'p, S> {
     }
 
     /// Positions and velocities.
-    pub(super) fn state(&self) -> &[S] {
+    pub fn state(&self) -> &[S] {
         &self.inputs[..self.states]
     }
 }

@@ -1,0 +1,79 @@
+//! Errors of comparisons.
+
+use libration_work::Interrupted;
+use thiserror::Error;
+
+use super::ComparisonRequest;
+
+/// Error of a comparison of integrators.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ComparisonError {
+    /// The time of the motion is no time.
+    #[error("horizon {horizon}: expected a positive, finite number of seconds")]
+    Horizon {
+        /// The value.
+        horizon: f64,
+    },
+    /// The tolerance is out of range.
+    #[error("tolerance {tolerance}: expected a number from 1e-13 to 0.1")]
+    Tolerance {
+        /// The value.
+        tolerance: f64,
+    },
+    /// The start has another number of coordinates than the system.
+    #[error("start has {found} positions and velocities; expected {expected}")]
+    Start {
+        /// The number given.
+        found: usize,
+        /// That of the system.
+        expected: usize,
+    },
+    /// A coordinate of the start or of the reference is not finite.
+    #[error("the motion is not finite at {time} s; expected a motion that goes on to {horizon} s")]
+    NotFinite {
+        /// The time.
+        time: f64,
+        /// The time of the motion.
+        horizon: f64,
+    },
+    /// The reference is less certain than the tolerance requires.
+    #[error(
+        "the reference is known to {reference_error:.1e} at {horizon} s, not to a tenth of the tolerance {tolerance:e}: small errors grow too fast; help: take a shorter horizon or a larger tolerance"
+    )]
+    Reference {
+        /// The uncertainty, in the measure of the tolerance.
+        reference_error: f64,
+        /// The time of the motion.
+        horizon: f64,
+        /// The tolerance.
+        tolerance: f64,
+    },
+    /// The user stopped the work.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl From<Interrupted> for ComparisonError {
+    fn from(_: Interrupted) -> Self {
+        ComparisonError::Interrupted
+    }
+}
+
+/// Checks a request before any work.
+pub(super) fn check(request: &ComparisonRequest) -> Result<(), ComparisonError> {
+    let ComparisonRequest { horizon, tolerance, .. } = *request;
+    if !(horizon.is_finite() && horizon > 0.0) {
+        return Err(ComparisonError::Horizon { horizon });
+    }
+    if !(1e-13..=0.1).contains(&tolerance) {
+        return Err(ComparisonError::Tolerance { tolerance });
+    }
+    let (found, expected) = (request.start.len(), 2 * request.dynamics.degrees());
+    if found != expected {
+        return Err(ComparisonError::Start { found, expected });
+    }
+    if request.start.iter().any(|x| !x.is_finite()) {
+        return Err(ComparisonError::NotFinite { time: 0.0, horizon });
+    }
+    Ok(())
+}

@@ -1,0 +1,109 @@
+//! Work and precision of all explicit integrators on a motion: the output of `libration analyze --compare`.
+
+mod error;
+mod motion;
+mod prediction;
+mod search;
+
+use libration::Method;
+use libration::equations::Dynamics;
+use libration_work::Work;
+use serde::Serialize;
+
+pub use error::ComparisonError;
+use motion::Motion;
+use prediction::Yardsticks;
+use search::Search;
+
+/// Version of the JSON format.
+pub const SCHEMA: &str = "libration.integrator-comparison/1";
+
+/// A motion, and the error that is allowed.
+#[derive(Clone, Debug)]
+pub struct ComparisonRequest {
+    /// The name of the system.
+    pub system: String,
+    /// The system; its inputs are zero.
+    pub dynamics: Dynamics,
+    /// Positions, then velocities.
+    pub start: Vec<f64>,
+    /// The time of the motion in s.
+    pub horizon: f64,
+    /// The largest error of a state in the course of the motion, relative to the largest size of that state.
+    pub tolerance: f64,
+}
+
+/// All explicit integrators on a motion; the fields are the keys of `analyze --compare --json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    /// The version of this format.
+    pub schema: &'static str,
+    /// The name of the system.
+    pub system: String,
+    /// The time of the motion in s.
+    pub horizon: f64,
+    /// The allowed error.
+    pub tolerance: f64,
+    /// What the reference may be wrong by, in the measure of the tolerance.
+    pub reference_error: f64,
+    /// Whether forces depend on positions alone. Otherwise splitting methods lose their order, and those by tables are left out.
+    pub is_positional: bool,
+    /// The integrators, the cheapest first; those that do not meet the tolerance come last.
+    pub integrators: Vec<ComparedIntegrator>,
+}
+
+/// An integrator on a motion.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ComparedIntegrator {
+    /// The name.
+    pub integrator: &'static str,
+    /// The classical order.
+    pub order: u32,
+    /// Force evaluations of a step, where neighbouring steps share those at their ends.
+    pub stages: usize,
+    /// The norm of the leading error for forces of positions, over the power of the step; none for forces of velocities.
+    pub error_constant: Option<f64>,
+    /// The largest tried step that meets the tolerance in s; none if none does.
+    pub dt: Option<f64>,
+    /// Force evaluations for the whole motion with this step.
+    pub evaluations: Option<f64>,
+    /// The same, predicted from the error constant and the evaluations of the integrator of the same order with the fewest stages; none
+    /// for that integrator.
+    pub predicted_evaluations: Option<f64>,
+    /// The error with this step; without one, the smallest error found.
+    pub error: Option<f64>,
+    /// The largest change of the energy with this step, relative to the energy at the start, or absolute if that is zero; none without an
+    /// energy.
+    pub energy_error: Option<f64>,
+}
+
+/// Compares all explicit integrators on a motion.
+///
+/// # Errors
+/// [`ComparisonError`]: an invalid request, a motion that ends, a reference that is not known to the tolerance, or an interrupt.
+pub fn compare(
+    work: &Work<'_>,
+    request: &ComparisonRequest,
+) -> Result<Comparison, ComparisonError> {
+    error::check(request)?;
+    let is_positional = request.dynamics.is_positional();
+    let motion = work.part("reference", || Motion::new(request))?;
+    let methods: Vec<Method> = match is_positional {
+        true => Method::all().collect(),
+        false => Method::ALL.to_vec(),
+    };
+    let search = Search::new(work, &motion, is_positional)?;
+    let mut integrators = work.sweep("integrators", &methods, |&method| search.of(work, method))?;
+    Yardsticks::new(&integrators).predict(&mut integrators);
+    let cost = |one: &ComparedIntegrator| one.evaluations.unwrap_or(f64::INFINITY);
+    integrators.sort_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.order.cmp(&b.order)));
+    Ok(Comparison {
+        schema: SCHEMA,
+        system: request.system.clone(),
+        horizon: request.horizon,
+        tolerance: request.tolerance,
+        reference_error: motion.reference_error(),
+        is_positional,
+        integrators,
+    })
+}

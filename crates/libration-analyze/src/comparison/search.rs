@@ -1,0 +1,131 @@
+//! The largest step of an integrator that meets the tolerance.
+
+use libration::Method;
+use libration::analysis::NystromCertificate;
+use libration::equations::StepProgram;
+use libration_work::{Interrupted, Work};
+
+use super::ComparedIntegrator;
+use super::motion::{Motion, SAMPLES};
+
+/// Integrators that are tried first: no other needs many times more evaluations than the best of them and is still worth the search.
+const FIRST: [&str; 3] = ["rk4", "blanes-moan-srkn-6-4", "mclachlan-ss17-8"];
+
+/// The search for an integrator ends at this multiple of the evaluations of the best of the [first](FIRST).
+const MOST_OF_BEST: f64 = 64.0;
+
+/// No integrator takes more evaluations than this.
+const MOST: f64 = 4_194_304.0;
+
+/// Halvings of the range between a step that fails and one that meets the tolerance, on a scale of logarithms: to 2 %.
+const HALVINGS: usize = 5;
+
+/// The search on a motion.
+pub(super) struct Search<'m> {
+    motion: &'m Motion<'m>,
+    is_positional: bool,
+    /// The most force evaluations of the motion.
+    most: f64,
+}
+
+impl<'m> Search<'m> {
+    pub(super) fn new(
+        work: &Work<'_>,
+        motion: &'m Motion<'m>,
+        is_positional: bool,
+    ) -> Result<Self, Interrupted> {
+        let mut search = Search { motion, is_positional, most: MOST };
+        let known = FIRST.iter().filter_map(|name| Method::from_name(name));
+        for method in known.filter(|method| is_positional || Method::ALL.contains(method)) {
+            if let Some(evaluations) = search.of(work, method)?.evaluations {
+                search.most = search.most.min(MOST_OF_BEST * evaluations);
+            }
+        }
+        Ok(search)
+    }
+
+    /// The largest step of an integrator that meets the tolerance, and all about it.
+    pub(super) fn of(
+        &self,
+        work: &Work<'_>,
+        method: Method,
+    ) -> Result<ComparedIntegrator, Interrupted> {
+        let step = self.motion.step_of(method);
+        let stages = stages(method);
+        let order = method.order();
+        let certificate = match self.is_positional {
+            true => NystromCertificate::new(method, order as usize + 1),
+            false => None,
+        };
+        let mut found = ComparedIntegrator {
+            integrator: method.name(),
+            order,
+            stages,
+            error_constant: certificate.and_then(|certificate| certificate.error_constant()),
+            dt: None,
+            evaluations: None,
+            predicted_evaluations: None,
+            error: None,
+            energy_error: None,
+        };
+        let (steps, error) = self.fewest_steps(work, &step, stages)?;
+        found.error = error.is_finite().then_some(error);
+        if let Some(steps) = steps {
+            found.dt = Some(self.motion.request.horizon / steps as f64);
+            found.evaluations = Some(steps as f64 * stages as f64);
+            found.energy_error = self.motion.energy_error(&step, steps);
+        }
+        Ok(found)
+    }
+
+    /// The fewest steps that meet the tolerance, so that twice as many do, too, and their error; without such, the smallest error.
+    fn fewest_steps(
+        &self,
+        work: &Work<'_>,
+        step: &StepProgram,
+        stages: usize,
+    ) -> Result<(Option<u64>, f64), Interrupted> {
+        let tolerance = self.motion.request.tolerance;
+        let (mut steps, mut least) = (SAMPLES, f64::INFINITY);
+        let mut candidate: Option<(u64, f64)> = None;
+        let (mut low, mut error) = loop {
+            work.check()?;
+            if steps as f64 * stages as f64 > self.most {
+                return Ok((None, least));
+            }
+            let error = self.motion.error(step, steps);
+            least = least.min(error);
+            candidate = match candidate {
+                Some(found) if error <= tolerance => break found,
+                _ if error <= tolerance => Some((steps, error)),
+                _ => None,
+            };
+            steps *= 2;
+        };
+        // `low` meets the tolerance; half of it does not, unless it is the first.
+        let mut high = low / 2;
+        for _ in 0..HALVINGS {
+            work.check()?;
+            let middle =
+                ((low as f64 * high as f64).sqrt() / SAMPLES as f64).round() as u64 * SAMPLES;
+            if middle <= high || middle >= low || high < SAMPLES {
+                break;
+            }
+            let here = self.motion.error(step, middle);
+            if here <= tolerance { (low, error) = (middle, here) } else { high = middle }
+        }
+        Ok((Some(low), error))
+    }
+}
+
+/// Force evaluations of a step, where neighbouring steps share those at their ends.
+fn stages(method: Method) -> usize {
+    use libration::Integrator;
+    match method {
+        Method::Splitting(table) => table.coefficients.stages(),
+        Method::VelocityVerlet | Method::TextbookVerlet => 1,
+        Method::Yoshida4 => 3,
+        Method::Suzuki4 => 5,
+        method => method.evaluations(),
+    }
+}

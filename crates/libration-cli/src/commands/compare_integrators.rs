@@ -1,0 +1,131 @@
+//! `libration analyze --compare`.
+
+use std::fmt::Write as _;
+
+use libration::ensemble::dynamics_of;
+use libration_analyze::comparison::{
+    ComparedIntegrator, Comparison, ComparisonError, ComparisonRequest, compare,
+};
+use libration_report::notation::plural;
+use libration_work::Work;
+
+use super::equation_file;
+use crate::args::AnalyzeArgs;
+use crate::error::Failure;
+use crate::interrupt;
+use crate::progress::Reporter;
+
+/// Integrators in the text; JSON has all of them.
+const SHOWN: usize = 20;
+
+/// Returns the comparison as text or as JSON.
+pub(super) fn run(args: &AnalyzeArgs) -> Result<String, Failure> {
+    let (Some(system), Some(horizon), Some(tolerance)) =
+        (&args.system, args.horizon, args.tolerance)
+    else {
+        return Err(Failure::usage("--compare requires --system, --tolerance and --horizon"));
+    };
+    let (system, dynamics, start) = match equation_file::system(system) {
+        Some(file) => {
+            let file = file?;
+            let start = file.q.iter().chain(&file.v).copied().collect();
+            (file.name.clone(), file.equations.dynamics().clone(), start)
+        }
+        None => {
+            let problem = system.resolve()?;
+            let dynamics = dynamics_of(problem.system, problem.q.len());
+            let dynamics = dynamics.ok_or_else(|| {
+                Failure::usage(problem.system.entry().wrong_dimension(problem.q.len()))
+            })?;
+            let start = problem.q.iter().chain(&problem.v).copied().collect();
+            (problem.system.name().to_owned(), dynamics, start)
+        }
+    };
+    let request = ComparisonRequest { system, dynamics, start, horizon, tolerance };
+    let reporter = Reporter::new(args.json);
+    let found = compare(&Work::new(&reporter, interrupt::listen()), &request);
+    reporter.clear();
+    let found = found.map_err(|error| match error {
+        ComparisonError::Interrupted => Failure::Interrupted(error.to_string()),
+        error => Failure::usage(error),
+    })?;
+    match args.json {
+        true => Ok(serde_json::to_string_pretty(&found).map_err(Failure::run)? + "\n"),
+        false => Ok(describe(&found)),
+    }
+}
+
+// Writing into a string cannot fail.
+fn describe(comparison: &Comparison) -> String {
+    let Comparison { system, horizon, tolerance, reference_error, is_positional, .. } = comparison;
+    let fit: Vec<&ComparedIntegrator> =
+        comparison.integrators.iter().filter(|one| one.evaluations.is_some()).collect();
+    let mut text = match fit.first() {
+        Some(best) => format!(
+            "{}: the cheapest of {} for an error of {tolerance:e} over {horizon} s of {system}, with steps of {} s\n\n",
+            best.integrator,
+            plural(comparison.integrators.len(), "integrator"),
+            number(best.dt),
+        ),
+        None => format!(
+            "No integrator meets an error of {tolerance:e} over {horizon} s of {system}.\n\n"
+        ),
+    };
+    let _ = writeln!(
+        text,
+        "  {:<34} {:>5} {:>6} {:>10} {:>12} {:>12} {:>10} {:>10}",
+        "integrator", "order", "stages", "dt (s)", "evaluations", "predicted", "error", "energy"
+    );
+    for one in fit.iter().take(SHOWN) {
+        let _ = writeln!(
+            text,
+            "  {:<34} {:>5} {:>6} {:>10} {:>12} {:>12} {:>10} {:>10}",
+            one.integrator,
+            one.order,
+            one.stages,
+            number(one.dt),
+            whole(one.evaluations),
+            whole(one.predicted_evaluations),
+            number(one.error),
+            number(one.energy_error),
+        );
+    }
+    let more = fit.len().saturating_sub(SHOWN);
+    let without = comparison.integrators.len() - fit.len();
+    let _ = writeln!(text);
+    if more > 0 {
+        let _ = writeln!(text, "{} more in --json.", plural(more, "integrator"));
+    }
+    if without > 0 {
+        let _ = writeln!(
+            text,
+            "{} within 64 times the evaluations of the best common ones.",
+            plural(without, "integrator")
+                + if without == 1 {
+                    " does not meet the tolerance"
+                } else {
+                    " do not meet the tolerance"
+                },
+        );
+    }
+    if !is_positional {
+        text += "Splitting methods by tables are left out: a force of this system depends on a velocity.\n";
+    }
+    let _ = writeln!(
+        text,
+        "Errors: the largest of a state at eighths of the time, relative to its largest size; the reference is right to {reference_error:.0e}."
+    );
+    text += "Predicted: from error constants and the integrator of the same order with the fewest stages.\n";
+    text
+}
+
+fn number(x: Option<f64>) -> String {
+    x.map_or_else(
+        || "-".to_owned(),
+        |x| if (1e-3..1e4).contains(&x) { format!("{x:.5}") } else { format!("{x:.2e}") },
+    )
+}
+
+fn whole(x: Option<f64>) -> String {
+    x.map_or_else(|| "-".to_owned(), |x| format!("{x:.0}"))
+}
