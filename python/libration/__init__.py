@@ -13,6 +13,7 @@ from ._native import __version__
 from . import datasets, hosts, plants, policies
 from .analysis import Advice, Analysis, advise, analyze
 from .bits import FirstDifference, first_difference
+from .comparison import IntegratorComparison, compare_integrators
 from .energy import EnergyReport, audit_energy
 from .ensemble import Ensemble
 from .environments import Environments
@@ -39,7 +40,7 @@ from .probing import probe
 from .replay import ReplayBuffer
 from .rollout import Rollout
 from .simulation import Trajectory, simulate
-from .systems import IMPLICIT_INTEGRATORS, INTEGRATORS, SYSTEMS, CustomSystem, System
+from .systems import IMPLICIT_INTEGRATORS, INTEGRATORS, SPLITTING_METHODS, SYSTEMS, CustomSystem, System
 
 __all__ = [
     "Advice",
@@ -59,6 +60,7 @@ __all__ = [
     "IMPLICIT_INTEGRATORS",
     "Identification",
     "INTEGRATORS",
+    "IntegratorComparison",
     "LQG",
     "LQR",
     "LogNormal",
@@ -76,6 +78,7 @@ __all__ = [
     "ReplayBuffer",
     "Results",
     "Rollout",
+    "SPLITTING_METHODS",
     "STUDIES",
     "SYSTEMS",
     "StateFeedback",
@@ -88,6 +91,7 @@ __all__ = [
     "advise",
     "analyze",
     "audit_energy",
+    "compare_integrators",
     "datasets",
     "first_difference",
     "gains",

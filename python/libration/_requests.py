@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._settings import count, nearest, number
+from ._settings import count, number
 from .perturbations import gains, law, numbers
 from .perturbations import latency as _latency
-from .systems import IMPLICIT_INTEGRATORS, INTEGRATORS, System
+from .systems import IMPLICIT_INTEGRATORS, INTEGRATORS, SPLITTING_METHODS, System
 
 
 def step_request(system: System, integrator: Any, dt: Any, q: Any, v: Any) -> dict[str, Any]:
     """Return a system, its start and its step in the format of the engine."""
     text("integrator", integrator)
-    known = [*INTEGRATORS, *IMPLICIT_INTEGRATORS]
+    known = [*INTEGRATORS, *IMPLICIT_INTEGRATORS, *SPLITTING_METHODS]
     if integrator not in known:
-        raise ValueError(f"unknown integrator {integrator!r}: {nearest(integrator, known)}")
+        near = f"did you mean {close[0]!r}? " if (close := get_close_matches(integrator, known, n=1)) else ""
+        listed = ", ".join(known[: len(INTEGRATORS) + len(IMPLICIT_INTEGRATORS)])
+        raise ValueError(f"unknown integrator {integrator!r}: {near}known are {listed} and libration.SPLITTING_METHODS")
     return {
         "system": system._request(),
         "q": coordinates("q", q),

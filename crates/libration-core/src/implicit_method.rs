@@ -135,6 +135,11 @@ impl AnyMethod {
         explicit.chain(ImplicitMethod::ALL.into_iter().map(AnyMethod::Implicit))
     }
 
+    /// Whether it is one of the [published splitting methods](crate::integrator::SplittingTable::ALL).
+    pub const fn is_table(self) -> bool {
+        matches!(self, AnyMethod::Explicit(Method::Splitting(_)))
+    }
+
     /// Name on the command line and in configurations.
     pub const fn name(self) -> &'static str {
         match self {
@@ -156,6 +161,14 @@ impl AnyMethod {
         match self {
             AnyMethod::Explicit(method) => method.summary(),
             AnyMethod::Implicit(method) => method.summary(),
+        }
+    }
+
+    /// Authors, year and place of the coefficients of a published splitting method; none for others.
+    pub const fn source(self) -> Option<&'static str> {
+        match self {
+            AnyMethod::Explicit(Method::Splitting(table)) => Some(table.source),
+            AnyMethod::Explicit(_) | AnyMethod::Implicit(_) => None,
         }
     }
 

@@ -1,6 +1,7 @@
 //! Systems, integrators and studies for Python.
 
 use libration::catalog::ENTRIES;
+use libration::integrator::SplittingTable;
 use libration::{ImplicitMethod, Method};
 use libration_analyze::Stepping;
 use libration_lab::STUDIES;
@@ -32,6 +33,13 @@ pub(crate) fn _integrators() -> Vec<(&'static str, &'static str)> {
     let methods = Method::ALL.map(|method| (method.name(), method.summary()));
     let exact = (Stepping::EXACT, libration::integrator::Exact::SUMMARY);
     methods.into_iter().chain([exact]).collect()
+}
+
+/// Returns all published splitting methods: name, description, source.
+#[pyfunction]
+pub(crate) fn _splitting_methods() -> Vec<(&'static str, &'static str, &'static str)> {
+    let tables = SplittingTable::ALL.into_iter().flatten();
+    tables.map(|table| (table.name, table.summary, table.source)).collect()
 }
 
 /// Returns all implicit integrators with descriptions.

@@ -152,7 +152,7 @@ impl Raised for DatasetError {
 }
 
 /// Returns the exception of interrupted work.
-fn interrupted() -> PyErr {
+pub(crate) fn interrupted() -> PyErr {
     PyKeyboardInterrupt::new_err("interrupted")
 }
 

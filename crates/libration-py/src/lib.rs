@@ -9,6 +9,7 @@ mod batch;
 mod bench;
 mod catalogue;
 mod checked_mutex;
+mod comparison;
 mod datasets;
 mod energy;
 mod episode_states;
@@ -39,9 +40,13 @@ mod _native {
     #[pymodule_export]
     use crate::bench::{_seconds_of_rollouts, _seconds_of_steps};
     #[pymodule_export]
-    use crate::catalogue::{_implicit_integrators, _integrators, _parameters, _studies, _systems};
+    use crate::catalogue::{
+        _implicit_integrators, _integrators, _parameters, _splitting_methods, _studies, _systems,
+    };
     #[pymodule_export]
     use crate::checked_mutex::_forked;
+    #[pymodule_export]
+    use crate::comparison::_compare_integrators;
     #[pymodule_export]
     use crate::datasets::{_dataset_settings, _verify_dataset, _write_dataset};
     #[pymodule_export]

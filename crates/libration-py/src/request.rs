@@ -13,7 +13,7 @@ use libration_settings::{limits, suggestions};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 
-use crate::error::{Raised, unknown, value_error};
+use crate::error::{Raised, value_error};
 
 /// The name of a system, and those of its parameters that are not the default.
 pub(crate) type SystemRequest = (String, Vec<(String, f64)>);
@@ -50,8 +50,7 @@ pub(crate) fn system((name, parameters): &SystemRequest) -> PyResult<(AnySystem,
 
 /// The integrator of that name, or exact steps.
 pub(crate) fn stepping(name: &str) -> PyResult<Stepping> {
-    let known: Vec<&str> = AnyMethod::all().map(AnyMethod::name).chain([Stepping::EXACT]).collect();
-    Stepping::from_name(name).ok_or_else(|| unknown("integrator", name, known))
+    Stepping::from_name(name).ok_or_else(|| unknown_integrator(name, true))
 }
 
 /// The integrator of that name, explicit or implicit.
@@ -60,8 +59,19 @@ pub(crate) fn any_method(name: &str) -> PyResult<AnyMethod> {
         let what = "are those of simulate and analyze only, of linear systems of the catalogue";
         return Err(value_error(format!("integrator is `{name}`, but exact steps {what}")));
     }
-    let known: Vec<&str> = AnyMethod::all().map(AnyMethod::name).collect();
-    AnyMethod::from_name(name).ok_or_else(|| unknown("integrator", name, known))
+    AnyMethod::from_name(name).ok_or_else(|| unknown_integrator(name, false))
+}
+
+/// The error for an unknown integrator: the nearest of all, and a list without the published splitting methods.
+fn unknown_integrator(name: &str, with_exact: bool) -> PyErr {
+    let near = suggestions::nearest(name, AnyMethod::all().map(AnyMethod::name));
+    let near = near.map_or_else(String::new, |near| format!("did you mean `{near}`? "));
+    let short = AnyMethod::all().filter(|method| !method.is_table()).map(AnyMethod::name);
+    let short = short.chain(with_exact.then_some(Stepping::EXACT)).map(|name| format!("`{name}`"));
+    let short = short.collect::<Vec<_>>().join(", ");
+    value_error(format!(
+        "unknown integrator `{name}`: {near}the integrators are {short} and libration.SPLITTING_METHODS"
+    ))
 }
 
 /// The explicit integrator of that name.
@@ -71,7 +81,7 @@ pub(crate) fn method(name: &str) -> PyResult<Method> {
         AnyMethod::Implicit(_) => {
             let known = Method::ALL.map(Method::name).join(", ");
             Err(value_error(format!(
-                "integrator is `{name}`, but implicit ones are those of simulate and analyze only; expected one of {known}"
+                "integrator is `{name}`, but implicit ones are those of simulate and analyze only; expected one of {known}, or a name of libration.SPLITTING_METHODS"
             )))
         }
     }

@@ -203,7 +203,10 @@ fn system_names() -> PossibleValuesParser {
 }
 
 pub(super) fn integrators() -> impl TypedValueParser<Value = Stepping> {
-    let value = |method: AnyMethod| PossibleValue::new(method.name()).help(method.summary());
+    // The published splitting methods are too many for messages; `libration list` has them.
+    let value = |method: AnyMethod| {
+        PossibleValue::new(method.name()).help(method.summary()).hide(method.is_table())
+    };
     let exact = PossibleValue::new(Stepping::EXACT).help(Exact::SUMMARY);
     PossibleValuesParser::new(AnyMethod::all().map(value).chain([exact]))
         .try_map(|name| Stepping::from_name(&name).ok_or("unknown integrator"))

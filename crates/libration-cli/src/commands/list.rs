@@ -57,7 +57,14 @@ fn examples(name: &str, json: bool) -> Result<String, Failure> {
 
 fn as_json() -> Value {
     let study = |study: &&dyn Study| json!({ "name": study.name(), "question": study.question() });
-    let integrator = |method: AnyMethod| json!({ "name": method.name(), "order": method.order(), "summary": method.summary() });
+    let integrator = |method: AnyMethod| {
+        json!({
+            "name": method.name(),
+            "order": method.order(),
+            "summary": method.summary(),
+            "source": method.source(),
+        })
+    };
     // An exact step has no order.
     let exact = json!({ "name": Exact::NAME, "order": null, "summary": Exact::SUMMARY });
     json!({
@@ -89,11 +96,15 @@ fn system_json(entry: &Entry) -> Value {
 
 fn as_text() -> String {
     let studies: Vec<_> = STUDIES.studies.iter().map(|s| (s.name(), s.question())).collect();
-    let integrators = AnyMethod::all().map(|m| (m.name(), m.summary()));
+    let of_kind = |is_table: bool| AnyMethod::all().filter(move |m| m.is_table() == is_table);
+    let tables: Vec<_> = of_kind(true).map(|m| (m.name(), m.summary())).collect();
+    let integrators = of_kind(false).map(|m| (m.name(), m.summary()));
     let integrators: Vec<_> = integrators.chain([(Exact::NAME, Exact::SUMMARY)]).collect();
     let systems: String = ENTRIES.iter().map(|entry| system_text(entry)).collect();
-    let (studies, integrators) = (lines(&studies), lines(&integrators));
-    format!("Studies\n{studies}\nSystems\n{systems}\nIntegrators\n{integrators}")
+    let (studies, integrators, tables) = (lines(&studies), lines(&integrators), lines(&tables));
+    format!(
+        "Studies\n{studies}\nSystems\n{systems}\nIntegrators\n{integrators}\nPublished splitting methods (sources with --json)\n{tables}"
+    )
 }
 
 /// Returns one line per name.
