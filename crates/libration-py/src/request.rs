@@ -13,7 +13,7 @@ use libration_settings::{limits, suggestions};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 
-use crate::error::{Raised, value_error};
+use crate::error::{Raised, unknown, value_error};
 
 /// The name of a system, and those of its parameters that are not the default.
 pub(crate) type SystemRequest = (String, Vec<(String, f64)>);

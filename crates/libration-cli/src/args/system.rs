@@ -5,6 +5,7 @@ use std::ffi::OsStr;
 use std::path::Path;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::error::ErrorKind;
 use clap::{Arg, Args, Command};
 use libration::catalog::{ENTRIES, Entry};
 use libration::integrator::Exact;
@@ -203,13 +204,42 @@ fn system_names() -> PossibleValuesParser {
 }
 
 pub(super) fn integrators() -> impl TypedValueParser<Value = Stepping> {
-    // The published splitting methods are too many for messages; `libration list` has them.
-    let value = |method: AnyMethod| {
-        PossibleValue::new(method.name()).help(method.summary()).hide(method.is_table())
-    };
-    let exact = PossibleValue::new(Stepping::EXACT).help(Exact::SUMMARY);
-    PossibleValuesParser::new(AnyMethod::all().map(value).chain([exact]))
-        .try_map(|name| Stepping::from_name(&name).ok_or("unknown integrator"))
+    IntegratorParser
+}
+
+/// Names of integrators. Messages list those with code of their own and the nearest of all.
+#[derive(Clone)]
+struct IntegratorParser;
+
+impl TypedValueParser for IntegratorParser {
+    type Value = Stepping;
+
+    fn parse_ref(
+        &self,
+        command: &Command,
+        _: Option<&Arg>,
+        value: &OsStr,
+    ) -> Result<Stepping, clap::Error> {
+        let name = value.to_string_lossy();
+        Stepping::from_name(&name).ok_or_else(|| {
+            let names = || AnyMethod::all().map(AnyMethod::name).chain([Stepping::EXACT]);
+            let near = suggestions::nearest(&name, names());
+            let near = near.map_or_else(String::new, |near| format!("did you mean `{near}`? "));
+            let listed = AnyMethod::all().filter(|method| !method.is_table()).map(AnyMethod::name);
+            let listed: Vec<&str> = listed.chain([Stepping::EXACT]).collect();
+            let text = format!(
+                "invalid value '{name}' for '--integrator <NAME>': {near}expected one of {}, or a published splitting method of `libration list`\n",
+                listed.join(", ")
+            );
+            clap::Error::raw(ErrorKind::InvalidValue, text).with_cmd(command)
+        })
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        let value = |method: AnyMethod| PossibleValue::new(method.name()).help(method.summary());
+        let exact = PossibleValue::new(Stepping::EXACT).help(Exact::SUMMARY);
+        Some(Box::new(AnyMethod::all().map(value).chain([exact])))
+    }
 }
 
 #[cfg(test)]

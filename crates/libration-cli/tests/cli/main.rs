@@ -8,6 +8,7 @@ mod audit;
 mod bench;
 mod clocks;
 mod closed_loop;
+mod comparison;
 mod deadline_misses;
 mod equations;
 mod exit_codes;

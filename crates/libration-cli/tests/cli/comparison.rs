@@ -1,0 +1,64 @@
+//! Tests of published splitting methods and of `libration analyze --compare`.
+
+use assert_cmd::Command;
+use predicates::prelude::*;
+use predicates::str::contains;
+use serde_json::Value;
+
+fn libration(words: &str) -> assert_cmd::assert::Assert {
+    Command::cargo_bin("libration").unwrap().args(words.split_whitespace()).assert()
+}
+
+#[test]
+fn the_cheapest_integrator_of_a_motion_comes_first() {
+    let words = "analyze --system kepler --compare --tolerance 1e-5 --horizon 20";
+    libration(words).success().stdout(contains("the cheapest of 89 integrators"));
+    let output = libration(&format!("{words} --json")).success().get_output().stdout.clone();
+    let found: Value = serde_json::from_slice(&output).unwrap();
+    assert_eq!(found["schema"], "libration.integrator-comparison/1");
+    let costs: Vec<f64> = found["integrators"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map_while(|one| one["evaluations"].as_f64())
+        .collect();
+    assert!(costs.len() > 40 && costs.is_sorted(), "{costs:?}");
+}
+
+#[test]
+fn wrong_comparisons_are_usage_errors() {
+    let fails = |words: &str, what: &str| {
+        libration(words).failure().code(2).stderr(contains(what));
+    };
+    fails("analyze --system kepler --compare", "--tolerance");
+    fails("analyze --system kepler --compare --tolerance 2 --horizon 1", "from 1e-13 to 0.1");
+    fails(
+        "analyze --system kepler --compare --tolerance 1e-3 --horizon 1 --dt 0.1",
+        "cannot be used with",
+    );
+    fails("analyze --system kepler --integrator rk4 --dt 0.1 --tolerance 1e-3", "--compare");
+    fails(
+        "analyze --system kepler --q 1,0 --v 0,0 --compare --tolerance 1e-6 --horizon 9",
+        "the reference is known to",
+    );
+}
+
+#[test]
+fn published_methods_are_listed_with_sources_and_run() {
+    libration("list").success().stdout(contains("blanes-moan-srkn-11-6"));
+    let output = libration("list --json").success().get_output().stdout.clone();
+    let all: Value = serde_json::from_slice(&output).unwrap();
+    let sources =
+        all["integrators"].as_array().unwrap().iter().filter(|one| one["source"].is_string());
+    assert_eq!(sources.count(), 80);
+    let step = "--system oscillator --integrator blanes-moan-srkn-11-6 --dt 0.1";
+    libration(&format!("analyze {step}"))
+        .success()
+        .stdout(contains("order 6 for forces of positions, symmetric"));
+    libration(&format!("simulate {step} --steps 9 --count 3")).success();
+    // Messages do not list all of them, but find the nearest.
+    libration("analyze --system oscillator --integrator blanes-moan-srkn --dt 0.1")
+        .failure()
+        .code(2)
+        .stderr(contains("did you mean `blanes-moan-srkn-").and(contains("kahan-li").not()));
+}
