@@ -87,6 +87,7 @@ fn quadrature_order(word: &[Letter]) -> usize {
 }
 
 #[cfg(test)]
+#[allow(clippy::excessive_precision, reason = "digits as printed")]
 mod tests {
     use std::collections::BTreeSet;
 

@@ -129,15 +129,15 @@ pub enum AnyMethod {
 }
 
 impl AnyMethod {
-    /// All of them, the explicit ones first.
+    /// Those with code of their own, the explicit ones first.
     pub fn all() -> impl Iterator<Item = AnyMethod> {
-        let explicit = Method::all().map(AnyMethod::Explicit);
+        let explicit = Method::ALL.into_iter().map(AnyMethod::Explicit);
         explicit.chain(ImplicitMethod::ALL.into_iter().map(AnyMethod::Implicit))
     }
 
-    /// Whether it is one of the [published splitting methods](crate::integrator::SplittingTable::ALL).
-    pub const fn is_table(self) -> bool {
-        matches!(self, AnyMethod::Explicit(Method::Splitting(_)))
+    /// The [published splitting methods](crate::integrator::SplittingTable::ALL).
+    pub fn tables() -> impl Iterator<Item = AnyMethod> {
+        Method::tables().map(AnyMethod::Explicit)
     }
 
     /// Name on the command line and in configurations.
@@ -182,7 +182,7 @@ impl AnyMethod {
 
     /// The method of that name, if there is one.
     pub fn from_name(name: &str) -> Option<AnyMethod> {
-        AnyMethod::all().find(|method| method.name() == name)
+        AnyMethod::all().chain(AnyMethod::tables()).find(|method| method.name() == name)
     }
 }
 

@@ -155,10 +155,14 @@ impl Method {
         }
     }
 
+    /// The published splitting methods.
+    pub fn tables() -> impl Iterator<Item = Method> {
+        SplittingTable::ALL.into_iter().flatten().map(Method::Splitting)
+    }
+
     /// All of them: those with code of their own, then the published splitting methods.
     pub fn all() -> impl Iterator<Item = Method> {
-        let tables = SplittingTable::ALL.into_iter().flatten().map(Method::Splitting);
-        Method::ALL.into_iter().chain(tables)
+        Method::ALL.into_iter().chain(Method::tables())
     }
 
     /// The method of that name, if there is one.

@@ -64,9 +64,12 @@ pub(crate) fn any_method(name: &str) -> PyResult<AnyMethod> {
 
 /// The error for an unknown integrator: the nearest of all, and a list without the published splitting methods.
 fn unknown_integrator(name: &str, with_exact: bool) -> PyErr {
-    let near = suggestions::nearest(name, AnyMethod::all().map(AnyMethod::name));
+    let near = suggestions::nearest(
+        name,
+        AnyMethod::all().chain(AnyMethod::tables()).map(AnyMethod::name),
+    );
     let near = near.map_or_else(String::new, |near| format!("did you mean `{near}`? "));
-    let short = AnyMethod::all().filter(|method| !method.is_table()).map(AnyMethod::name);
+    let short = AnyMethod::all().map(AnyMethod::name);
     let short = short.chain(with_exact.then_some(Stepping::EXACT)).map(|name| format!("`{name}`"));
     let short = short.collect::<Vec<_>>().join(", ");
     value_error(format!(

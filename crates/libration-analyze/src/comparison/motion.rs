@@ -37,7 +37,7 @@ impl<'r> Motion<'r> {
             reference.push(next);
         }
         // An error of a double grows as much as that of the reference does.
-        if !(reference_error <= tolerance / 10.0) {
+        if reference_error.is_nan() || reference_error > tolerance / 10.0 {
             return Err(ComparisonError::Reference { reference_error, horizon, tolerance });
         }
         let largest = |i: usize| reference.iter().map(|x| x[i].to_f64().abs()).fold(0.0, f64::max);

@@ -222,10 +222,10 @@ impl TypedValueParser for IntegratorParser {
     ) -> Result<Stepping, clap::Error> {
         let name = value.to_string_lossy();
         Stepping::from_name(&name).ok_or_else(|| {
-            let names = || AnyMethod::all().map(AnyMethod::name).chain([Stepping::EXACT]);
-            let near = suggestions::nearest(&name, names());
+            let all = AnyMethod::all().chain(AnyMethod::tables()).map(AnyMethod::name);
+            let near = suggestions::nearest(&name, all.chain([Stepping::EXACT]));
             let near = near.map_or_else(String::new, |near| format!("did you mean `{near}`? "));
-            let listed = AnyMethod::all().filter(|method| !method.is_table()).map(AnyMethod::name);
+            let listed = AnyMethod::all().map(AnyMethod::name);
             let listed: Vec<&str> = listed.chain([Stepping::EXACT]).collect();
             let text = format!(
                 "invalid value '{name}' for '--integrator <NAME>': {near}expected one of {}, or a published splitting method of `libration list`\n",
@@ -238,7 +238,7 @@ impl TypedValueParser for IntegratorParser {
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
         let value = |method: AnyMethod| PossibleValue::new(method.name()).help(method.summary());
         let exact = PossibleValue::new(Stepping::EXACT).help(Exact::SUMMARY);
-        Some(Box::new(AnyMethod::all().map(value).chain([exact])))
+        Some(Box::new(AnyMethod::all().chain(AnyMethod::tables()).map(value).chain([exact])))
     }
 }
 

@@ -70,7 +70,7 @@ fn as_json() -> Value {
     json!({
         "studies": STUDIES.studies.iter().map(study).collect::<Vec<_>>(),
         "systems": ENTRIES.map(system_json),
-        "integrators": AnyMethod::all().map(integrator).chain([exact]).collect::<Vec<_>>(),
+        "integrators": AnyMethod::all().chain(AnyMethod::tables()).map(integrator).chain([exact]).collect::<Vec<_>>(),
     })
 }
 
@@ -96,9 +96,8 @@ fn system_json(entry: &Entry) -> Value {
 
 fn as_text() -> String {
     let studies: Vec<_> = STUDIES.studies.iter().map(|s| (s.name(), s.question())).collect();
-    let of_kind = |is_table: bool| AnyMethod::all().filter(move |m| m.is_table() == is_table);
-    let tables: Vec<_> = of_kind(true).map(|m| (m.name(), m.summary())).collect();
-    let integrators = of_kind(false).map(|m| (m.name(), m.summary()));
+    let tables: Vec<_> = AnyMethod::tables().map(|m| (m.name(), m.summary())).collect();
+    let integrators = AnyMethod::all().map(|m| (m.name(), m.summary()));
     let integrators: Vec<_> = integrators.chain([(Exact::NAME, Exact::SUMMARY)]).collect();
     let systems: String = ENTRIES.iter().map(|entry| system_text(entry)).collect();
     let (studies, integrators, tables) = (lines(&studies), lines(&integrators), lines(&tables));
