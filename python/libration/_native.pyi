@@ -42,6 +42,7 @@ __all__ = [
     "_seconds_of_steps",
     "_simulate",
     "_simulate_equations",
+    "_splitting_methods",
     "_studies",
     "_systems",
     "_verify_dataset",

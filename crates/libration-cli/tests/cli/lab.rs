@@ -183,7 +183,7 @@ fn the_list_as_json_has_stable_keys() {
     let list: Value = serde_json::from_str(&stdout(&printed)).unwrap();
     let keys = |value: &Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
     assert_eq!(keys(&list), ["integrators", "studies", "systems"]);
-    assert_eq!(keys(&list["integrators"][0]), ["name", "order", "summary"]);
+    assert_eq!(keys(&list["integrators"][0]), ["name", "order", "source", "summary"]);
     let system = &list["systems"][0];
     assert_eq!(keys(system), ["dimensions", "name", "parameters", "q", "summary", "v"]);
     assert_eq!(system["dimensions"], serde_json::json!({ "max": 8, "min": 1 }));
