@@ -50,7 +50,9 @@ pub fn flow(rates: &mut Rates<'_, TwoFloat>, start: &[TwoFloat], time: TwoFloat)
     let (mut pieces, mut coarse) = (2, after(1));
     loop {
         let fine = after(pieces);
-        let off = distance(&fine, &coarse) / size(&fine);
+        let apart = distance(&fine, &coarse);
+        // What rests at the origin has no size.
+        let off = if apart == 0.0 { 0.0 } else { apart / size(&fine) };
         // What is not a number will not become one.
         if off <= TARGET || pieces >= MOST_PIECES || off.is_nan() {
             return (fine, off);

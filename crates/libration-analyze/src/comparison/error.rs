@@ -29,7 +29,9 @@ pub enum ComparisonError {
         expected: usize,
     },
     /// A coordinate of the start or of the reference is not finite.
-    #[error("the motion is not finite at {time} s; expected a motion that goes on to {horizon} s")]
+    #[error(
+        "the motion is not finite at {time} s; expected a motion that is finite until {horizon} s"
+    )]
     NotFinite {
         /// The time.
         time: f64,

@@ -13,6 +13,7 @@ use serde::Serialize;
 pub use error::ComparisonError;
 use motion::Motion;
 use prediction::Yardsticks;
+pub use search::MOST_OF_BEST;
 use search::Search;
 
 /// Version of the JSON format.

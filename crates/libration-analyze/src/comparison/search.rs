@@ -1,8 +1,9 @@
 //! The largest step of an integrator that meets the tolerance.
 
-use libration::Method;
 use libration::analysis::NystromCertificate;
 use libration::equations::StepProgram;
+use libration::integrator::{SUZUKI4, YOSHIDA4};
+use libration::{Integrator, Method};
 use libration_work::{Interrupted, Work};
 
 use super::ComparedIntegrator;
@@ -11,8 +12,8 @@ use super::motion::{Motion, SAMPLES};
 /// Integrators that are tried first: no other needs many times more evaluations than the best of them and is still worth the search.
 const FIRST: [&str; 3] = ["rk4", "blanes-moan-srkn-6-4", "mclachlan-ss17-8"];
 
-/// The search for an integrator ends at this multiple of the evaluations of the best of the [first](FIRST).
-const MOST_OF_BEST: f64 = 64.0;
+/// The search for an integrator ends at this multiple of the evaluations of the best of some common ones.
+pub const MOST_OF_BEST: f64 = 64.0;
 
 /// No integrator takes more evaluations than this.
 const MOST: f64 = 4_194_304.0;
@@ -120,12 +121,11 @@ impl<'m> Search<'m> {
 
 /// Force evaluations of a step, where neighbouring steps share those at their ends.
 fn stages(method: Method) -> usize {
-    use libration::Integrator;
     match method {
         Method::Splitting(table) => table.coefficients.stages(),
         Method::VelocityVerlet | Method::TextbookVerlet => 1,
-        Method::Yoshida4 => 3,
-        Method::Suzuki4 => 5,
+        Method::Yoshida4 => YOSHIDA4.weights.len(),
+        Method::Suzuki4 => SUZUKI4.weights.len(),
         method => method.evaluations(),
     }
 }

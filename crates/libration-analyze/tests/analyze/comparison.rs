@@ -83,6 +83,12 @@ fn forces_of_velocities_leave_tables_out_and_have_no_predictions() {
 }
 
 #[test]
+fn a_start_at_rest_is_no_error() {
+    let comparison = compared(&request("oscillator", &[0.0, 0.0], 10.0, 1e-6)).unwrap();
+    assert!(comparison.integrators.iter().all(|one| one.error == Some(0.0)));
+}
+
+#[test]
 fn wrong_requests_are_refused_before_any_work() {
     let fails = |request| compared(&request).unwrap_err();
     assert_eq!(fails(ellipse(0.5)), ComparisonError::Tolerance { tolerance: 0.5 });

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use libration::ensemble::dynamics_of;
 use libration_analyze::comparison::{
-    ComparedIntegrator, Comparison, ComparisonError, ComparisonRequest, compare,
+    ComparedIntegrator, Comparison, ComparisonError, ComparisonRequest, MOST_OF_BEST, compare,
 };
 use libration_report::notation::plural;
 use libration_work::Work;
@@ -99,7 +99,7 @@ fn describe(comparison: &Comparison) -> String {
     if without > 0 {
         let _ = writeln!(
             text,
-            "{} within 64 times the evaluations of the best common ones.",
+            "{} within {MOST_OF_BEST} times the evaluations of the best common ones.",
             plural(without, "integrator")
                 + if without == 1 {
                     " does not meet the tolerance"
