@@ -23,6 +23,7 @@ mod step_trace;
 mod task;
 mod task_definitions;
 mod task_scope;
+mod vector_step;
 
 pub use definitions::{Definitions, MAX_DEFINITIONS, MAX_DEGREES, MAX_EXPRESSIONS};
 pub use dynamics::Dynamics;
@@ -35,5 +36,7 @@ pub use parser_input::MAX_LENGTH;
 pub use program::{Evaluation, Operation, Program, ValueId};
 pub use recording::Recorded;
 pub use step_program::StepProgram;
+pub use step_trace::{Implicit, VectorId, VectorOperation};
 pub use task::TaskPrograms;
 pub use task_definitions::TaskDefinitions;
+pub use vector_step::VectorStep;

@@ -1,13 +1,14 @@
 //! Steps of integrators as programs.
 
 use libration_core::integrator::ImplicitIntegrator;
-use libration_core::{AnyMethod, Integrator, State};
+use libration_core::{AnyMethod, Integrator};
 
 use super::Dynamics;
 use super::derivative_programs::DerivativePrograms;
 use super::program::{Operation, Program, ValueId};
 use super::program_builder::ProgramBuilder;
-use super::step_trace::{StepTrace, TracedSystem, VectorId, VectorOperation};
+use super::step_trace::{VectorId, VectorOperation};
+use super::vector_step::VectorStep;
 
 /// One step of an integrator on a system.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,17 +25,7 @@ impl StepProgram {
     /// A step of `integrator` on a system, whose inputs are constant during the step: from positions, velocities, inputs and the
     /// time step to positions and velocities.
     pub fn new(integrator: impl Integrator, dynamics: &Dynamics) -> Self {
-        let trace = StepTrace::default();
-        let ends = {
-            let start = State {
-                q: [trace.record(VectorOperation::Positions)],
-                v: [trace.record(VectorOperation::Velocities)],
-            };
-            let dt = trace.record(VectorOperation::TimeStep);
-            let end = integrator.step(&TracedSystem(&trace), start, dt);
-            vec![trace.id(end.q[0]), trace.id(end.v[0])]
-        };
-        StepProgram::of_trace(&trace.into_operations(), &ends, false, dynamics)
+        StepProgram::of_vectors(&VectorStep::new(integrator, None), false, dynamics)
     }
 
     /// The same of an integrator that solves equations, by [elimination](libration_core::elimination) with derivatives by dual numbers:
@@ -42,17 +33,7 @@ impl StepProgram {
     ///
     /// The program grows with the cube of the degrees of freedom, and each Newton step is written out.
     pub fn implicit(integrator: impl ImplicitIntegrator, dynamics: &Dynamics) -> Self {
-        let trace = StepTrace::default();
-        let ends = {
-            let start = State {
-                q: [trace.record(VectorOperation::Positions)],
-                v: [trace.record(VectorOperation::Velocities)],
-            };
-            let dt = trace.record(VectorOperation::TimeStep);
-            let end = integrator.step(&TracedSystem(&trace), start, dt);
-            vec![trace.id(end.q[0]), trace.id(end.v[0])]
-        };
-        StepProgram::of_trace(&trace.into_operations(), &ends, false, dynamics)
+        StepProgram::of_vectors(&VectorStep::implicit(integrator), false, dynamics)
     }
 
     /// A step that takes the accelerations at its start and hands on those at its end, which saves an evaluation: from positions,
@@ -60,21 +41,8 @@ impl StepProgram {
     ///
     /// None if the integrator [carries](Integrator::CARRIES) nothing or an acceleration depends on a velocity.
     pub fn carrying<M: Integrator>(integrator: M, dynamics: &Dynamics) -> Option<Self> {
-        if !M::CARRIES || !dynamics.is_positional() {
-            return None;
-        }
-        let trace = StepTrace::default();
-        let ends = {
-            let start = State {
-                q: [trace.record(VectorOperation::Positions)],
-                v: [trace.record(VectorOperation::Velocities)],
-            };
-            let known = [trace.record(VectorOperation::Accelerations)];
-            let dt = trace.record(VectorOperation::TimeStep);
-            let (end, known) = integrator.carried(&TracedSystem(&trace), start, known, dt);
-            vec![trace.id(end.q[0]), trace.id(end.v[0]), trace.id(known[0])]
-        };
-        Some(StepProgram::of_trace(&trace.into_operations(), &ends, true, dynamics))
+        let step = VectorStep::carrying(integrator, None).filter(|_| dynamics.is_positional())?;
+        Some(StepProgram::of_vectors(&step, true, dynamics))
     }
 
     /// A step of a built-in integrator.
@@ -85,20 +53,15 @@ impl StepProgram {
         }
     }
 
-    fn of_trace(
-        operations: &[VectorOperation],
-        ends: &[VectorId],
-        carries: bool,
-        dynamics: &Dynamics,
-    ) -> Self {
-        let evaluations = operations.iter().map(|operation| match operation {
+    fn of_vectors(step: &VectorStep, carries: bool, dynamics: &Dynamics) -> Self {
+        let evaluations = step.operations().iter().map(|operation| match operation {
             VectorOperation::AccelerationsAt(..) | VectorOperation::AccelerationDerivative(_) => 1,
             VectorOperation::Solution(..) => dynamics.degrees(),
             _ => 0,
         });
         StepProgram {
             evaluations: evaluations.sum(),
-            program: program(operations, ends, carries, dynamics),
+            program: program(step, carries, dynamics),
         }
     }
 
@@ -114,12 +77,7 @@ impl StepProgram {
 }
 
 /// The program of recorded operations on vectors.
-fn program(
-    operations: &[VectorOperation],
-    ends: &[VectorId],
-    carries: bool,
-    dynamics: &Dynamics,
-) -> Program {
+fn program(step: &VectorStep, carries: bool, dynamics: &Dynamics) -> Program {
     let degrees = dynamics.degrees();
     let mut builder = ProgramBuilder::literal();
     let (positions, velocities) = (builder.inputs(degrees), builder.inputs(degrees));
@@ -127,8 +85,8 @@ fn program(
     let commands = builder.inputs(dynamics.inputs());
     let dt = builder.input();
     let derivatives = DerivativePrograms::new(dynamics);
-    let mut vectors: Vec<Vec<ValueId>> = Vec::with_capacity(operations.len());
-    for operation in operations {
+    let mut vectors: Vec<Vec<ValueId>> = Vec::with_capacity(step.operations().len());
+    for operation in step.operations() {
         let of_two = |builder: &mut ProgramBuilder,
                       a: VectorId,
                       b: VectorId,
@@ -172,6 +130,6 @@ fn program(
         };
         vectors.push(vector);
     }
-    let outputs: Vec<ValueId> = ends.iter().flat_map(|&end| vectors[end].clone()).collect();
+    let outputs: Vec<ValueId> = step.ends().iter().flat_map(|&end| vectors[end].clone()).collect();
     builder.finish(&outputs)
 }

@@ -14,23 +14,31 @@ pub(crate) struct StepTrace {
     operations: RefCell<Vec<VectorOperation>>,
 }
 
-/// The index of a vector.
-pub(crate) type VectorId = usize;
+/// The index of a vector of a step.
+pub type VectorId = usize;
 
 /// The origin of a vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum VectorOperation {
+pub enum VectorOperation {
+    /// The positions at the start of the step.
     Positions,
+    /// The velocities at the start of the step.
     Velocities,
     /// The accelerations at the start of the step.
     Accelerations,
     /// The time step in each entry.
     TimeStep,
+    /// A number in each entry.
     Constant(f64),
+    /// Sums, entry by entry.
     Sum(VectorId, VectorId),
+    /// Differences, entry by entry.
     Difference(VectorId, VectorId),
+    /// Products, entry by entry.
     Product(VectorId, VectorId),
+    /// The other sign.
     Negative(VectorId),
+    /// A multiple and its quotient, as [`Scalar::ratio`].
     Ratio(VectorId, i32, i32),
     /// The accelerations at these positions and velocities.
     AccelerationsAt(VectorId, VectorId),
@@ -42,8 +50,10 @@ pub(crate) enum VectorOperation {
 
 /// The forces that linear equations treat implicitly.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Implicit {
+pub enum Implicit {
+    /// Those of the velocities.
     Damping,
+    /// All of them.
     DampingAndStiffness,
 }
 

@@ -1,0 +1,24 @@
+//! Gravity of many bodies.
+//!
+//! Forces are direct sums over all pairs, in vectors and on all cores, with the same bits on every machine. Each integrator of
+//! `libration-core` moves them; the splitting of Wisdom and Holman is for orbits around one heavy body.
+
+mod bodies;
+mod body_vectors;
+mod conserved;
+mod democratic_heliocentric;
+mod direct_sum;
+mod error;
+mod initial_conditions;
+mod kepler_flow;
+mod rounding;
+mod simulation;
+mod step_plan;
+
+pub use bodies::{Bodies, Body, MOST_BODIES};
+pub use conserved::Conserved;
+pub use error::BodiesError;
+pub use initial_conditions::{InitialConditions, KOZAI_TILT};
+pub use kepler_flow::kepler_flow;
+pub use rounding::RoundingVariance;
+pub use simulation::{BodyIntegrator, BodySimulation};

@@ -1,0 +1,267 @@
+//! A simulation of bodies.
+
+use libration_batch::ensemble::Execution;
+use libration_core::Method;
+
+use super::BodiesError;
+use super::bodies::Bodies;
+use super::body_vectors::{self, BodyVector};
+use super::conserved::Conserved;
+use super::democratic_heliocentric::DemocraticHeliocentric;
+use super::rounding::{RoundingVariance, Roundings};
+use super::step_plan::{ACCELERATIONS, POSITIONS, StepPlan, VELOCITIES};
+
+/// How bodies move during a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BodyIntegrator {
+    /// An integrator in inertial coordinates.
+    Method(Method),
+    /// Orbits around the first body, which must be the heaviest, and kicks by all other forces: the splitting of Wisdom and Holman in
+    /// democratic heliocentric coordinates. Order 2, with errors in proportion to the masses of the others.
+    WisdomHolman,
+}
+
+impl BodyIntegrator {
+    /// Name on the command line and in Python.
+    pub const fn name(self) -> &'static str {
+        match self {
+            BodyIntegrator::Method(method) => method.name(),
+            BodyIntegrator::WisdomHolman => "wisdom-holman",
+        }
+    }
+
+    /// The integrator of that name, if there is one.
+    pub fn from_name(name: &str) -> Option<Self> {
+        if name == BodyIntegrator::WisdomHolman.name() {
+            return Some(BodyIntegrator::WisdomHolman);
+        }
+        Method::from_name(name).map(BodyIntegrator::Method)
+    }
+
+    /// Order of consistency.
+    pub const fn order(self) -> u32 {
+        match self {
+            BodyIntegrator::Method(method) => method.order(),
+            BodyIntegrator::WisdomHolman => 2,
+        }
+    }
+}
+
+/// Bodies in motion, with a fixed time step.
+#[derive(Clone, Debug)]
+pub struct BodySimulation {
+    bodies: Bodies,
+    integrator: BodyIntegrator,
+    dt: f64,
+    steps: u64,
+    on: Execution,
+    stepper: Stepper,
+    has_radii: bool,
+}
+
+#[derive(Clone, Debug)]
+enum Stepper {
+    Plan { plan: StepPlan, vectors: Vec<BodyVector> },
+    Heliocentric(Box<DemocraticHeliocentric>),
+}
+
+impl BodySimulation {
+    /// A simulation from time 0.
+    ///
+    /// With `compensated` sums, positions and velocities keep what their sums round off (Kahan 1965).
+    ///
+    /// # Errors
+    /// [`BodiesError`] if `dt` is zero or not finite, two bodies touch, or the integrator does not apply.
+    pub fn new(
+        bodies: Bodies,
+        integrator: BodyIntegrator,
+        dt: f64,
+        compensated: bool,
+        on: Execution,
+    ) -> Result<Self, BodiesError> {
+        if dt == 0.0 || !dt.is_finite() {
+            return Err(BodiesError::TimeStep { dt });
+        }
+        let has_radii = bodies.radii().iter().any(|&radius| radius > 0.0);
+        let stepper = match integrator {
+            BodyIntegrator::Method(method) => {
+                let plan = StepPlan::new(method, dt);
+                let vector = || BodyVector::new(vec![0.0; 3 * bodies.count()], compensated);
+                let mut vectors: Vec<_> = (0..plan.registers).map(|_| vector()).collect();
+                vectors[POSITIONS].values.copy_from_slice(bodies.positions());
+                vectors[VELOCITIES].values.copy_from_slice(bodies.velocities());
+                Stepper::Plan { plan, vectors }
+            }
+            BodyIntegrator::WisdomHolman if compensated => {
+                let reason = "sums are not compensated; expected an integrator in inertial coordinates";
+                return Err(BodiesError::CentralBody { reason });
+            }
+            BodyIntegrator::WisdomHolman => {
+                Stepper::Heliocentric(Box::new(DemocraticHeliocentric::new(&bodies, &on)?))
+            }
+        };
+        let mut simulation =
+            BodySimulation { bodies, integrator, dt, steps: 0, on, stepper, has_radii };
+        simulation.check_distances()?;
+        simulation.evaluate_start();
+        Ok(simulation)
+    }
+
+    /// The accelerations with which a step begins that carries them.
+    fn evaluate_start(&mut self) {
+        if let Stepper::Plan { plan, vectors } = &mut self.stepper
+            && plan.carries
+        {
+            let attraction = self.bodies.attraction();
+            let mut out = core::mem::take(&mut vectors[ACCELERATIONS]);
+            attraction.accelerations(&vectors[POSITIONS].values, &mut out.values, &self.on);
+            vectors[ACCELERATIONS] = out;
+        }
+    }
+
+    /// Takes steps.
+    ///
+    /// # Errors
+    /// [`BodiesError::Collision`] of bodies with radii, [`BodiesError::SamePlace`] and [`BodiesError::Overflow`]. The bodies are then those
+    /// before the step.
+    pub fn advance(&mut self, steps: u64) -> Result<(), BodiesError> {
+        for _ in 0..steps {
+            self.step()?;
+        }
+        self.write();
+        Ok(())
+    }
+
+    fn step(&mut self) -> Result<(), BodiesError> {
+        if self.has_radii {
+            // Distances are those of the bodies that were written.
+            self.write();
+            self.check_distances()?;
+        }
+        let is_finite = match &mut self.stepper {
+            Stepper::Plan { plan, vectors } => {
+                // The state before the step names the bodies of a failure.
+                let (positions, velocities) = self.bodies.state_mut();
+                positions.copy_from_slice(&vectors[POSITIONS].values);
+                velocities.copy_from_slice(&vectors[VELOCITIES].values);
+                body_vectors::run(plan, vectors, &self.bodies.attraction(), &self.on);
+                is_finite(&vectors[VELOCITIES].values) && is_finite(&vectors[POSITIONS].values)
+            }
+            Stepper::Heliocentric(orbits) => {
+                orbits.step(self.dt, &self.on);
+                orbits.is_finite()
+            }
+        };
+        if !is_finite {
+            return Err(self.failure());
+        }
+        self.steps += 1;
+        Ok(())
+    }
+
+    /// Names the bodies that were nearest before the step.
+    fn failure(&self) -> BodiesError {
+        let time = self.time();
+        match self.bodies.closest_pair() {
+            Some((i, j, distance)) if distance == 0.0 => {
+                BodiesError::SamePlace { pair: [i, j], time }
+            }
+            Some((i, j, _)) => BodiesError::Overflow { pair: [i, j], time },
+            None => BodiesError::Overflow { pair: [0, 0], time },
+        }
+    }
+
+    fn check_distances(&self) -> Result<(), BodiesError> {
+        let time = self.time();
+        if self.has_radii
+            && let Some((i, j, distance)) = self.bodies.first_collision()
+        {
+            return Err(BodiesError::Collision { pair: [i, j], time, distance });
+        }
+        if self.steps > 0 || self.bodies.softening_length() > 0.0 {
+            return Ok(());
+        }
+        // Bodies without mass do not attract and may be anywhere.
+        let attract = |i: usize| self.bodies.masses()[i] > 0.0;
+        let mut same = None;
+        self.bodies.for_each_pair(|i, j, distance| {
+            if distance == 0.0 && (attract(i) || attract(j)) {
+                same = same.or(Some([i, j]));
+            }
+        });
+        same.map_or(Ok(()), |pair| Err(BodiesError::SamePlace { pair, time }))
+    }
+
+    /// Writes the state of the stepper to the bodies.
+    fn write(&mut self) {
+        match &self.stepper {
+            Stepper::Plan { vectors, .. } => {
+                let (positions, velocities) = self.bodies.state_mut();
+                positions.copy_from_slice(&vectors[POSITIONS].values);
+                velocities.copy_from_slice(&vectors[VELOCITIES].values);
+            }
+            Stepper::Heliocentric(orbits) => orbits.write(&mut self.bodies),
+        }
+    }
+
+    /// The bodies after the steps so far.
+    pub fn bodies(&self) -> &Bodies {
+        &self.bodies
+    }
+
+    /// The integrator.
+    pub fn integrator(&self) -> BodyIntegrator {
+        self.integrator
+    }
+
+    /// Steps so far.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// The time step.
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// The time: steps times `dt`.
+    pub fn time(&self) -> f64 {
+        self.steps as f64 * self.dt
+    }
+
+    /// Accelerations that a step evaluates: sums over all pairs.
+    pub fn evaluations(&self) -> usize {
+        match &self.stepper {
+            Stepper::Plan { plan, .. } => plan.evaluations,
+            Stepper::Heliocentric(_) => 1,
+        }
+    }
+
+    /// Variances of the changes of conserved quantities in one step by rounding, at the present state.
+    pub fn rounding_variance(&self) -> RoundingVariance {
+        let mut accelerations = vec![0.0; 3 * self.bodies.count()];
+        let attraction = self.bodies.attraction();
+        attraction.accelerations(self.bodies.positions(), &mut accelerations, &self.on);
+        let (kicks, drifts, is_compensated) = match &self.stepper {
+            Stepper::Plan { plan, vectors } => {
+                let evaluations = plan.evaluations as f64;
+                (evaluations, evaluations, !vectors[POSITIONS].lost.is_empty())
+            }
+            // Each has two sums besides those of its orbit, whose increments are as large as the state.
+            Stepper::Heliocentric(_) => (4.0, 4.0, false),
+        };
+        let kick_length = self.dt / kicks;
+        let roundings = Roundings { kicks, drifts, kick_length, is_compensated };
+        RoundingVariance::new(&self.bodies, &accelerations, roundings)
+    }
+
+    /// Energy, momentum and angular momentum.
+    pub fn conserved(&self) -> Conserved {
+        Conserved::of(&self.bodies, &self.on)
+    }
+}
+
+fn is_finite(values: &[f64]) -> bool {
+    // A product with zero is zero, but for infinities and NaN: a sum without branches.
+    values.iter().map(|x| x * 0.0).sum::<f64>() == 0.0
+}

@@ -1,0 +1,79 @@
+//! The step of an integrator as operations on whole vectors.
+
+use libration_core::integrator::ImplicitIntegrator;
+use libration_core::{Integrator, State};
+
+use super::step_trace::{StepTrace, TracedSystem, TracedVector, VectorId, VectorOperation};
+
+/// A step as operations on vectors of positions, velocities and accelerations, whatever their length.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VectorStep {
+    operations: Vec<VectorOperation>,
+    ends: Vec<VectorId>,
+}
+
+impl VectorStep {
+    /// A step of length `dt`; without a length the time step is an [input](VectorOperation::TimeStep).
+    pub fn new(integrator: impl Integrator, dt: Option<f64>) -> Self {
+        VectorStep::record(|system, start, trace| {
+            let end = integrator.step(system, start, time_step(trace, dt));
+            vec![end.q[0], end.v[0]]
+        })
+    }
+
+    /// The same of an integrator that solves equations.
+    pub(crate) fn implicit(integrator: impl ImplicitIntegrator) -> Self {
+        VectorStep::record(|system, start, trace| {
+            let end = integrator.step(system, start, time_step(trace, None));
+            vec![end.q[0], end.v[0]]
+        })
+    }
+
+    /// A step from positions, velocities and [accelerations](VectorOperation::Accelerations) to those at its end. It has the bits of
+    /// [`new`](Self::new) where accelerations depend on positions alone.
+    ///
+    /// None if the integrator [carries](Integrator::CARRIES) no acceleration from step to step.
+    pub fn carrying<M: Integrator>(integrator: M, dt: Option<f64>) -> Option<Self> {
+        M::CARRIES.then(|| {
+            VectorStep::record(|system, start, trace| {
+                let known = [trace.record(VectorOperation::Accelerations)];
+                let dt = time_step(trace, dt);
+                let (end, known) = integrator.carried(system, start, known, dt);
+                vec![end.q[0], end.v[0], known[0]]
+            })
+        })
+    }
+
+    fn record(
+        step: impl for<'t> FnOnce(
+            &TracedSystem<'t>,
+            State<TracedVector<'t>, 1>,
+            &'t StepTrace,
+        ) -> Vec<TracedVector<'t>>,
+    ) -> Self {
+        let trace = StepTrace::default();
+        let ends = {
+            let start = State {
+                q: [trace.record(VectorOperation::Positions)],
+                v: [trace.record(VectorOperation::Velocities)],
+            };
+            let ends = step(&TracedSystem(&trace), start, &trace);
+            ends.into_iter().map(|end| trace.id(end)).collect()
+        };
+        VectorStep { operations: trace.into_operations(), ends }
+    }
+
+    /// The operations; each makes one vector from those before it.
+    pub fn operations(&self) -> &[VectorOperation] {
+        &self.operations
+    }
+
+    /// Positions and velocities at the end; of a [carrying](Self::carrying) step also the accelerations.
+    pub fn ends(&self) -> &[VectorId] {
+        &self.ends
+    }
+}
+
+fn time_step(trace: &StepTrace, dt: Option<f64>) -> TracedVector<'_> {
+    dt.map_or_else(|| trace.record(VectorOperation::TimeStep), TracedVector::Constant)
+}
