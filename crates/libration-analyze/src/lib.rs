@@ -1,7 +1,8 @@
 //! Analyses and trajectories of a system that is chosen at run time: the results of the commands `analyze` and `simulate`.
 //!
-//! [`analyze`] derives stability, errors and costs of one step and of a control loop, and [`linear_analysis`] those of linear plants; [`comparison`] finds the cheapest integrator of a motion; [`trajectory`] and [`linear_trajectory`] simulate.
+//! [`analyze`] derives stability, errors and costs of one step and of a control loop, and [`linear_analysis`] those of linear plants; [`bodies`] simulates gravity; [`comparison`] finds the cheapest integrator of a motion; [`trajectory`] and [`linear_trajectory`] simulate.
 
+pub mod bodies;
 pub mod comparison;
 pub mod equation_analysis;
 pub mod equation_trajectory;

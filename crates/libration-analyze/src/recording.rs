@@ -21,6 +21,11 @@ pub(crate) trait Recording<S: Number> {
     /// Whether there are several trajectories.
     fn is_ensemble(&self) -> bool;
 
+    /// Whole numbers before `t`.
+    fn index_columns(&self) -> usize {
+        1 + usize::from(self.is_ensemble())
+    }
+
     /// Number of rows if all states stay finite.
     fn rows(&self) -> u64;
 
@@ -90,7 +95,7 @@ pub(crate) fn table<S: Number>(
 ) -> Result<(Table<'static>, Outcome), TrajectoryError> {
     let heads = recording.columns();
     let mut columns = Columns::<S> {
-        index: vec![vec![]; 1 + usize::from(recording.is_ensemble())],
+        index: vec![vec![]; recording.index_columns()],
         t: Vec::new(),
         values: Vec::new(),
     };
@@ -116,7 +121,7 @@ fn quoted(name: String) -> String {
 
 /// Rows that are kept as columns.
 struct Columns<S> {
-    /// `step`, or `trajectory` and `step`.
+    /// `step`, or what a row belongs to and `step`.
     index: Vec<Vec<u64>>,
     t: Vec<f64>,
     values: Vec<Vec<S>>,

@@ -182,8 +182,8 @@ impl Bodies {
         self
     }
 
-    /// The two bodies that are nearest to each other, relative to the sum of their radii where all have one, and their distance.
-    pub(crate) fn closest_pair(&self) -> Option<(usize, usize, f64)> {
+    /// The two bodies that are nearest to each other, and their distance. None for a single body.
+    pub fn closest_pair(&self) -> Option<(usize, usize, f64)> {
         let mut closest: Option<(usize, usize, f64)> = None;
         self.for_each_pair(|i, j, distance| {
             if closest.is_none_or(|(.., least)| distance < least) {

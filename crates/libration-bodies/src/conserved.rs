@@ -1,8 +1,8 @@
 //! The quantities that the motion conserves.
 
 use libration_batch::ensemble::Execution;
-use libration_core::number::TwoFloat;
 use libration_core::Scalar;
+use libration_core::number::TwoFloat;
 
 use super::bodies::Bodies;
 

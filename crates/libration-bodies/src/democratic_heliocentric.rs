@@ -2,10 +2,10 @@
 
 use libration_batch::ensemble::Execution;
 
+use super::BodiesError;
 use super::bodies::Bodies;
 use super::direct_sum::{Attraction, axes, axes_mut};
 use super::kepler_flow::kepler_flow;
-use super::BodiesError;
 
 /// Orbits around the first body as positions relative to it and velocities relative to the centre of mass.
 ///

@@ -179,12 +179,13 @@ pub const KOZAI_TILT: f64 = 65.0 * PI / 180.0;
 
 fn kozai() -> [Body; 3] {
     let (sine, cosine) = (Elementary::sin(KOZAI_TILT), Elementary::cos(KOZAI_TILT));
-    let distance: f64 = 10.0;
-    let mass = 0.5;
+    let (mass, distance) = (1.0, 8.0_f64);
+    // At the pericentre of an orbit with semi-major axis 1 around the star.
+    let eccentricity: f64 = 0.05;
+    let speed = ((1.0 + eccentricity) / (1.0 - eccentricity)).sqrt();
     [
         body(1.0, [0.0; 3], [0.0; 3]),
-        // A circle of radius 1 around the star.
-        body(0.0, [1.0, 0.0, 0.0], [0.0, cosine, sine]),
+        body(0.0, [1.0 - eccentricity, 0.0, 0.0], [0.0, speed * cosine, speed * sine]),
         // A circle around both, in the plane z = 0.
         body(mass, [0.0, distance, 0.0], [-((1.0 + mass) / distance).sqrt(), 0.0, 0.0]),
     ]
@@ -199,8 +200,7 @@ fn plummer(count: usize, seed: u64) -> Result<Bodies, BodiesError> {
     let bodies: Vec<Body> = (0..count.min(super::MOST_BODIES + 1))
         .map(|i| {
             let uniform = |step: u64| {
-                let address =
-                    Address { seed, trajectory: i as u64, step, purpose: Purpose::Start };
+                let address = Address { seed, trajectory: i as u64, step, purpose: Purpose::Start };
                 address.uniform()
             };
             let direction = |[height, turn]: [f64; 2], length: f64| {
@@ -223,7 +223,8 @@ fn plummer(count: usize, seed: u64) -> Result<Bodies, BodiesError> {
                 .find(|&[q, height]| 0.1 * height < q * q * power(1.0 - q * q, 3.5))
                 .map_or(0.0, |[q, _]| q * escape);
             let position = direction(uniform(1), scale * distance);
-            let turns = Address { seed, trajectory: i as u64, step: 0, purpose: Purpose::Variation };
+            let turns =
+                Address { seed, trajectory: i as u64, step: 0, purpose: Purpose::Variation };
             let velocity = direction(turns.uniform(), speed / scale.sqrt());
             body(1.0 / count as f64, position, velocity)
         })

@@ -6,19 +6,11 @@ use libration_core::Elementary;
 ///
 /// Universal variables (R. H. Battin, *An Introduction to the Mathematics and Methods of Astrodynamics*, 1999, §4.5) with the
 /// iteration of Laguerre and Conway (B. A. Conway, *Celestial Mechanics* 39, 1986), between bounds of the solution.
-pub fn kepler_flow(
-    strength: f64,
-    [position, velocity]: [[f64; 3]; 2],
-    dt: f64,
-) -> [[f64; 3]; 2] {
+pub fn kepler_flow(strength: f64, [position, velocity]: [[f64; 3]; 2], dt: f64) -> [[f64; 3]; 2] {
     let distance = dot(position, position).sqrt();
     let beta = 2.0 * strength / distance - dot(velocity, velocity);
-    let orbit = Orbit {
-        distance,
-        beta,
-        eta: dot(position, velocity),
-        zeta: strength - beta * distance,
-    };
+    let orbit =
+        Orbit { distance, beta, eta: dot(position, velocity), zeta: strength - beta * distance };
     // Whole periods change nothing.
     let period = TAU * strength / (beta * beta.sqrt());
     let time = if period.is_finite() { dt - (dt / period).round() * period } else { dt };

@@ -38,6 +38,14 @@ impl BodyIntegrator {
         Method::from_name(name).map(BodyIntegrator::Method)
     }
 
+    /// Accelerations that a step evaluates: sums over all pairs.
+    pub fn evaluations(self) -> usize {
+        match self {
+            BodyIntegrator::Method(method) => StepPlan::new(method, 1.0).evaluations,
+            BodyIntegrator::WisdomHolman => 1,
+        }
+    }
+
     /// Order of consistency.
     pub const fn order(self) -> u32 {
         match self {
@@ -93,7 +101,8 @@ impl BodySimulation {
                 Stepper::Plan { plan, vectors }
             }
             BodyIntegrator::WisdomHolman if compensated => {
-                let reason = "sums are not compensated; expected an integrator in inertial coordinates";
+                let reason =
+                    "sums are not compensated; expected an integrator in inertial coordinates";
                 return Err(BodiesError::CentralBody { reason });
             }
             BodyIntegrator::WisdomHolman => {
@@ -227,14 +236,6 @@ impl BodySimulation {
     /// The time: steps times `dt`.
     pub fn time(&self) -> f64 {
         self.steps as f64 * self.dt
-    }
-
-    /// Accelerations that a step evaluates: sums over all pairs.
-    pub fn evaluations(&self) -> usize {
-        match &self.stepper {
-            Stepper::Plan { plan, .. } => plan.evaluations,
-            Stepper::Heliocentric(_) => 1,
-        }
     }
 
     /// Variances of the changes of conserved quantities in one step by rounding, at the present state.

@@ -17,7 +17,11 @@ pub(crate) const ACCELERATIONS: Register = 2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Action {
     /// `x + factor·y`.
-    Increment { x: Register, factor: f64, y: Register },
+    Increment {
+        x: Register,
+        factor: f64,
+        y: Register,
+    },
     Sum(Register, Register),
     Difference(Register, Register),
     Multiple(f64, Register),

@@ -59,10 +59,7 @@ impl StepProgram {
             VectorOperation::Solution(..) => dynamics.degrees(),
             _ => 0,
         });
-        StepProgram {
-            evaluations: evaluations.sum(),
-            program: program(step, carries, dynamics),
-        }
+        StepProgram { evaluations: evaluations.sum(), program: program(step, carries, dynamics) }
     }
 
     /// Evaluations of the accelerations in a step, those along a direction of a derivative included.

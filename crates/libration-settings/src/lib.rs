@@ -2,6 +2,7 @@
 //!
 //! Each limit is defined once, for files and flags. An error names the position in the file.
 
+pub mod bodies_file;
 mod document;
 mod equation_examples;
 pub mod equations;

@@ -1,6 +1,7 @@
 //! Errors of trajectories.
 
 use libration::CatalogError;
+use libration::bodies::BodiesError;
 use libration::control::Latency;
 use libration::ensemble::{EnsembleError, InsufficientMemory};
 use libration::linear_loops::LinearLoopsError;
@@ -39,6 +40,9 @@ pub enum TrajectoryError {
     /// The system does not exist in this dimension.
     #[error(transparent)]
     Catalog(#[from] CatalogError),
+    /// The bodies or their integrator are invalid.
+    #[error(transparent)]
+    Bodies(#[from] BodiesError),
     /// The simulator rejected the request.
     #[error(transparent)]
     Simulation(#[from] SimulationError),

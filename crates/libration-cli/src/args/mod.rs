@@ -4,6 +4,7 @@ mod advise;
 mod analyze;
 mod audit;
 mod bench;
+mod bodies;
 mod clock;
 mod equation_advice;
 mod gains;
@@ -38,6 +39,7 @@ pub(crate) use advise::AdviseArgs;
 pub(crate) use analyze::AnalyzeArgs;
 pub(crate) use audit::AuditArgs;
 pub(crate) use bench::BenchArgs;
+pub(crate) use bodies::BodiesArgs;
 pub(crate) use clock::ClockArgs;
 pub(crate) use gains::GainsArgs;
 pub(crate) use identify::IdentifyArgs;
@@ -90,6 +92,8 @@ Examples:
                                              the largest gains of its servos
   libration identify log.csv --command cmd --response q
                                              dead time and lag of a real loop, from its log
+  libration bodies outer-solar-system --integrator wisdom-holman --dt 50 --steps 1e5
+                                             planets, and the drift of their energy
   libration rollout --out data --transitions 1e8
                                              a data set of rollouts, as Parquet
   libration bench                            speed of simulations on this machine
@@ -118,6 +122,8 @@ pub(crate) enum Command {
     Identify(IdentifyArgs),
     /// Simulate one or many trajectories and write them as rows
     Simulate(SimulateArgs),
+    /// Simulate bodies under their gravity and audit what they conserve
+    Bodies(BodiesArgs),
     /// Write a data set of rollouts, or resume an interrupted one
     Rollout(RolloutArgs),
     /// Check the files of a data set, recompute it or repair it

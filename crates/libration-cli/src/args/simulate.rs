@@ -108,13 +108,13 @@ The bits of a trajectory are independent of --count, --simd and --threads.
 The output file appears only when it is complete.";
 
 /// Parses a stride; also as `1e3`.
-fn every(text: &str) -> Result<u64, String> {
+pub(super) fn every(text: &str) -> Result<u64, String> {
     let stride = whole_number(text).and_then(|n| u64::try_from(n).ok()).filter(|&n| n >= 1);
     stride.ok_or_else(|| "expected a whole number of at least 1".to_owned())
 }
 
 /// Parses a seed.
-fn seed(text: &str) -> Result<u64, String> {
+pub(super) fn seed(text: &str) -> Result<u64, String> {
     let seed = whole_number(text).and_then(|n| u64::try_from(n).ok());
     seed.ok_or_else(|| format!("expected a whole number from 0 to {}", u64::MAX))
 }
@@ -124,7 +124,7 @@ fn float_types() -> impl TypedValueParser<Value = FloatType> {
         .try_map(|name| FloatType::from_name(&name).ok_or("unknown float type"))
 }
 
-fn formats() -> impl TypedValueParser<Value = Format> {
+pub(super) fn formats() -> impl TypedValueParser<Value = Format> {
     let value = |format: Format| PossibleValue::new(format.name()).help(format.summary());
     PossibleValuesParser::new(Format::ALL.map(value))
         .try_map(|name| Format::from_name(&name).ok_or("unknown format"))

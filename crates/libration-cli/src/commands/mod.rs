@@ -9,6 +9,7 @@ mod analyze_linear;
 mod audit;
 mod audit_text;
 mod bench;
+mod bodies;
 mod clock;
 mod clock_effect;
 mod clock_page;
@@ -50,6 +51,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::Advise(args) => advise::run(&args, arguments.quiet),
         Command::Analyze(args) => analyze::run(&args),
         Command::Simulate(args) => simulate::run(&args, arguments.quiet),
+        Command::Bodies(args) => bodies::run(&args, arguments.quiet),
         Command::Rollout(args) => rollout::run(&args, arguments.quiet),
         Command::Verify(args) => rollout::verify(&args, arguments.quiet),
         Command::Bench(args) => bench::run(&args, arguments.quiet),

@@ -110,8 +110,15 @@ fn write(
 
 /// Returns the format of `--format` or of the extension of `--output`; both must agree.
 fn format(args: &SimulateArgs) -> Result<Format, Failure> {
-    let Some(path) = args.output.as_deref() else { return Ok(args.format.unwrap_or_default()) };
-    match (args.format, Format::of_path(path)) {
+    match args.output.as_deref() {
+        Some(path) => format_of(path, args.format),
+        None => Ok(args.format.unwrap_or_default()),
+    }
+}
+
+/// Returns the format of rows in a file.
+pub(super) fn format_of(path: &Path, format: Option<Format>) -> Result<Format, Failure> {
+    match (format, Format::of_path(path)) {
         (Some(named), Some(ending)) if named != ending => Err(Failure::usage(format!(
             "--format {} contradicts --output `{}`, whose extension is .{}",
             named.name(),
@@ -229,17 +236,17 @@ fn into_stdout(rows: WriteRows<'_>, format: Format, watcher: &Watcher) -> Result
 }
 
 /// Progress of the steps, on a terminal.
-struct Watcher {
+pub(super) struct Watcher {
     bar: Option<ProgressBar>,
     stop: &'static AtomicBool,
 }
 
 impl Watcher {
-    fn new(quiet: bool, steps: u64, stop: &'static AtomicBool) -> Self {
+    pub(super) fn new(quiet: bool, steps: u64, stop: &'static AtomicBool) -> Self {
         Watcher { bar: (!quiet && progress::has_bars()).then(|| progress::steps(steps)), stop }
     }
 
-    fn clear(&self) {
+    pub(super) fn clear(&self) {
         self.bar.iter().for_each(ProgressBar::finish_and_clear);
     }
 }
@@ -255,7 +262,7 @@ impl Monitor for Watcher {
 }
 
 /// Converts an error of a request or of its run.
-fn failure(error: TrajectoryError) -> Failure {
+pub(super) fn failure(error: TrajectoryError) -> Failure {
     if let Some(shortage) = error.missing_memory() {
         return Failure::out_of_memory(shortage, &error);
     }
@@ -265,7 +272,8 @@ fn failure(error: TrajectoryError) -> Failure {
             Failure::usage(format!("--{name} is {value}; expected {allowed}"))
         }
         TrajectoryError::Parameter { .. } => Failure::usage(format!("{error} (--float)")),
-        TrajectoryError::Catalog(_)
+        TrajectoryError::Bodies(_)
+        | TrajectoryError::Catalog(_)
         | TrajectoryError::Simulation(_)
         | TrajectoryError::LinearLoops(_) => Failure::usage(error),
         TrajectoryError::Memory(_) | TrajectoryError::Export(_) | TrajectoryError::Interrupted => {

@@ -1,0 +1,78 @@
+//! Changes of the conserved quantities in the course of a motion.
+
+use libration::bodies::{Bodies, BodySimulation, Conserved, RoundingVariance};
+
+/// The quantities, in this order.
+pub(super) const QUANTITIES: [&str; 3] = ["energy", "momentum", "angular momentum"];
+
+/// The largest changes at the samples of a motion.
+#[derive(Clone, Debug)]
+pub(super) struct Changes {
+    start: Conserved,
+    /// Of energy, momentum and angular momentum.
+    largest: [f64; 3],
+    /// Sums of the variances of rounding in one step over the samples.
+    variances: [f64; 3],
+    samples: f64,
+}
+
+impl Changes {
+    /// No changes yet.
+    pub(super) fn new(start: &BodySimulation) -> Self {
+        let start = start.conserved();
+        Changes { start, largest: [0.0; 3], variances: [0.0; 3], samples: 0.0 }
+    }
+
+    /// Looks at the present state; returns its energy.
+    pub(super) fn sample(&mut self, simulation: &BodySimulation) -> f64 {
+        let now = simulation.conserved();
+        let distance = |a: [f64; 3], b: [f64; 3]| -> f64 {
+            a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+        };
+        let changes = [
+            (now.energy - self.start.energy).abs(),
+            distance(now.momentum, self.start.momentum),
+            distance(now.angular_momentum, self.start.angular_momentum),
+        ];
+        let RoundingVariance { energy, momentum, angular_momentum } =
+            simulation.rounding_variance();
+        let sum = |of: [f64; 3]| of.iter().sum::<f64>();
+        let variances = [energy, sum(momentum), sum(angular_momentum)];
+        for i in 0..3 {
+            self.largest[i] = self.largest[i].max(changes[i]);
+            self.variances[i] += variances[i];
+        }
+        self.samples += 1.0;
+        now.energy
+    }
+
+    /// The largest changes.
+    pub(super) fn largest(&self) -> [f64; 3] {
+        self.largest
+    }
+
+    /// The energy at the start.
+    pub(super) fn start_energy(&self) -> f64 {
+        self.start.energy
+    }
+
+    /// The largest changes that rounding alone would make in so many steps, as expected of random walks: the mean of the largest distance
+    /// from the start is √(π/2) standard deviations of the last. Sums in the audit itself round once more.
+    pub(super) fn by_rounding(&self, steps: u64, sizes: [f64; 3]) -> [f64; 3] {
+        let largest = (core::f64::consts::FRAC_PI_2 * steps as f64 / self.samples.max(1.0)).sqrt();
+        core::array::from_fn(|i| largest * self.variances[i].sqrt() + f64::EPSILON * sizes[i])
+    }
+}
+
+/// The sizes to which changes are compared: `|E|`, `Σ m|v|` and `Σ m|r||v|`; where the energy is zero, the kinetic energy.
+pub(super) fn sizes(bodies: &Bodies, start: &Conserved) -> [f64; 3] {
+    let length = |of: [f64; 3]| of.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let (mut momenta, mut turns) = (0.0, 0.0);
+    for body in bodies.iter() {
+        let momentum = body.mass * length(body.velocity);
+        momenta += momentum;
+        turns += momentum * length(body.position);
+    }
+    let energy = if start.energy == 0.0 { start.kinetic } else { start.energy.abs() };
+    [energy, momenta, turns]
+}

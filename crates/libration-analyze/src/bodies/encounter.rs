@@ -1,0 +1,61 @@
+//! The closest encounter of a motion.
+
+use libration::bodies::{Bodies, BodySimulation};
+use serde::Serialize;
+
+use super::BodiesRequest;
+
+/// The two bodies of a motion that came nearest to each other.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Encounter {
+    /// Their names.
+    pub bodies: [String; 2],
+    /// The distance of their centres.
+    pub distance: f64,
+    /// The time of the sample.
+    pub t: f64,
+    /// Steps of an orbit at that distance: `2π √(d³/G(m₁ + m₂))` over the time step. Below some 20 the step is too long for the encounter.
+    /// None without masses.
+    pub steps_per_orbit: Option<f64>,
+}
+
+/// Bodies up to which distances of all pairs are taken at each sample.
+const MOST: usize = 2048;
+
+/// The closest pair so far.
+#[derive(Debug)]
+pub(super) struct Closest {
+    is_looked_for: bool,
+    found: Option<(usize, usize, f64, f64)>,
+}
+
+impl Closest {
+    pub(super) fn new(bodies: &Bodies) -> Self {
+        Closest { is_looked_for: bodies.count() <= MOST, found: None }
+    }
+
+    pub(super) fn sample(&mut self, simulation: &BodySimulation) {
+        if !self.is_looked_for {
+            return;
+        }
+        if let Some((i, j, distance)) = simulation.bodies().closest_pair()
+            && self.found.is_none_or(|(.., least, _)| distance < least)
+        {
+            self.found = Some((i, j, distance, simulation.time()));
+        }
+    }
+
+    pub(super) fn encounter(&self, request: &BodiesRequest) -> Option<Encounter> {
+        let (i, j, distance, t) = self.found?;
+        let bodies = &request.system.bodies;
+        let mass = bodies.constant() * (bodies.masses()[i] + bodies.masses()[j]);
+        let orbit = core::f64::consts::TAU * (distance.powi(3) / mass).sqrt();
+        let names = &request.system.names;
+        Some(Encounter {
+            bodies: [names[i].clone(), names[j].clone()],
+            distance,
+            t,
+            steps_per_orbit: (mass > 0.0).then(|| orbit / request.dt.abs()),
+        })
+    }
+}

@@ -1,0 +1,250 @@
+//! Simulations of bodies under their gravity, with an audit of what they conserve: the output of `libration bodies`.
+
+mod changes;
+mod encounter;
+mod files;
+mod request;
+
+use libration::bodies::{BodiesError, BodySimulation};
+use libration_settings::limits::TRAJECTORY_STEPS;
+use serde::Serialize;
+
+use crate::export::Rows;
+use crate::trajectory::{Monitor, TrajectoryError};
+use changes::{Changes, QUANTITIES, sizes};
+use encounter::Closest;
+pub use encounter::Encounter;
+pub use files::write;
+pub use request::BodiesRequest;
+
+/// Version of the JSON format.
+pub const SCHEMA: &str = "libration.bodies/1";
+
+/// The columns of the rows, one row for each body of a sample.
+pub const COLUMNS: [&str; 9] = ["body", "step", "t", "x", "y", "z", "vx", "vy", "vz"];
+
+/// A motion of bodies; the fields are the keys of `bodies --json`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BodiesAudit {
+    /// The version of this format.
+    pub schema: &'static str,
+    /// The name of the system.
+    pub system: String,
+    /// The number of bodies.
+    pub bodies: usize,
+    /// The integrator.
+    pub integrator: &'static str,
+    /// Its order.
+    pub order: u32,
+    /// The time step.
+    pub dt: f64,
+    /// Steps taken.
+    pub steps: u64,
+    /// The time at the end.
+    pub t: f64,
+    /// Sums over all pairs in a step.
+    pub evaluations: usize,
+    /// The constant of gravitation.
+    pub gravitational_constant: f64,
+    /// The softening length.
+    pub softening: f64,
+    /// Whether sums were compensated.
+    pub is_compensated: bool,
+    /// Samples of the conserved quantities.
+    pub samples: u64,
+    /// The energy at the start.
+    pub energy: f64,
+    /// Changes of energy, momentum and angular momentum, measured and predicted.
+    pub conserved: Vec<ConservedChange>,
+    /// The closest encounter among the samples; none for a single body or many.
+    pub encounter: Option<Encounter>,
+    /// Why the motion ended before its last step, if it did.
+    pub stopped: Option<String>,
+}
+
+/// The largest change of a conserved quantity.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ConservedChange {
+    /// `energy`, `momentum` or `angular momentum`.
+    pub quantity: &'static str,
+    /// The largest change at the samples, relative to `size`.
+    pub largest_change: f64,
+    /// What the order predicts: the change with twice the time step, over the power of 2; zero where rounding hides it. None for a motion
+    /// that ended early or has fewer than 4 steps.
+    pub predicted_by_order: Option<f64>,
+    /// What rounding predicts: a random walk.
+    pub predicted_by_rounding: f64,
+    /// `|E|`, `Σ m|v|` or `Σ m|r||v|` at the start.
+    pub size: f64,
+}
+
+/// Force evaluations of pairs between two looks at the monitor.
+const PAIRS_BETWEEN_LOOKS: u64 = 1 << 24;
+
+/// Simulates bodies; each sample becomes a row of `rows` for each body.
+///
+/// A collision or an overflow ends the motion early, and [`BodiesAudit::stopped`] says why; that of the start is an error.
+///
+/// # Errors
+/// [`TrajectoryError`], before any work if the request is invalid.
+pub fn simulate(
+    request: &BodiesRequest,
+    rows: &mut dyn Rows<f64>,
+    monitor: &dyn Monitor,
+) -> Result<BodiesAudit, TrajectoryError> {
+    check(request)?;
+    let mut simulation = request.simulation(request.dt)?;
+    let stride = request.stride();
+    let mut closest = Closest::new(&request.system.bodies);
+    let start = simulation.conserved();
+    let mut keep = |simulation: &BodySimulation| {
+        for (i, body) in simulation.bodies().iter().enumerate() {
+            let values: Vec<f64> = body.position.into_iter().chain(body.velocity).collect();
+            rows.row(&[i as u64, simulation.steps()], simulation.time(), &values)?;
+        }
+        closest.sample(simulation);
+        Ok::<(), TrajectoryError>(())
+    };
+    let (changes, samples, stopped) =
+        run(&mut simulation, request.steps, stride, monitor, 0, &mut keep)?;
+    let by_order = match &stopped {
+        None if request.steps >= 4 => by_order(request, stride, monitor)?,
+        _ => None,
+    };
+    let sizes = sizes(&request.system.bodies, &start);
+    let by_rounding = changes.by_rounding(simulation.steps(), sizes);
+    let conserved = (0..3).map(|i| ConservedChange {
+        quantity: QUANTITIES[i],
+        largest_change: relative(changes.largest()[i], sizes[i]),
+        predicted_by_order: by_order.map(|by_order| relative(by_order[i], sizes[i])),
+        predicted_by_rounding: relative(by_rounding[i], sizes[i]),
+        size: sizes[i],
+    });
+    Ok(BodiesAudit {
+        schema: SCHEMA,
+        system: request.system.name.clone(),
+        bodies: request.system.bodies.count(),
+        integrator: request.integrator.name(),
+        order: request.integrator.order(),
+        dt: request.dt,
+        steps: simulation.steps(),
+        t: simulation.time(),
+        evaluations: request.integrator.evaluations(),
+        gravitational_constant: request.system.bodies.constant(),
+        softening: request.system.bodies.softening_length(),
+        is_compensated: request.is_compensated,
+        samples,
+        energy: changes.start_energy(),
+        conserved: conserved.collect(),
+        encounter: closest.encounter(request),
+        stopped: stopped.map(|error| named(&error, &request.system.names)),
+    })
+}
+
+fn check(request: &BodiesRequest) -> Result<(), TrajectoryError> {
+    let wrong = |name, value: u64, allowed: &str| TrajectoryError::Value {
+        name,
+        value: value.to_string(),
+        allowed: allowed.to_owned(),
+    };
+    if !TRAJECTORY_STEPS.contains(&request.steps) {
+        return Err(wrong("steps", request.steps, "a whole number from 1 to 2^53"));
+    }
+    match request.every {
+        Some(0) => Err(wrong("every", 0, "a whole number of at least 1")),
+        _ => Ok(()),
+    }
+}
+
+/// A change over a size; of something that has no size, the change.
+fn relative(change: f64, size: f64) -> f64 {
+    if size > 0.0 { change / size } else { change }
+}
+
+/// Runs to the end, or to a collision or overflow, and samples on the way. Progress begins at step `done`.
+fn run(
+    simulation: &mut BodySimulation,
+    steps: u64,
+    stride: u64,
+    monitor: &dyn Monitor,
+    done: u64,
+    keep: &mut dyn FnMut(&BodySimulation) -> Result<(), TrajectoryError>,
+) -> Result<(Changes, u64, Option<BodiesError>), TrajectoryError> {
+    let mut changes = Changes::new(simulation);
+    let count = simulation.bodies().count() as u64;
+    let pairs = (count * count * simulation.integrator().evaluations() as u64).max(1);
+    let look = (PAIRS_BETWEEN_LOOKS / pairs).max(1);
+    let mut samples = 0;
+    loop {
+        let step = simulation.steps();
+        if step % stride == 0 || step == steps {
+            changes.sample(simulation);
+            keep(simulation)?;
+            samples += 1;
+        }
+        if step == steps {
+            return Ok((changes, samples, None));
+        }
+        if monitor.should_stop() {
+            return Err(TrajectoryError::Interrupted);
+        }
+        monitor.on_step(done + step);
+        let next = (step / stride + 1).saturating_mul(stride).min(steps);
+        if let Err(error) = simulation.advance((next - step).min(look)) {
+            return Ok((changes, samples, Some(error)));
+        }
+    }
+}
+
+/// The changes that follow from a motion with twice the time step and the order of the integrator. None if that motion ends early.
+fn by_order(
+    request: &BodiesRequest,
+    stride: u64,
+    monitor: &dyn Monitor,
+) -> Result<Option<[f64; 3]>, TrajectoryError> {
+    let mut coarse = request.simulation(2.0 * request.dt)?;
+    let steps = request.steps / 2;
+    let stride = stride.div_ceil(2);
+    let (changes, _, stopped) =
+        run(&mut coarse, steps, stride, &Quiet(monitor), 0, &mut |_| Ok(()))?;
+    if stopped.is_some() {
+        return Ok(None);
+    }
+    let rounding = changes.by_rounding(steps, [0.0; 3]);
+    let power = 2.0_f64.powi(i32::try_from(request.integrator.order()).unwrap_or(i32::MAX));
+    Ok(Some(core::array::from_fn(|i| {
+        let largest = changes.largest()[i];
+        // A change that rounding may have made says nothing about the order.
+        if largest <= HIDDEN * rounding[i] { 0.0 } else { largest / power }
+    })))
+}
+
+/// Changes up to this many times that of rounding may be rounding.
+const HIDDEN: f64 = 8.0;
+
+/// A monitor without progress.
+struct Quiet<'a>(&'a dyn Monitor);
+
+impl Monitor for Quiet<'_> {
+    fn should_stop(&self) -> bool {
+        self.0.should_stop()
+    }
+}
+
+/// The error with the names of the bodies.
+fn named(error: &BodiesError, names: &[String]) -> String {
+    let name = |[a, b]: [usize; 2]| format!("`{}` and `{}`", names[a], names[b]);
+    match error {
+        BodiesError::SamePlace { pair, time } => {
+            format!("{} are at the same place at t = {time}", name(*pair))
+        }
+        BodiesError::Collision { pair, time, distance } => {
+            format!("{} collide at t = {time}: distance {distance}", name(*pair))
+        }
+        BodiesError::Overflow { pair, time } => format!(
+            "the motion is not finite after t = {time}; {} were nearest; help: a shorter time step or softening",
+            name(*pair)
+        ),
+        error => error.to_string(),
+    }
+}

@@ -1,0 +1,87 @@
+//! Arguments of `bodies`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use libration::Method;
+use libration::bodies::BodyIntegrator;
+use libration_analyze::trajectory::Format;
+use libration_settings::suggestions;
+
+use super::number::{count, time_step, trajectory_steps};
+use super::simulate::{every, formats, seed};
+
+/// Arguments of `bodies`.
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct BodiesArgs {
+    /// Name of initial conditions (figure-eight, pythagorean, outer-solar-system, kozai, plummer), or a file NAME.toml or NAME.csv
+    #[arg(value_name = "SYSTEM")]
+    pub(crate) system: String,
+    /// Integrator: any explicit one of `libration list`, or wisdom-holman for orbits around a heavy first body
+    #[arg(long, value_name = "NAME", value_parser = integrator)]
+    pub(crate) integrator: BodyIntegrator,
+    /// Time step, in the units of the system
+    #[arg(long, value_name = "TIME", value_parser = time_step, allow_hyphen_values = true)]
+    pub(crate) dt: f64,
+    /// Number of steps
+    #[arg(long, value_name = "N", value_parser = trajectory_steps, allow_hyphen_values = true)]
+    pub(crate) steps: u64,
+    /// Take a sample every N steps [default: at most 1000 samples]
+    #[arg(long, value_name = "N", value_parser = every, allow_hyphen_values = true)]
+    pub(crate) every: Option<u64>,
+    /// Number of bodies of plummer
+    #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
+    pub(crate) count: Option<usize>,
+    /// Seed of plummer [default: 0]
+    #[arg(long, value_name = "N", value_parser = seed, allow_hyphen_values = true)]
+    pub(crate) seed: Option<u64>,
+    /// Softening length of the potential -G m/sqrt(r^2 + L^2) [default: that of the file, or 0]
+    #[arg(long, value_name = "L", allow_hyphen_values = true)]
+    pub(crate) softening: Option<f64>,
+    /// Constant of gravitation [default: that of the file or of the initial conditions, or 1]
+    #[arg(long, value_name = "G", allow_hyphen_values = true)]
+    pub(crate) gravitational_constant: Option<f64>,
+    /// Keep what the sums of positions and velocities round off
+    #[arg(long)]
+    pub(crate) compensated: bool,
+    /// Number of threads (0: one per core)
+    #[arg(long, value_name = "N", default_value = "0")]
+    pub(crate) threads: usize,
+    /// Print the audit as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Format of the rows [default: by the extension of --output]
+    #[arg(long, value_parser = formats(), requires = "output")]
+    pub(crate) format: Option<Format>,
+    /// Write a row for each body of each sample to FILE
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  libration bodies figure-eight --integrator yoshida4 --dt 0.01 --steps 1e4
+  libration bodies outer-solar-system --integrator wisdom-holman --dt 100 --steps 3.65e5
+  libration bodies plummer --count 1024 --softening 0.01 --integrator leapfrog --dt 0.001 --steps 1e3
+  libration bodies mine.csv --integrator blanes-moan-srkn-11-6 --dt 0.01 --steps 1e4 --output orbits.parquet
+
+The audit compares the largest changes of energy, momentum and angular momentum with two predictions: by
+the order of the integrator, from a second run with twice the time step, and by rounding.
+The rows have the columns body, step, t, x, y, z, vx, vy, vz.
+A file NAME.csv has the columns name (optional), mass, x, y, z, vx, vy, vz, radius (optional). Bodies with
+radii end the motion where they collide.
+The bits of a motion do not depend on --threads.";
+
+/// Parses the name of an integrator.
+fn integrator(name: &str) -> Result<BodyIntegrator, String> {
+    BodyIntegrator::from_name(name).ok_or_else(|| {
+        let known = Method::all().map(Method::name).chain([BodyIntegrator::WisdomHolman.name()]);
+        let few = Method::ALL.map(Method::name).join(", ");
+        let near = suggestions::nearest(name, known);
+        let near = near.map_or_else(String::new, |near| format!("did you mean `{near}`? "));
+        format!(
+            "{near}expected one of wisdom-holman, {few}, or a published splitting method of `libration list`"
+        )
+    })
+}
