@@ -1,6 +1,7 @@
 //! Bodies: masses, positions and velocities.
 
 use super::BodiesError;
+use super::closest_pair::ClosestPair;
 use super::direct_sum::{Attraction, axes};
 
 /// Most bodies of a direct sum.
@@ -183,14 +184,10 @@ impl Bodies {
     }
 
     /// The two bodies that are nearest to each other, and their distance. None for a single body.
-    pub fn closest_pair(&self) -> Option<(usize, usize, f64)> {
-        let mut closest: Option<(usize, usize, f64)> = None;
-        self.for_each_pair(|i, j, distance| {
-            if closest.is_none_or(|(.., least)| distance < least) {
-                closest = Some((i, j, distance));
-            }
-        });
-        closest
+    pub fn closest_pair(&self) -> Option<([usize; 2], f64)> {
+        let mut closest = ClosestPair::default();
+        closest.update(&self.positions, false, 0.0);
+        closest.found().map(|(pair, distance, _)| (pair, distance))
     }
 
     /// The first two bodies whose distance is below the sum of their radii, and the distance.

@@ -139,6 +139,11 @@ impl DemocraticHeliocentric {
         }
     }
 
+    /// Positions of the others relative to the first body.
+    pub(crate) fn positions(&self) -> &[f64] {
+        &self.positions
+    }
+
     pub(crate) fn is_finite(&self) -> bool {
         self.positions.iter().chain(&self.velocities).all(|x| x.is_finite())
     }

@@ -5,6 +5,7 @@
 
 mod bodies;
 mod body_vectors;
+mod closest_pair;
 mod conserved;
 mod democratic_heliocentric;
 mod direct_sum;

@@ -6,6 +6,7 @@ use libration_core::Method;
 use super::BodiesError;
 use super::bodies::Bodies;
 use super::body_vectors::{self, BodyVector};
+use super::closest_pair::ClosestPair;
 use super::conserved::Conserved;
 use super::democratic_heliocentric::DemocraticHeliocentric;
 use super::rounding::{RoundingVariance, Roundings};
@@ -65,6 +66,7 @@ pub struct BodySimulation {
     on: Execution,
     stepper: Stepper,
     has_radii: bool,
+    encounters: Option<ClosestPair>,
 }
 
 #[derive(Clone, Debug)]
@@ -109,8 +111,16 @@ impl BodySimulation {
                 Stepper::Heliocentric(Box::new(DemocraticHeliocentric::new(&bodies, &on)?))
             }
         };
-        let mut simulation =
-            BodySimulation { bodies, integrator, dt, steps: 0, on, stepper, has_radii };
+        let mut simulation = BodySimulation {
+            bodies,
+            integrator,
+            dt,
+            steps: 0,
+            on,
+            stepper,
+            has_radii,
+            encounters: None,
+        };
         simulation.check_distances()?;
         simulation.evaluate_start();
         Ok(simulation)
@@ -165,17 +175,39 @@ impl BodySimulation {
             return Err(self.failure());
         }
         self.steps += 1;
+        if let Some(mut closest) = self.encounters.take() {
+            self.look(&mut closest);
+            self.encounters = Some(closest);
+        }
         Ok(())
+    }
+
+    /// Looks for the closest encounter at each step from now on: for few bodies, as it takes the distances of all pairs.
+    pub fn watch_encounters(&mut self) {
+        let mut closest = ClosestPair::default();
+        self.look(&mut closest);
+        self.encounters = Some(closest);
+    }
+
+    fn look(&self, closest: &mut ClosestPair) {
+        let (positions, is_relative) = match &self.stepper {
+            Stepper::Plan { vectors, .. } => (&vectors[POSITIONS].values[..], false),
+            Stepper::Heliocentric(orbits) => (orbits.positions(), true),
+        };
+        closest.update(positions, is_relative, self.time());
+    }
+
+    /// The two bodies that came nearest to each other since [`watch_encounters`](Self::watch_encounters), their distance and the time.
+    pub fn closest_encounter(&self) -> Option<([usize; 2], f64, f64)> {
+        self.encounters.as_ref().and_then(ClosestPair::found)
     }
 
     /// Names the bodies that were nearest before the step.
     fn failure(&self) -> BodiesError {
         let time = self.time();
         match self.bodies.closest_pair() {
-            Some((i, j, distance)) if distance == 0.0 => {
-                BodiesError::SamePlace { pair: [i, j], time }
-            }
-            Some((i, j, _)) => BodiesError::Overflow { pair: [i, j], time },
+            Some((pair, distance)) if distance == 0.0 => BodiesError::SamePlace { pair, time },
+            Some((pair, _)) => BodiesError::Overflow { pair, time },
             None => BodiesError::Overflow { pair: [0, 0], time },
         }
     }

@@ -12,41 +12,54 @@ pub struct Encounter {
     pub bodies: [String; 2],
     /// The distance of their centres.
     pub distance: f64,
-    /// The time of the sample.
+    /// The time.
     pub t: f64,
     /// Steps of an orbit at that distance: `2π √(d³/G(m₁ + m₂))` over the time step. Below some 20 the step is too long for the encounter.
     /// None without masses.
     pub steps_per_orbit: Option<f64>,
 }
 
-/// Bodies up to which distances of all pairs are taken at each sample.
+/// Bodies up to which distances of all pairs are taken at each step.
+const FEW: usize = 16;
+
+/// Bodies up to which they are taken at each sample.
 const MOST: usize = 2048;
 
 /// The closest pair so far.
 #[derive(Debug)]
 pub(super) struct Closest {
-    is_looked_for: bool,
-    found: Option<(usize, usize, f64, f64)>,
+    count: usize,
+    found: Option<([usize; 2], f64, f64)>,
 }
 
 impl Closest {
     pub(super) fn new(bodies: &Bodies) -> Self {
-        Closest { is_looked_for: bodies.count() <= MOST, found: None }
+        Closest { count: bodies.count(), found: None }
+    }
+
+    pub(super) fn start(&self, simulation: &mut BodySimulation) {
+        if self.count <= FEW {
+            simulation.watch_encounters();
+        }
     }
 
     pub(super) fn sample(&mut self, simulation: &BodySimulation) {
-        if !self.is_looked_for {
+        if self.count <= FEW || self.count > MOST {
             return;
         }
-        if let Some((i, j, distance)) = simulation.bodies().closest_pair()
-            && self.found.is_none_or(|(.., least, _)| distance < least)
+        if let Some((pair, distance)) = simulation.bodies().closest_pair()
+            && self.found.is_none_or(|(_, least, _)| distance < least)
         {
-            self.found = Some((i, j, distance, simulation.time()));
+            self.found = Some((pair, distance, simulation.time()));
         }
     }
 
-    pub(super) fn encounter(&self, request: &BodiesRequest) -> Option<Encounter> {
-        let (i, j, distance, t) = self.found?;
+    pub(super) fn encounter(
+        &self,
+        simulation: &BodySimulation,
+        request: &BodiesRequest,
+    ) -> Option<Encounter> {
+        let ([i, j], distance, t) = simulation.closest_encounter().or(self.found)?;
         let bodies = &request.system.bodies;
         let mass = bodies.constant() * (bodies.masses()[i] + bodies.masses()[j]);
         let orbit = core::f64::consts::TAU * (distance.powi(3) / mass).sqrt();

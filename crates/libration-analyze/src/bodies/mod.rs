@@ -56,7 +56,7 @@ pub struct BodiesAudit {
     pub energy: f64,
     /// Changes of energy, momentum and angular momentum, measured and predicted.
     pub conserved: Vec<ConservedChange>,
-    /// The closest encounter among the samples; none for a single body or many.
+    /// The closest encounter: of up to 16 bodies at all steps, of up to 2048 at the samples; none of more or of a single body.
     pub encounter: Option<Encounter>,
     /// Why the motion ended before its last step, if it did.
     pub stopped: Option<String>,
@@ -96,6 +96,7 @@ pub fn simulate(
     let mut simulation = request.simulation(request.dt)?;
     let stride = request.stride();
     let mut closest = Closest::new(&request.system.bodies);
+    closest.start(&mut simulation);
     let start = simulation.conserved();
     let mut keep = |simulation: &BodySimulation| {
         for (i, body) in simulation.bodies().iter().enumerate() {
@@ -136,7 +137,7 @@ pub fn simulate(
         samples,
         energy: changes.start_energy(),
         conserved: conserved.collect(),
-        encounter: closest.encounter(request),
+        encounter: closest.encounter(&simulation, request),
         stopped: stopped.map(|error| named(&error, &request.system.names)),
     })
 }
