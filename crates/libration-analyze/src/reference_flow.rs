@@ -45,7 +45,7 @@ impl<'p, S: Elementary> Rates<'p, S> {
 pub fn flow(rates: &mut Rates<'_, TwoFloat>, start: &[TwoFloat], time: TwoFloat) -> (Point, f64) {
     let mut after = |pieces: u32| {
         let piece = time.ratio(1, pieces as i32);
-        (0..pieces).fold(start.to_vec(), |state, _| extrapolated(rates, &state, piece))
+        (0..pieces).fold(start.to_vec(), |state, _| self::piece(rates, &state, piece).0)
     };
     let (mut pieces, mut coarse) = (2, after(1));
     loop {
@@ -53,8 +53,8 @@ pub fn flow(rates: &mut Rates<'_, TwoFloat>, start: &[TwoFloat], time: TwoFloat)
         let apart = distance(&fine, &coarse);
         // What rests at the origin has no size.
         let off = if apart == 0.0 { 0.0 } else { apart / size(&fine) };
-        // What is not a number will not become one.
-        if off <= TARGET || pieces >= MOST_PIECES || off.is_nan() {
+        // What is not a number may become one in shorter pieces.
+        if off <= TARGET || pieces >= MOST_PIECES {
             return (fine, off);
         }
         (pieces, coarse) = (2 * pieces, fine);
@@ -77,8 +77,13 @@ fn plus(x: &[TwoFloat], h: TwoFloat, y: &[TwoFloat]) -> Point {
     x.iter().zip(y).map(|(&x, &y)| x + h * y).collect()
 }
 
-/// One piece by Aitken's and Neville's scheme on `2, 4, 6, …` midpoint steps.
-fn extrapolated(rates: &mut Rates<'_, TwoFloat>, start: &[TwoFloat], time: TwoFloat) -> Point {
+/// The state after one piece, by Aitken's and Neville's scheme on `2, 4, 6, …` midpoint steps, and for each state the distance from the
+/// result of one order less.
+pub fn piece(
+    rates: &mut Rates<'_, TwoFloat>,
+    start: &[TwoFloat],
+    time: TwoFloat,
+) -> (Point, Vec<f64>) {
     let mut row: Vec<Point> = Vec::with_capacity(COLUMNS);
     for j in 1..=COLUMNS as i32 {
         let mut value = midpoint(rates, start, time, 2 * j);
@@ -93,7 +98,10 @@ fn extrapolated(rates: &mut Rates<'_, TwoFloat>, start: &[TwoFloat], time: TwoFl
         }
         row.push(value);
     }
-    row.pop().unwrap_or_default()
+    let last = row.pop().unwrap_or_default();
+    let before = row.pop().unwrap_or_default();
+    let off = last.iter().zip(&before).map(|(&a, &b)| (a - b).to_f64().abs()).collect();
+    (last, off)
 }
 
 /// An even number `n` of steps of the explicit midpoint rule, begun by one of Euler.

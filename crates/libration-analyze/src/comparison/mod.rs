@@ -1,5 +1,6 @@
 //! Work and precision of all explicit integrators on a motion: the output of `libration analyze --compare`.
 
+mod dense_reference;
 mod error;
 mod motion;
 mod prediction;
@@ -10,11 +11,11 @@ use libration::equations::Dynamics;
 use libration_work::Work;
 use serde::Serialize;
 
-pub use error::ComparisonError;
+pub use error::{ComparisonError, TOLERANCES};
 use motion::Motion;
 use prediction::Yardsticks;
-pub use search::MOST_OF_BEST;
 use search::Search;
+pub use search::{MOST_EVALUATIONS, MOST_OF_BEST};
 
 /// Version of the JSON format.
 pub const SCHEMA: &str = "libration.integrator-comparison/1";
@@ -30,7 +31,7 @@ pub struct ComparisonRequest {
     pub start: Vec<f64>,
     /// The time of the motion in s.
     pub horizon: f64,
-    /// The largest error of a state in the course of the motion, relative to the largest size of that state.
+    /// The largest error of a state after any step, relative to the largest size of that state in the motion.
     pub tolerance: f64,
 }
 
@@ -58,13 +59,13 @@ pub struct Comparison {
 pub struct ComparedIntegrator {
     /// The name.
     pub integrator: &'static str,
-    /// The classical order.
+    /// The classical order; for forces of velocities, the order on this system.
     pub order: u32,
-    /// Force evaluations of a step, where neighbouring steps share those at their ends.
+    /// Force evaluations of a step; for forces of positions, neighbouring steps share those at their ends.
     pub stages: usize,
     /// The norm of the leading error for forces of positions, over the power of the step; none for forces of velocities.
     pub error_constant: Option<f64>,
-    /// The largest tried step that meets the tolerance in s; none if none does.
+    /// The largest step found that meets the tolerance, as half of it does, in s: the horizon over a whole number. None if none does.
     pub dt: Option<f64>,
     /// Force evaluations for the whole motion with this step.
     pub evaluations: Option<f64>,
@@ -73,8 +74,8 @@ pub struct ComparedIntegrator {
     pub predicted_evaluations: Option<f64>,
     /// The error with this step; without one, the smallest error found.
     pub error: Option<f64>,
-    /// The largest change of the energy with this step, relative to the energy at the start, or absolute if that is zero; none without an
-    /// energy.
+    /// The largest error of the energy with this step, relative to the largest of kinetic, potential and total energy at the start; none
+    /// without an energy.
     pub energy_error: Option<f64>,
 }
 

@@ -1,53 +1,50 @@
 //! A motion with its reference.
 
+use libration::Method;
 use libration::equations::StepProgram;
 use libration::number::TwoFloat;
-use libration::{Float, Method, Scalar};
 
+use super::dense_reference::DenseReference;
 use super::{ComparisonError, ComparisonRequest};
+use crate::equation_analysis::step_order;
 use crate::program_stepper::ProgramStepper;
-use crate::reference_flow::{Point, Rates, flow};
+use crate::reference_flow::Rates;
 
-/// Times at which errors are taken, evenly spaced; the last is the end.
-pub(super) const SAMPLES: u64 = 8;
+/// Steps up to which errors are taken after each of them; of more, after as many that are evenly spread.
+const MOST_SAMPLES: u64 = 4096;
 
-/// A motion with its exact states at the times of the samples.
+/// A motion with its exact states.
 pub(super) struct Motion<'r> {
     pub(super) request: &'r ComparisonRequest,
-    reference: Vec<Point>,
-    /// The largest size of each state, or 1 if it is always zero.
-    scales: Vec<f64>,
-    reference_error: f64,
+    reference: DenseReference,
 }
 
 impl<'r> Motion<'r> {
     pub(super) fn new(request: &'r ComparisonRequest) -> Result<Self, ComparisonError> {
-        let ComparisonRequest { horizon, tolerance, .. } = *request;
+        let ComparisonRequest { horizon, tolerance, ref start, .. } = *request;
         let mut rates = Rates::<TwoFloat>::new(&request.dynamics);
-        let interval = TwoFloat::from_f64(horizon).ratio(1, SAMPLES as i32);
-        let start: Point = request.start.iter().map(|&x| TwoFloat::from_f64(x)).collect();
-        let (mut reference, mut reference_error) = (vec![start], 0.0);
-        for sample in 0..SAMPLES {
-            let (next, off) = flow(&mut rates, &reference[reference.len() - 1], interval);
-            if !next.iter().all(|x| x.to_f64().is_finite()) {
-                let time = horizon * sample as f64 / SAMPLES as f64;
-                return Err(ComparisonError::NotFinite { time, horizon });
-            }
-            reference_error += off;
-            reference.push(next);
-        }
-        // An error of a double grows as much as that of the reference does.
+        let reference = DenseReference::new(&mut rates, start, horizon, tolerance)?;
+        let reference_error = reference.error;
         if reference_error.is_nan() || reference_error > tolerance / 10.0 {
             return Err(ComparisonError::Reference { reference_error, horizon, tolerance });
         }
-        let largest = |i: usize| reference.iter().map(|x| x[i].to_f64().abs()).fold(0.0, f64::max);
-        let scales = (0..request.start.len()).map(largest);
-        let scales = scales.map(|size| if size > 0.0 { size } else { 1.0 }).collect();
-        Ok(Motion { request, reference, scales, reference_error })
+        if reference.rests_at(start) {
+            return Err(ComparisonError::AtRest);
+        }
+        Ok(Motion { request, reference })
     }
 
     pub(super) fn reference_error(&self) -> f64 {
-        self.reference_error
+        self.reference.error
+    }
+
+    /// The order of a step on this system; 0 if it has none.
+    pub(super) fn order(&self, step: &StepProgram) -> u32 {
+        let ComparisonRequest { dynamics, start, horizon, .. } = self.request;
+        let mut at = start.clone();
+        at.resize(start.len() + dynamics.inputs(), 0.0);
+        let places: Vec<usize> = (0..start.len()).collect();
+        step_order(step, &at, &places, horizon / 64.0).unwrap_or(0)
     }
 
     /// The program of a step.
@@ -55,33 +52,60 @@ impl<'r> Motion<'r> {
         StepProgram::new(method, &self.request.dynamics)
     }
 
-    /// The largest error of a motion in `steps` steps, a multiple of [`SAMPLES`]; infinite if it ends.
+    /// The largest error of a state in a motion in `steps` steps, relative to the largest size of that state; infinite if it ends.
     pub(super) fn error(&self, step: &StepProgram, steps: u64) -> f64 {
         let mut worst = 0.0_f64;
-        let is_finite = self.follow(step, steps, |number, state| {
-            let sample = number * SAMPLES / steps;
-            if sample * steps == number * SAMPLES {
-                let exact = &self.reference[sample as usize];
-                for ((&x, exact), scale) in state.iter().zip(exact).zip(&self.scales) {
-                    let off = (TwoFloat::from_f64(x) - *exact).to_f64().abs() / scale;
-                    worst = if off > worst || off.is_nan() { off } else { worst };
-                }
+        let is_finite = self.compare(step, steps, |state, exact| {
+            for ((x, exact), scale) in state.iter().zip(exact).zip(&self.reference.scales) {
+                let off = (x - exact).abs() / scale;
+                worst = if off > worst || off.is_nan() { off } else { worst };
             }
         });
         if is_finite && !worst.is_nan() { worst } else { f64::INFINITY }
     }
 
-    /// The largest change of the energy in the course of a motion in `steps` steps; none without an energy.
+    /// The largest difference of the energy from that of the exact motion, relative to the largest of its parts at the start: kinetic,
+    /// potential and total. None without an energy or without such a size.
     pub(super) fn energy_error(&self, step: &StepProgram, steps: u64) -> Option<f64> {
         let mut energy = self.request.dynamics.energy()?.on::<f64>();
-        let start = energy.run(&self.request.start).next()?;
-        let scale = if start == 0.0 { 1.0 } else { start.abs() };
+        let mut energy_of = |state: &[f64]| energy.run(state).next().unwrap_or(f64::NAN);
+        let mut at_rest = self.request.start.clone();
+        let total = energy_of(&at_rest);
+        at_rest[self.request.start.len() / 2..].fill(0.0);
+        let potential = energy_of(&at_rest);
+        let scale = total.abs().max(potential.abs()).max((total - potential).abs());
         let mut worst = 0.0_f64;
-        self.follow(step, steps, |_, state| {
-            let off = energy.run(state).next().map_or(f64::NAN, |now| (now - start).abs() / scale);
+        self.compare(step, steps, |state, exact| {
+            let off = (energy_of(state) - energy_of(exact)).abs() / scale;
             worst = if off > worst || off.is_nan() { off } else { worst };
         });
-        Some(worst)
+        worst.is_finite().then_some(worst)
+    }
+
+    /// Shows states after steps, and the exact ones. Returns whether all were finite.
+    fn compare(
+        &self,
+        step: &StepProgram,
+        steps: u64,
+        mut show: impl FnMut(&[f64], &[f64]),
+    ) -> bool {
+        let horizon = self.request.horizon;
+        let (mut hint, mut exact) = (0, vec![0.0; self.request.start.len()]);
+        self.follow(step, steps, |number, state| {
+            // The samples before this step and up to it, in whole numbers.
+            let sample = |number: u64| u128::from(number) * u128::from(MOST_SAMPLES);
+            let is_sample = steps <= MOST_SAMPLES
+                || sample(number) / u128::from(steps) > sample(number - 1) / u128::from(steps);
+            if is_sample {
+                let time = if number == steps {
+                    horizon
+                } else {
+                    horizon * (number as f64 / steps as f64)
+                };
+                self.reference.write(time, &mut hint, &mut exact);
+                show(state, &exact);
+            }
+        })
     }
 
     /// Shows the state after each step. Returns whether all were finite.

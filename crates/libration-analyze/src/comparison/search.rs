@@ -7,7 +7,7 @@ use libration::{Integrator, Method};
 use libration_work::{Interrupted, Work};
 
 use super::ComparedIntegrator;
-use super::motion::{Motion, SAMPLES};
+use super::motion::Motion;
 
 /// Integrators that are tried first: no other needs many times more evaluations than the best of them and is still worth the search.
 const FIRST: [&str; 3] = ["rk4", "blanes-moan-srkn-6-4", "mclachlan-ss17-8"];
@@ -16,10 +16,10 @@ const FIRST: [&str; 3] = ["rk4", "blanes-moan-srkn-6-4", "mclachlan-ss17-8"];
 pub const MOST_OF_BEST: f64 = 64.0;
 
 /// No integrator takes more evaluations than this.
-const MOST: f64 = 4_194_304.0;
+pub const MOST_EVALUATIONS: f64 = 4_194_304.0;
 
-/// Halvings of the range between a step that fails and one that meets the tolerance, on a scale of logarithms: to 2 %.
-const HALVINGS: usize = 5;
+/// Halvings of the range between a step that fails and one that meets the tolerance, on a scale of logarithms: to 1 %.
+const HALVINGS: usize = 6;
 
 /// The search on a motion.
 pub(super) struct Search<'m> {
@@ -35,7 +35,7 @@ impl<'m> Search<'m> {
         motion: &'m Motion<'m>,
         is_positional: bool,
     ) -> Result<Self, Interrupted> {
-        let mut search = Search { motion, is_positional, most: MOST };
+        let mut search = Search { motion, is_positional, most: MOST_EVALUATIONS };
         let known = FIRST.iter().filter_map(|name| Method::from_name(name));
         for method in known.filter(|method| is_positional || Method::ALL.contains(method)) {
             if let Some(evaluations) = search.of(work, method)?.evaluations {
@@ -52,8 +52,8 @@ impl<'m> Search<'m> {
         method: Method,
     ) -> Result<ComparedIntegrator, Interrupted> {
         let step = self.motion.step_of(method);
-        let stages = stages(method);
-        let order = method.order();
+        let stages = if self.is_positional { stages(method) } else { step.evaluations() };
+        let order = if self.is_positional { method.order() } else { self.motion.order(&step) };
         let certificate = match self.is_positional {
             true => NystromCertificate::new(method, order as usize + 1),
             false => None,
@@ -87,7 +87,7 @@ impl<'m> Search<'m> {
         stages: usize,
     ) -> Result<(Option<u64>, f64), Interrupted> {
         let tolerance = self.motion.request.tolerance;
-        let (mut steps, mut least) = (SAMPLES, f64::INFINITY);
+        let (mut steps, mut least) = (1, f64::INFINITY);
         let mut candidate: Option<(u64, f64)> = None;
         let (mut low, mut error) = loop {
             work.check()?;
@@ -107,11 +107,11 @@ impl<'m> Search<'m> {
         let mut high = low / 2;
         for _ in 0..HALVINGS {
             work.check()?;
-            let middle =
-                ((low as f64 * high as f64).sqrt() / SAMPLES as f64).round() as u64 * SAMPLES;
-            if middle <= high || middle >= low || high < SAMPLES {
+            if high == 0 || high + 1 >= low {
                 break;
             }
+            let middle = (low as f64 * high as f64).sqrt().round() as u64;
+            let middle = middle.clamp(high + 1, low - 1);
             let here = self.motion.error(step, middle);
             if here <= tolerance { (low, error) = (middle, here) } else { high = middle }
         }

@@ -4,7 +4,7 @@ use clap::{ArgGroup, Args};
 
 use libration_analyze::Stepping;
 
-use super::number::{criterion, forecast_steps, time_step};
+use super::number::{criterion, forecast_steps, time_step, tolerance};
 use super::system::integrators;
 use super::timing::{CostArgs, TimingArgs};
 use super::{LinearAnalysisArgs, SystemArgs};
@@ -66,15 +66,16 @@ pub(crate) struct AnalyzeArgs {
         long,
         requires_all = ["tolerance", "horizon"],
         conflicts_with_all = [
-            "integrator", "dt", "plant", "config", "feedback", "max_drift", "max_amplitude", "max_error"
+            "integrator", "dt", "plant", "config", "feedback", "jitter", "steps", "cost_weights", "max_drift", "max_amplitude",
+            "max_error"
         ]
     )]
     pub(crate) compare: bool,
-    /// Largest error of a state with --compare, relative to the largest size of that state (1e-13 to 0.1)
+    /// Largest error of a state after any step with --compare, relative to the largest size of that state (1e-13 to 0.1)
     #[arg(
         long,
         value_name = "ERROR",
-        value_parser = criterion,
+        value_parser = tolerance,
         allow_hyphen_values = true,
         requires = "compare"
     )]

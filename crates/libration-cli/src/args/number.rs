@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use libration_analyze::comparison;
 use libration_settings::limits;
 
 /// The coordinates of one option.
@@ -63,6 +64,12 @@ pub(super) fn time_step(text: &str) -> Result<f64, String> {
         .map_err(|_| format!("not a number; expected a time step that is {}", limits::TIME_STEP))?;
     limits::within(limits::TIME_STEP, "--dt", dt)?;
     Ok(dt)
+}
+
+/// Parses the tolerance of a comparison.
+pub(super) fn tolerance(text: &str) -> Result<f64, String> {
+    let tolerance = text.trim().parse().ok().filter(|x| comparison::TOLERANCES.contains(x));
+    tolerance.ok_or_else(|| "expected a number from 1e-13 to 0.1".to_owned())
 }
 
 /// Parses the limit of a criterion.

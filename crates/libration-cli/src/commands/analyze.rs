@@ -22,6 +22,11 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     if args.compare {
         return print(&compare_integrators::run(args)?);
     }
+    // The parser does not require what conflicts with other options.
+    let of_comparisons = [("--tolerance", args.tolerance), ("--horizon", args.horizon)];
+    if let Some((flag, _)) = of_comparisons.into_iter().find(|(_, value)| value.is_some()) {
+        return Err(Failure::usage(format!("{flag} requires --compare")));
+    }
     if let Some(request) = args.linear_request(linear_file) {
         return print(&analyze_linear::run(&request?, args.json)?);
     }

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use libration::ensemble::dynamics_of;
 use libration_analyze::comparison::{
-    ComparedIntegrator, Comparison, ComparisonError, ComparisonRequest, MOST_OF_BEST, compare,
+    ComparedIntegrator, Comparison, ComparisonError, ComparisonRequest, MOST_EVALUATIONS,
+    MOST_OF_BEST, compare,
 };
 use libration_report::notation::plural;
 use libration_work::Work;
@@ -96,7 +97,9 @@ fn describe(comparison: &Comparison) -> String {
     if more > 0 {
         let _ = writeln!(text, "{} more in --json.", plural(more, "integrator"));
     }
-    if without > 0 {
+    if without > 0 && fit.is_empty() {
+        let _ = writeln!(text, "The search ended at {MOST_EVALUATIONS} evaluations for each.");
+    } else if without > 0 {
         let _ = writeln!(
             text,
             "{} within {MOST_OF_BEST} times the evaluations of the best common ones.",
@@ -113,7 +116,7 @@ fn describe(comparison: &Comparison) -> String {
     }
     let _ = writeln!(
         text,
-        "Errors: the largest of a state at eighths of the time, relative to its largest size; the reference is right to {reference_error:.0e}."
+        "Errors: the largest of a state after any step, relative to its largest size; the reference is right to {reference_error:.0e}."
     );
     text += "Predicted: from error constants and the integrator of the same order with the fewest stages.\n";
     text
