@@ -13,6 +13,7 @@ from ._native import __version__
 from . import datasets, hosts, plants, policies
 from .analysis import Advice, Analysis, advise, analyze
 from .bits import FirstDifference, first_difference
+from .bodies import Bodies, BodyMotion, simulate_bodies
 from .comparison import IntegratorComparison, compare_integrators
 from .energy import EnergyReport, audit_energy
 from .ensemble import Ensemble
@@ -45,6 +46,8 @@ from .systems import IMPLICIT_INTEGRATORS, INTEGRATORS, SPLITTING_METHODS, SYSTE
 __all__ = [
     "Advice",
     "Analysis",
+    "Bodies",
+    "BodyMotion",
     "Butterworth2",
     "Cascade",
     "CustomSystem",
@@ -102,6 +105,7 @@ __all__ = [
     "probe",
     "run_lab",
     "simulate",
+    "simulate_bodies",
 ]
 
 if hasattr(_os, "register_at_fork"):

@@ -30,6 +30,9 @@ __all__ = [
     "_implicit_integrators",
     "_integrators",
     "_linear_plant",
+    "_named_bodies",
+    "_read_bodies",
+    "_simulate_bodies",
     "_parameters",
     "_first_difference",
     "_gains",
@@ -99,6 +102,11 @@ def _audit_energy(
 def _compare_integrators(
     system: _Equations | None, step: Mapping[str, Any] | None, tolerance: float, horizon: float
 ) -> str: ...
+def _named_bodies(name: str, count: int, seed: int) -> dict[str, Any]: ...
+def _read_bodies(path: str) -> dict[str, Any]: ...
+def _simulate_bodies(
+    system: Mapping[str, Any], options: Mapping[str, Any]
+) -> tuple[str, _Numbers, _Numbers]: ...
 def _linear_plant(text: str) -> tuple[list[list[list[float]]], list[list[tuple[str, str]]]]: ...
 def _probe(
     description: str,

@@ -60,7 +60,7 @@ def compare_integrators(system: Any, *, tolerance: float, horizon: float, q: Any
     system
         A name or :class:`System` of the catalogue, or an :class:`EquationSystem`, whose motion begins at its own start. Inputs are zero.
     tolerance
-        The largest error of a state at eighths of the horizon, relative to the largest size of that state: 1e-13 to 0.1.
+        The largest error of a state after any step, relative to the largest size of that state in the motion: 1e-13 to 0.1.
     horizon
         The time of the motion in s.
     q, v
@@ -69,7 +69,7 @@ def compare_integrators(system: Any, *, tolerance: float, horizon: float, q: Any
     Raises
     ------
     ValueError
-        For a tolerance or horizon out of range, and for a motion that the reference cannot follow to a tenth of the tolerance.
+        For a tolerance or horizon out of range, a system at rest, and a motion that ends or that the reference cannot follow.
     """
     system = known(system)
     limits = positive("tolerance", tolerance), positive("horizon", horizon)

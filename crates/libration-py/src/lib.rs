@@ -7,6 +7,7 @@ mod array;
 mod background;
 mod batch;
 mod bench;
+mod bodies;
 mod catalogue;
 mod checked_mutex;
 mod comparison;
@@ -39,6 +40,8 @@ mod _native {
     use crate::batch::Batch;
     #[pymodule_export]
     use crate::bench::{_seconds_of_rollouts, _seconds_of_steps};
+    #[pymodule_export]
+    use crate::bodies::{_named_bodies, _read_bodies, _simulate_bodies};
     #[pymodule_export]
     use crate::catalogue::{
         _implicit_integrators, _integrators, _parameters, _splitting_methods, _studies, _systems,

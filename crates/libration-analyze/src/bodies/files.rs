@@ -46,9 +46,7 @@ impl Recording<f64> for BodiesRecording<'_> {
     }
 
     fn rows(&self) -> u64 {
-        let stride = self.request.stride();
-        let samples = self.request.steps.div_ceil(stride).saturating_add(1);
-        samples.saturating_mul(self.request.system.bodies.count() as u64)
+        self.request.rows()
     }
 
     fn head(&self) -> Vec<(&'static str, Value)> {

@@ -69,8 +69,8 @@ pub struct ConservedChange {
     pub quantity: &'static str,
     /// The largest change at the samples, relative to `size`.
     pub largest_change: f64,
-    /// What the order predicts: the change with twice the time step, over the power of 2; zero where rounding hides it. None for a motion
-    /// that ended early or has fewer than 4 steps.
+    /// What the order predicts: the change with twice the time step, over the power of 2; zero where rounding hides it. None without
+    /// that run, and for a motion that ended early or has fewer than 4 steps.
     pub predicted_by_order: Option<f64>,
     /// What rounding predicts: a random walk.
     pub predicted_by_rounding: f64,
@@ -109,7 +109,7 @@ pub fn simulate(
     let (changes, samples, stopped) =
         run(&mut simulation, request.steps, stride, monitor, 0, &mut keep)?;
     let by_order = match &stopped {
-        None if request.steps >= 4 => by_order(request, stride, monitor)?,
+        None if request.is_predicted && request.steps >= 4 => by_order(request, stride, monitor)?,
         _ => None,
     };
     let sizes = sizes(&request.system.bodies, &start);

@@ -19,6 +19,8 @@ pub struct BodiesRequest {
     pub every: Option<u64>,
     /// Whether positions and velocities keep what their sums round off.
     pub is_compensated: bool,
+    /// Whether a second run with twice the time step predicts the changes by the order: half of the time again.
+    pub is_predicted: bool,
     /// Where the sums over pairs run.
     pub execution: Execution,
 }
@@ -43,9 +45,15 @@ impl BodiesRequest {
         BodySimulation::new(bodies, self.integrator, dt, self.is_compensated, execution)
     }
 
+    /// Number of rows: one for each body of each sample.
+    pub fn rows(&self) -> u64 {
+        let samples = self.steps.div_ceil(self.stride()).saturating_add(1);
+        samples.saturating_mul(self.system.bodies.count() as u64)
+    }
+
     /// Steps from sample to sample.
     pub(super) fn stride(&self) -> u64 {
-        self.every.unwrap_or_else(|| {
+        self.every.map(|every| every.max(1)).unwrap_or_else(|| {
             let few = self.steps.div_ceil(SAMPLES);
             match self.system.bodies.count() >= MANY_BODIES {
                 true => {

@@ -45,6 +45,9 @@ pub(crate) struct BodiesArgs {
     /// Keep what the sums of positions and velocities round off
     #[arg(long)]
     pub(crate) compensated: bool,
+    /// Skip the second run with twice the time step, which predicts changes by the order
+    #[arg(long)]
+    pub(crate) no_prediction: bool,
     /// Number of threads (0: one per core)
     #[arg(long, value_name = "N", default_value = "0")]
     pub(crate) threads: usize,

@@ -32,6 +32,7 @@ pub(crate) fn run(args: &BodiesArgs, quiet: bool) -> Result<(), Failure> {
         steps: args.steps,
         every: args.every,
         is_compensated: args.compensated,
+        is_predicted: !args.no_prediction,
         execution: execution.map_err(|error| Failure::ensemble(&error))?,
     };
     let watcher = Watcher::new(quiet || args.json, args.steps, interrupt::listen());

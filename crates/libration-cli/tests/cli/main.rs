@@ -6,6 +6,7 @@ mod advise;
 mod analyze;
 mod audit;
 mod bench;
+mod bodies;
 mod clocks;
 mod closed_loop;
 mod comparison;

@@ -1,0 +1,104 @@
+//! `libration bodies`.
+
+use std::fs;
+
+use assert_cmd::Command;
+use serde_json::Value;
+
+fn libration(words: &str) -> assert_cmd::assert::Assert {
+    Command::cargo_bin("libration").unwrap().args(words.split_whitespace()).assert()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn the_audit_of_bodies_has_a_prediction_for_each_change() {
+    let words = "bodies figure-eight --integrator yoshida4 --dt 0.01 --steps 2e3 --json";
+    let output = libration(words).success();
+    let audit: Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
+    assert_eq!(audit["schema"], "libration.bodies/1");
+    assert_eq!(audit["evaluations"], 3);
+    let energy = &audit["conserved"][0];
+    assert_eq!(energy["quantity"], "energy");
+    let number = |key: &str| energy[key].as_f64().unwrap();
+    let ratio = number("largest_change") / number("predicted_by_order");
+    assert!((0.7..1.4).contains(&ratio), "{ratio}");
+    assert!(number("predicted_by_rounding") < number("largest_change"));
+    let keys: Vec<&str> = audit.as_object().unwrap().keys().map(String::as_str).collect();
+    for key in ["system", "bodies", "integrator", "dt", "steps", "encounter", "stopped", "samples"]
+    {
+        assert!(keys.contains(&key), "{keys:?}");
+    }
+}
+
+#[test]
+fn rows_have_each_body_of_each_sample() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("orbit.csv");
+    let words = format!(
+        "bodies pythagorean --integrator leapfrog --dt 0.001 --steps 100 --every 25 --output {}",
+        file.display()
+    );
+    libration(&words).success();
+    let rows = fs::read_to_string(&file).unwrap();
+    let lines: Vec<&str> = rows.lines().collect();
+    assert_eq!(lines[0], "body,step,t,x,y,z,vx,vy,vz");
+    assert_eq!(lines.len(), 1 + 5 * 3);
+    assert!(lines[4].starts_with("0,25,0.025,"), "{}", lines[4]);
+}
+
+#[test]
+fn a_collision_fails_the_run_and_keeps_its_rows() {
+    let folder = tempfile::tempdir().unwrap();
+    let (bodies, rows) = (folder.path().join("two.toml"), folder.path().join("rows.csv"));
+    let body = |name: &str, x: f64| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nmass = 1\nposition = [{x}, 0, 0]\nvelocity = [0, 0, 0]\nradius = 0.1\n"
+        )
+    };
+    fs::write(&bodies, body("left", 0.0) + &body("right", 1.0)).unwrap();
+    let words = format!(
+        "bodies {} --integrator leapfrog --dt 0.01 --steps 1e3 --every 10 --output {}",
+        bodies.display(),
+        rows.display()
+    );
+    let failed = libration(&words).code(1);
+    let message = text(&failed.get_output().stderr);
+    assert!(message.contains("`left` and `right` collide at t = 0.7"), "{message}");
+    assert!(fs::read_to_string(&rows).unwrap().lines().count() > 10);
+}
+
+#[test]
+fn wrong_bodies_are_usage_errors() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("bad.csv");
+    fs::write(&file, "mass,x,y,z,vx,vy,vz\n1,0,0,0,0,0,x\n").unwrap();
+    let file = file.display().to_string();
+    let of_file = format!("bodies {file} --integrator leapfrog --dt 0.1 --steps 1");
+    for (words, message) in [
+        (
+            "bodies figure-eigth --integrator leapfrog --dt 0.1 --steps 1",
+            "did you mean `figure-eight`",
+        ),
+        ("bodies figure-eight --integrator leap --dt 0.1 --steps 1", "did you mean `leapfrog`"),
+        ("bodies plummer --integrator leapfrog --dt 0.1 --steps 1", "plummer requires --count"),
+        (
+            "bodies kozai --count 3 --integrator leapfrog --dt 0.1 --steps 1",
+            "--count applies to plummer",
+        ),
+        ("bodies kozai --softening -1 --integrator leapfrog --dt 0.1 --steps 1", "(--softening)"),
+        (
+            "bodies figure-eight --softening 1 --integrator wisdom-holman --dt 0.1 --steps 1",
+            "without softening",
+        ),
+        ("bodies figure-eight --integrator leapfrog --dt -1 --steps 1", "--dt"),
+        ("bodies missing.csv --integrator leapfrog --dt 1 --steps 1", "cannot read `missing.csv`"),
+        (of_file.as_str(), "vz = `x`; expected a number"),
+    ] {
+        let failed = libration(words).code(2);
+        let error = text(&failed.get_output().stderr);
+        assert!(error.contains(message), "{words}: {error}");
+    }
+}

@@ -1,0 +1,206 @@
+"""Bodies under their gravity: motions with an audit of what they conserve."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from os import PathLike, fspath
+from typing import Any
+
+import numpy as np
+
+from . import _native
+from ._html import table
+from ._settings import positive
+
+__all__ = ["Bodies", "BodyMotion", "simulate_bodies"]
+
+class Bodies:
+    """Bodies in space.
+
+    Parameters
+    ----------
+    masses
+        Shape ``(n,)``, at least zero. A body without mass feels the others, which do not feel it.
+    positions, velocities
+        Shape ``(n, 3)``.
+    radii
+        Shape ``(n,)``, at least zero [default: zero]. Two bodies whose distance is below the sum of their radii end the motion.
+    names
+        A name for each body [default: its number].
+    gravitational_constant
+        In the units of the masses, positions and velocities.
+    softening
+        The length ``L`` of the potential ``-G m / sqrt(r**2 + L**2)``.
+
+    Raises
+    ------
+    ValueError
+        For arrays of other shapes, and numbers that are not finite or are negative masses or radii.
+    """
+
+    def __init__(
+        self,
+        masses: Any,
+        positions: Any,
+        velocities: Any,
+        *,
+        radii: Any = None,
+        names: Sequence[str] | None = None,
+        gravitational_constant: float = 1.0,
+        softening: float = 0.0,
+        name: str = "bodies",
+    ) -> None:
+        self.masses = np.array(masses, dtype=np.float64)
+        if self.masses.ndim != 1:
+            raise ValueError(f"masses has shape {self.masses.shape}; expected (n,)")
+        count = len(self.masses)
+        self.positions = _of_shape("positions", positions, (count, 3))
+        self.velocities = _of_shape("velocities", velocities, (count, 3))
+        self.radii = np.zeros(count) if radii is None else _of_shape("radii", radii, (count,))
+        self.names = [str(i) for i in range(count)] if names is None else [str(name) for name in names]
+        if len(self.names) != count:
+            raise ValueError(f"names has {len(self.names)} names; expected {count}")
+        self.gravitational_constant = float(gravitational_constant)
+        self.softening = float(softening)
+        self.name = name
+
+    @classmethod
+    def published(cls, name: str, *, count: int | None = None, seed: int = 0, softening: float = 0.0) -> Bodies:
+        """Published initial conditions: ``figure-eight``, ``pythagorean``, ``outer-solar-system``, ``kozai``, or ``plummer`` with a ``count``
+        of bodies and a ``seed``."""
+        if name != "plummer" and count is not None:
+            raise ValueError(f"count applies to 'plummer' only; {name!r} has fixed bodies")
+        if name == "plummer" and count is None:
+            raise ValueError("'plummer' requires count")
+        return cls._of(_native._named_bodies(name, count or 0, seed), softening)
+
+    @classmethod
+    def read(cls, path: str | PathLike[str]) -> Bodies:
+        """The bodies of a file ``NAME.toml`` or ``NAME.csv``."""
+        return cls._of(_native._read_bodies(fspath(path)), None)
+
+    @classmethod
+    def _of(cls, fields: dict[str, Any], softening: float | None) -> Bodies:
+        fields = dict(fields)
+        for key in ("positions", "velocities"):
+            fields[key] = fields[key].reshape(-1, 3)
+        if softening is not None:
+            fields["softening"] = softening
+        return cls(**fields)
+
+    def __len__(self) -> int:
+        return len(self.masses)
+
+    def __repr__(self) -> str:
+        return f"<Bodies: {len(self)} of {self.name}>"
+
+    def _table(self) -> dict[str, Any]:
+        return {
+            "name": self.name,
+            "names": self.names,
+            "masses": self.masses.tolist(),
+            "radii": self.radii.tolist(),
+            "positions": self.positions.ravel().tolist(),
+            "velocities": self.velocities.ravel().tolist(),
+            "gravitational_constant": self.gravitational_constant,
+            "softening": self.softening,
+        }
+
+
+def _of_shape(name: str, values: Any, shape: tuple[int, ...]) -> np.ndarray[Any, Any]:
+    array = np.array(values, dtype=np.float64)
+    if array.shape != shape:
+        raise ValueError(f"{name} has shape {array.shape}; expected {shape}")
+    return array
+
+
+class BodyMotion:
+    """A motion of bodies; :attr:`results` has the keys of ``libration bodies --json``."""
+
+    def __init__(self, bodies: Bodies, results: dict[str, Any], t: np.ndarray[Any, Any], states: np.ndarray[Any, Any]) -> None:
+        self.bodies = bodies
+        self.results = results
+        #: Times of the samples, shape ``(samples,)``.
+        self.t = t
+        states = states.reshape(len(t), len(bodies), 6)
+        #: Shape ``(samples, n, 3)``.
+        self.positions = states[..., :3]
+        #: Shape ``(samples, n, 3)``.
+        self.velocities = states[..., 3:]
+
+    def __repr__(self) -> str:
+        energy = self.conserved["energy"]["largest_change"]
+        return f"<BodyMotion: {len(self.bodies)} bodies to t = {self.results['t']:g}, energy within {energy:.1e}>"
+
+    def _repr_html_(self) -> str:
+        columns = ["quantity", "largest_change", "predicted_by_order", "predicted_by_rounding"]
+        rows = [[one[column] for column in columns] for one in self.results["conserved"]]
+        return table([column.replace("_", " ") for column in columns], rows)
+
+    @property
+    def conserved(self) -> dict[str, dict[str, Any]]:
+        """The ``largest_change`` of ``energy``, ``momentum`` and ``angular momentum``, relative to its ``size``, with what the order of the
+        integrator and rounding predict."""
+        return {one["quantity"]: one for one in self.results["conserved"]}
+
+    @property
+    def stopped(self) -> str | None:
+        """Why the motion ended before its last step: a collision, or numbers that are not finite."""
+        stopped: str | None = self.results["stopped"]
+        return stopped
+
+
+def simulate_bodies(
+    bodies: Bodies,
+    *,
+    integrator: str,
+    dt: float,
+    steps: int,
+    every: int | None = None,
+    compensated: bool = False,
+    predict: bool = True,
+    threads: int = 0,
+) -> BodyMotion:
+    """Simulate bodies under their gravity and audit what they conserve.
+
+    Parameters
+    ----------
+    bodies
+        The bodies at time 0.
+    integrator
+        The name of an explicit integrator, or ``"wisdom-holman"`` for orbits around a heavy first body.
+    dt, steps
+        Time step, in the units of the bodies, and number of steps.
+    every
+        Steps from sample to sample [default: at most 1000 samples].
+    compensated
+        Whether positions and velocities keep what their sums round off.
+    predict
+        Whether a second run with twice the time step predicts the changes by the order, which takes half of the time again.
+    threads
+        Number of threads (0: one per core). Results do not depend on it.
+
+    Raises
+    ------
+    ValueError
+        For invalid bodies, an unknown integrator, or one that does not apply.
+    MemoryError
+        If the samples do not fit.
+    """
+    if not isinstance(bodies, Bodies):
+        raise TypeError(f"bodies is {type(bodies).__name__}; expected Bodies")
+    for name, value in (("steps", steps), ("every", every)):
+        if value is not None and (not isinstance(value, (int, np.integer)) or value < 1):
+            raise ValueError(f"{name} is {value!r}; expected a whole number of at least 1")
+    options = {
+        "integrator": integrator,
+        "dt": positive("dt", dt),
+        "steps": int(steps),
+        "every": None if every is None else int(every),
+        "compensated": bool(compensated),
+        "predict": bool(predict),
+        "threads": int(threads),
+    }
+    audit, t, states = _native._simulate_bodies(bodies._table(), options)
+    return BodyMotion(bodies, json.loads(audit), t, states)

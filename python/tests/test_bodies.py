@@ -1,0 +1,100 @@
+"""Tests of bodies under their gravity."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import libration
+from libration import Bodies
+
+
+def leapfrog(bodies: Bodies, dt: float, steps: int) -> Any:
+    """Drift, kick, drift in NumPy."""
+    q, v = bodies.positions.copy(), bodies.velocities.copy()
+    strength = bodies.gravitational_constant * bodies.masses
+    for _ in range(steps):
+        q += 0.5 * dt * v
+        offset = q[None, :, :] - q[:, None, :]
+        square = (offset**2).sum(-1) + bodies.softening**2
+        np.fill_diagonal(square, np.inf)
+        v += dt * (strength[None, :, None] * offset / square[..., None] ** 1.5).sum(1)
+        q += 0.5 * dt * v
+    return q, v
+
+
+def test_a_cluster_moves_as_ten_lines_of_numpy_move_it() -> None:
+    cluster = Bodies.published("plummer", count=37, seed=5, softening=0.05)
+    motion = libration.simulate_bodies(cluster, integrator="leapfrog", dt=0.01, steps=50, every=10)
+    q, v = leapfrog(cluster, 0.01, 50)
+    assert motion.positions.shape == (6, 37, 3) and np.allclose(motion.t, 0.1 * np.arange(6))
+    # 50 steps of sums of 37 terms: some hundred roundings.
+    assert np.abs(motion.positions[-1] - q).max() < 1e-13 and np.abs(motion.velocities[-1] - v).max() < 1e-13
+    again = libration.simulate_bodies(cluster, integrator="leapfrog", dt=0.01, steps=50, every=10, threads=1)
+    assert np.array_equal(motion.positions, again.positions)
+
+
+def test_predictions_of_the_energy_agree_with_the_measurement() -> None:
+    planets = Bodies.published("outer-solar-system")
+    assert planets.names[0] == "sun" and len(planets) == 6
+    motion = libration.simulate_bodies(planets, integrator="wisdom-holman", dt=100.0, steps=5000)
+    energy = motion.conserved["energy"]
+    # The error of order 2 has no next term of order 3.
+    assert 0.8 < energy["largest_change"] / energy["predicted_by_order"] < 1.25
+    assert energy["predicted_by_rounding"] < 1e-3 * energy["largest_change"]
+    assert "energy" in repr(motion) and "momentum" in motion._repr_html_() and motion.stopped is None
+
+
+def test_collisions_end_a_motion_and_name_the_bodies() -> None:
+    two = Bodies(
+        [1.0, 1.0], [[0, 0, 0], [1, 0, 0]], np.zeros((2, 3)), radii=[0.1, 0.2], names=["a", "b"]
+    )
+    motion = libration.simulate_bodies(two, integrator="velocity-verlet", dt=0.01, steps=1000)
+    assert motion.stopped is not None and "`a` and `b` collide at t = 0.6" in motion.stopped
+    assert motion.results["steps"] < 100
+
+
+def test_files_have_the_bodies(tmp_path: Path) -> None:
+    rows = tmp_path / "two.csv"
+    rows.write_text("name,mass,x,y,z,vx,vy,vz\nsun,1,0,0,0,0,0,0\nplanet,0,1,0,0,0,1,0\n")
+    read = Bodies.read(rows)
+    assert read.names == ["sun", "planet"] and read.name == "two"
+    turn = libration.simulate_bodies(read, integrator="wisdom-holman", dt=2 * np.pi, steps=3)
+    # Whole turns of a circle around a body that stays.
+    assert np.abs(turn.positions[-1] - read.positions).max() < 1e-14
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"masses": [1.0, -1.0]}, "body 1: mass = -1"),
+        ({"positions": np.zeros((2, 2))}, r"positions has shape \(2, 2\); expected \(2, 3\)"),
+        ({"velocities": np.full((2, 3), np.nan)}, "body 0: vx = NaN"),
+        ({"positions": np.zeros((2, 3))}, "bodies 0 and 1 are at the same place"),
+        ({"softening": -1.0}, "softening -1"),
+        ({"names": ["a"]}, "names has 1 names; expected 2"),
+    ],
+)
+def test_wrong_bodies_are_refused(change: dict[str, Any], message: str) -> None:
+    fields: dict[str, Any] = {"masses": [1.0, 1.0], "positions": [[0, 0, 0], [1, 0, 0]], "velocities": np.zeros((2, 3))}
+    with pytest.raises(ValueError, match=message):
+        libration.simulate_bodies(Bodies(**{**fields, **change}), integrator="leapfrog", dt=0.1, steps=1)
+
+
+def test_wrong_options_are_refused() -> None:
+    eight = Bodies.published("figure-eight")
+    wrong: list[tuple[dict[str, Any], str]] = [
+        ({"integrator": "leapfrogg"}, "did you mean 'leapfrog'"),
+        ({"dt": 0.0}, "dt"),
+        ({"steps": 0}, "steps is 0"),
+        ({"every": 0}, "every is 0"),
+    ]
+    for change, message in wrong:
+        options: dict[str, Any] = {"integrator": "leapfrog", "dt": 0.1, "steps": 1, **change}
+        with pytest.raises(ValueError, match=message):
+            libration.simulate_bodies(eight, **options)
+    with pytest.raises(ValueError, match="'plummer' requires count"):
+        Bodies.published("plummer")
+    with pytest.raises(ValueError, match="did you mean 'figure-eight'"):
+        Bodies.published("figure-eigth")
