@@ -109,6 +109,17 @@ pub fn stability_margin(method: &LangevinMethod, z: f64, friction: f64) -> f64 {
     circle.min(real.min(sharp))
 }
 
+/// The part of a deviation from the mean that a step on a mode leaves: the largest size of an eigenvalue.
+pub fn mode_memory(method: &LangevinMethod, z: f64, friction: f64) -> f64 {
+    let [a, b, c, d] =
+        ModeStep::new(method, LangevinStep::new(z, friction, letters(method))).matrix;
+    let (half, determinant) = (0.5 * (a + d), a * d - b * c);
+    match half * half - determinant {
+        square if square < 0.0 => determinant.sqrt(),
+        square => half.abs() + square.sqrt(),
+    }
+}
+
 /// The covariance of a stable step on a mode with the time step `z = ωh` and the friction `γ/ω`; none of an unstable one.
 pub fn mode_covariance(
     method: &LangevinMethod,

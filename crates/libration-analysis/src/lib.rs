@@ -50,7 +50,8 @@ pub use equilibrium::{Equilibrium, jacobian, rate_derivative};
 pub use error_forecast::ErrorForecast;
 pub use langevin_formula::covariance_formulas;
 pub use langevin_mode::{
-    ModeCovariance, bias_orders, letters, mode_biases, mode_covariance, stability_margin,
+    ModeCovariance, bias_orders, letters, mode_biases, mode_covariance, mode_memory,
+    stability_margin,
 };
 pub use largest_step::{Criterion, LargestStep};
 pub use linear_step::StepOn;

@@ -1,7 +1,8 @@
 //! Steps of integrators as programs.
 
 use libration_core::integrator::ImplicitIntegrator;
-use libration_core::{AnyMethod, Integrator, State};
+use libration_core::thermostat::{LangevinMethod, LangevinStep};
+use libration_core::{AnyMethod, Integrator, State, System};
 
 use super::Dynamics;
 use super::derivative_programs::DerivativePrograms;
@@ -34,7 +35,7 @@ impl StepProgram {
             let end = integrator.step(&TracedSystem(&trace), start, dt);
             vec![trace.id(end.q[0]), trace.id(end.v[0])]
         };
-        StepProgram::of_trace(&trace.into_operations(), &ends, false, dynamics)
+        StepProgram::of_trace(&trace.into_operations(), &ends, Shape::default(), dynamics)
     }
 
     /// The same of an integrator that solves equations, by [elimination](libration_core::elimination) with derivatives by dual numbers:
@@ -52,7 +53,7 @@ impl StepProgram {
             let end = integrator.step(&TracedSystem(&trace), start, dt);
             vec![trace.id(end.q[0]), trace.id(end.v[0])]
         };
-        StepProgram::of_trace(&trace.into_operations(), &ends, false, dynamics)
+        StepProgram::of_trace(&trace.into_operations(), &ends, Shape::default(), dynamics)
     }
 
     /// A step that takes the accelerations at its start and hands on those at its end, which saves an evaluation: from positions,
@@ -74,7 +75,46 @@ impl StepProgram {
             let (end, known) = integrator.carried(&TracedSystem(&trace), start, known, dt);
             vec![trace.id(end.q[0]), trace.id(end.v[0]), trace.id(known[0])]
         };
-        Some(StepProgram::of_trace(&trace.into_operations(), &ends, true, dynamics))
+        let shape = Shape { carries: true, ..Shape::default() };
+        Some(StepProgram::of_trace(&trace.into_operations(), &ends, shape, dynamics))
+    }
+
+    /// A step of Langevin dynamics that takes the accelerations at its start and hands on those at its end: from positions, velocities,
+    /// accelerations, inputs, the time step, the other numbers of a [`LangevinStep`] in their order, and the
+    /// [vectors of noise](LangevinMethod::noises) to positions, velocities and accelerations.
+    ///
+    /// None if an acceleration depends on a velocity.
+    pub fn langevin(method: &LangevinMethod, dynamics: &Dynamics) -> Option<Self> {
+        if !dynamics.is_positional() {
+            return None;
+        }
+        let trace = StepTrace::default();
+        let ends = {
+            let start = State {
+                q: [trace.record(VectorOperation::Positions)],
+                v: [trace.record(VectorOperation::Velocities)],
+            };
+            let dt = trace.record(VectorOperation::TimeStep);
+            let [decay, damping, implicit_factor] =
+                [0, 1, 2].map(|i| trace.record(VectorOperation::Number(i)));
+            let noise: Vec<_> =
+                (0..method.noises()).map(|i| [trace.record(VectorOperation::Noise(i))]).collect();
+            let step = LangevinStep { dt, decay, damping, implicit_factor };
+            let system = TracedSystem(&trace);
+            let end = method.step(&system, start, step, &noise);
+            let [known] = system.acceleration(&end);
+            vec![trace.id(end.q[0]), trace.id(end.v[0]), trace.id(known)]
+        };
+        let mut operations = trace.into_operations();
+        for i in 0..operations.len() {
+            if let VectorOperation::AccelerationsAt(q, _) = operations[i]
+                && operations[q] == VectorOperation::Positions
+            {
+                operations[i] = VectorOperation::Accelerations;
+            }
+        }
+        let shape = Shape { carries: true, numbers: 3, noises: method.noises() };
+        Some(StepProgram::of_trace(&operations, &ends, shape, dynamics))
     }
 
     /// A step of a built-in integrator.
@@ -88,7 +128,7 @@ impl StepProgram {
     fn of_trace(
         operations: &[VectorOperation],
         ends: &[VectorId],
-        carries: bool,
+        shape: Shape,
         dynamics: &Dynamics,
     ) -> Self {
         let evaluations = operations.iter().map(|operation| match operation {
@@ -98,7 +138,7 @@ impl StepProgram {
         });
         StepProgram {
             evaluations: evaluations.sum(),
-            program: program(operations, ends, carries, dynamics),
+            program: program(operations, ends, shape, dynamics),
         }
     }
 
@@ -113,11 +153,22 @@ impl StepProgram {
     }
 }
 
+/// The inputs of a program of a step besides positions, velocities, the inputs of the system and the time step.
+#[derive(Clone, Copy, Debug, Default)]
+struct Shape {
+    /// Whether it takes accelerations.
+    carries: bool,
+    /// The count of [numbers](VectorOperation::Number).
+    numbers: usize,
+    /// The count of vectors of [noise](VectorOperation::Noise).
+    noises: usize,
+}
+
 /// The program of recorded operations on vectors.
 fn program(
     operations: &[VectorOperation],
     ends: &[VectorId],
-    carries: bool,
+    Shape { carries, numbers, noises }: Shape,
     dynamics: &Dynamics,
 ) -> Program {
     let degrees = dynamics.degrees();
@@ -126,6 +177,8 @@ fn program(
     let known = builder.inputs(if carries { degrees } else { 0 });
     let commands = builder.inputs(dynamics.inputs());
     let dt = builder.input();
+    let numbers = builder.inputs(numbers);
+    let noises = builder.inputs(noises * degrees);
     let derivatives = DerivativePrograms::new(dynamics);
     let mut vectors: Vec<Vec<ValueId>> = Vec::with_capacity(operations.len());
     for operation in operations {
@@ -141,6 +194,8 @@ fn program(
             VectorOperation::Velocities => velocities.clone(),
             VectorOperation::Accelerations => known.clone(),
             VectorOperation::TimeStep => vec![dt; degrees],
+            VectorOperation::Number(i) => vec![numbers[i]; degrees],
+            VectorOperation::Noise(i) => noises[i * degrees..(i + 1) * degrees].to_vec(),
             VectorOperation::Constant(c) => vec![builder.constant(c); degrees],
             VectorOperation::Sum(a, b) => of_two(&mut builder, a, b, Operation::Sum),
             VectorOperation::Difference(a, b) => of_two(&mut builder, a, b, Operation::Difference),

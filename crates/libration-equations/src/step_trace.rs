@@ -26,6 +26,10 @@ pub(crate) enum VectorOperation {
     Accelerations,
     /// The time step in each entry.
     TimeStep,
+    /// A number of the step besides its length, in each entry.
+    Number(usize),
+    /// A vector of random numbers.
+    Noise(usize),
     Constant(f64),
     Sum(VectorId, VectorId),
     Difference(VectorId, VectorId),

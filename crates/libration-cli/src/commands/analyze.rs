@@ -13,7 +13,7 @@ use libration_settings::limits;
 
 use super::closed_loop::{dephasing, describe_loop};
 use super::simulate::linear_file;
-use super::{analyze_equations, analyze_linear, compare_integrators, equation_file};
+use super::{analyze_equations, analyze_linear, compare_integrators, equation_file, temperature};
 use crate::args::{AnalyzeArgs, CostArgs};
 use crate::error::Failure;
 
@@ -21,6 +21,9 @@ use crate::error::Failure;
 pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     if args.compare {
         return print(&compare_integrators::run(args)?);
+    }
+    if let Some(temperature) = args.temperature {
+        return print(&temperature::run(args, temperature)?);
     }
     if let Some(request) = args.linear_request(linear_file) {
         return print(&analyze_linear::run(&request?, args.json)?);

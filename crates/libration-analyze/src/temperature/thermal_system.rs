@@ -1,0 +1,195 @@
+//! A system with its masses and its modes about an equilibrium.
+
+use libration::Scalar;
+use libration::analysis::{Equilibrium, jacobian};
+use libration::equations::Dynamics;
+use libration::linear::{Matrix, cholesky, eigenvalues, solve_matrix};
+use libration::number::Dual;
+
+use super::TemperatureError;
+
+/// A relative difference that counts as rounding: derivatives are exact to some operations.
+const ROUNDING: f64 = 1e-9;
+
+/// A part of the square of the highest frequency below which a square of a frequency counts as zero.
+const NOTHING: f64 = 1e-12;
+
+/// A system with a potential and constant masses, about a stable equilibrium.
+#[derive(Clone, Debug)]
+pub struct ThermalSystem {
+    /// The name.
+    pub name: String,
+    /// The system; its inputs are zero.
+    pub dynamics: Dynamics,
+    /// The equilibrium: positions.
+    pub equilibrium: Vec<f64>,
+    /// The mass matrix.
+    pub mass: Matrix,
+    /// The lower triangular `L` with `L Lᵀ` the inverse of the mass matrix.
+    pub inverse_root: Matrix,
+    /// Angular frequencies of the modes in rad/s, the slowest first.
+    pub frequencies: Vec<f64>,
+}
+
+impl ThermalSystem {
+    /// The system about the equilibrium near `start` (positions, then velocities).
+    ///
+    /// `unit_mass` is the mass over which the energy of the system is given. A system without an energy has the masses `unit_mass`.
+    ///
+    /// # Errors
+    /// [`TemperatureError`]: the reason for which no temperature is stationary.
+    pub fn new(
+        name: &str,
+        dynamics: &Dynamics,
+        start: &[f64],
+        unit_mass: f64,
+    ) -> Result<Self, TemperatureError> {
+        let n = dynamics.degrees();
+        let system = || name.to_owned();
+        if start.len() != 2 * n {
+            return Err(TemperatureError::Start { found: start.len(), expected: 2 * n });
+        }
+        if !dynamics.is_positional() {
+            return Err(TemperatureError::Velocity { system: system() });
+        }
+        let mut at = start[..n].to_vec();
+        at.resize(2 * n + dynamics.inputs(), 0.0);
+        let positions: Vec<usize> = (0..n).collect();
+        let rest = Equilibrium::near(dynamics, &at, &positions).map_err(|found| {
+            TemperatureError::NoEquilibrium { system: system(), residual: found.residual }
+        })?;
+        let equilibrium = rest.state[..n].to_vec();
+        let energy = Energy { dynamics, unit_mass };
+        let mass = energy.mass(&rest.state);
+        let inverse = solve_matrix(&mass, &Matrix::identity(n));
+        let not_positive = || TemperatureError::Mass {
+            system: system(),
+            problem: "a kinetic energy that is not positive",
+        };
+        let inverse = inverse.ok_or_else(not_positive)?;
+        let (root, inverse_root) = (cholesky(&mass), cholesky(&inverse));
+        if (0..n).any(|i| root[(i, i)] <= 0.0 || inverse_root[(i, i)] <= 0.0) {
+            return Err(not_positive());
+        }
+        energy.check(name, &rest.state, &mass)?;
+        // In the coordinates L⁻¹q each mass is 1, and the stiffness is symmetric.
+        let stiffness = rest.jacobian.block((0, 0), (n, n));
+        let back = solve_matrix(&inverse_root, &stiffness).ok_or_else(not_positive)?;
+        let squares = eigenvalues(&(&back * &inverse_root).scaled(-1.0)).unwrap_or_default();
+        let mut squares: Vec<f64> = squares.iter().map(|value| value.re).collect();
+        squares.sort_by(f64::total_cmp);
+        match (squares.first(), squares.last()) {
+            (Some(&least), Some(&most)) if least > NOTHING * most && most.is_finite() => {}
+            (least, _) => {
+                let square = least.copied().unwrap_or(f64::NAN);
+                return Err(TemperatureError::Unstable {
+                    system: system(),
+                    positions: equilibrium,
+                    square,
+                });
+            }
+        }
+        let frequencies = squares.into_iter().map(f64::sqrt).collect();
+        Ok(ThermalSystem {
+            name: system(),
+            dynamics: dynamics.clone(),
+            equilibrium,
+            mass,
+            inverse_root,
+            frequencies,
+        })
+    }
+
+    /// The angular frequency of the fastest mode in rad/s.
+    pub fn fastest(&self) -> f64 {
+        self.frequencies.last().copied().unwrap_or(f64::NAN)
+    }
+}
+
+/// The energy of a system, from which masses follow.
+struct Energy<'d> {
+    dynamics: &'d Dynamics,
+    unit_mass: f64,
+}
+
+impl Energy<'_> {
+    /// The second derivatives of the energy by velocities.
+    fn mass(&self, at: &[f64]) -> Matrix {
+        let n = self.dynamics.degrees();
+        let Some(energy) = self.dynamics.energy() else {
+            return Matrix::identity(n).scaled(self.unit_mass);
+        };
+        let mut energy = energy.on::<Dual<Dual<f64>>>();
+        let mut inputs: Vec<Dual<Dual<f64>>> = at.iter().map(|&x| Scalar::from_f64(x)).collect();
+        let mut mass = Matrix::zeros(n, n);
+        for i in 0..n {
+            for j in 0..n {
+                let own = inputs[n + i];
+                inputs[n + i].re.du = 1.0;
+                let other = inputs[n + j];
+                inputs[n + j].du.re = 1.0;
+                mass[(i, j)] =
+                    self.unit_mass * energy.run(&inputs).next().map_or(f64::NAN, |e| e.du.du);
+                inputs[n + j] = other;
+                inputs[n + i] = own;
+            }
+        }
+        mass
+    }
+
+    /// The derivatives of the energy by positions.
+    fn slopes(&self, at: &[f64]) -> Option<Vec<f64>> {
+        let mut energy = self.dynamics.energy()?.on::<Dual<f64>>();
+        let mut inputs: Vec<Dual<f64>> = at.iter().map(|&x| Dual::constant(x)).collect();
+        let slope = |i: usize| {
+            inputs[i] = Dual::variable(at[i]);
+            let slope = energy.run(&inputs).next().map_or(f64::NAN, |energy| energy.du);
+            inputs[i] = Dual::constant(at[i]);
+            self.unit_mass * slope
+        };
+        Some((0..self.dynamics.degrees()).map(slope).collect())
+    }
+
+    /// Checks near an equilibrium that masses are constant, and that forces are the slopes of the potential.
+    fn check(&self, name: &str, rest: &[f64], mass: &Matrix) -> Result<(), TemperatureError> {
+        let n = self.dynamics.degrees();
+        let mut at = rest.to_vec();
+        for (i, x) in at.iter_mut().take(2 * n).enumerate() {
+            // Parts of the golden ratio: no symmetry holds there.
+            let part = (0.618_033_988_749_895 * (1.0 + i as f64)).fract() - 0.5;
+            *x += 0.1 * part * x.abs().max(1.0);
+        }
+        let system = || name.to_owned();
+        let mut there = self.mass(&at);
+        there.add_scaled(-1.0, mass);
+        if !(there.largest() <= ROUNDING * mass.largest()) {
+            let problem = "masses that depend on the state";
+            return Err(TemperatureError::Mass { system: system(), problem });
+        }
+        let stiffness = mass * &jacobian(self.dynamics, &at).block((0, 0), (n, n));
+        let mut skew = stiffness.transposed();
+        skew.add_scaled(-1.0, &stiffness);
+        let has_energy = self.dynamics.energy().is_some();
+        let help = match has_energy {
+            false => {
+                "; help: without an `energy` all masses are 1: give the energy of unequal masses"
+            }
+            true => "",
+        };
+        if !(skew.largest() <= ROUNDING * stiffness.largest()) {
+            return Err(TemperatureError::NoPotential { system: system(), help });
+        }
+        let Some(slopes) = self.slopes(&at) else { return Ok(()) };
+        let forces =
+            mass.apply(&self.dynamics.accelerations().on::<f64>().run(&at).collect::<Vec<f64>>());
+        let size = slopes.iter().chain(&forces).fold(0.0, |most: f64, x| most.max(x.abs()));
+        let is_slope = |(force, slope): (&f64, &f64)| (force + slope).abs() <= ROUNDING * size;
+        match forces.iter().zip(&slopes).all(is_slope) {
+            true => Ok(()),
+            false => Err(TemperatureError::NoPotential {
+                system: system(),
+                help: "; help: `energy` is not the energy of these accelerations",
+            }),
+        }
+    }
+}
