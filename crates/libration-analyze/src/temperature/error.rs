@@ -41,15 +41,27 @@ pub enum TemperatureError {
         /// The name of the system.
         system: String,
     },
+    /// Forces depend on time.
+    #[error("{system} has a force that depends on time; expected forces of positions")]
+    Time {
+        /// The name of the system.
+        system: String,
+    },
+    /// A state of first order.
+    #[error("{system} has the state `{state}` of first order; expected coordinates only")]
+    FirstOrder {
+        /// The name of the system.
+        system: String,
+        /// The name of the state.
+        state: String,
+    },
     /// There is no state at rest near the start.
     #[error(
-        "{system} has no equilibrium near its start: {residual:.2e} of acceleration is left; help: start near one, or take a system that has one"
+        "{system} has no equilibrium near its start; expected a minimum of the potential; help: start near one"
     )]
     NoEquilibrium {
         /// The name of the system.
         system: String,
-        /// The least acceleration found.
-        residual: f64,
     },
     /// The state at rest is not stable.
     #[error(

@@ -3,6 +3,7 @@
 mod error;
 mod measurement;
 mod prediction;
+mod recommendation;
 mod thermal_system;
 
 use libration::analysis::covariance_formulas;
@@ -13,6 +14,7 @@ use serde::Serialize;
 pub use error::TemperatureError;
 use measurement::{Ensemble, Lengths, Means};
 use prediction::{ModeBiases, Prediction};
+use recommendation::recommended;
 pub use thermal_system::ThermalSystem;
 
 /// Version of the JSON format.
@@ -29,9 +31,6 @@ const MOST_STEPS: u64 = 10_000_000_000;
 
 /// The part of the start that a trajectory may keep when its measurement begins, in second moments.
 const KEPT: f64 = 1e-8;
-
-/// Biases below this count as none.
-const ROUNDING: f64 = 1e-12;
 
 /// A system at a temperature.
 #[derive(Clone, Debug)]
@@ -80,7 +79,7 @@ pub struct TemperatureReport {
     /// The relative bias that `accurate_dt` allows.
     pub bias_limit: f64,
     /// The method with the least bias of positions: of several, that with the fewest force evaluations, then with the least bias of
-    /// velocities. None if none is stable.
+    /// velocities. None if none is stable and stays finite.
     pub recommended: Option<String>,
     /// The methods in the order of the request.
     pub thermostats: Vec<ThermostatReport>,
@@ -153,8 +152,9 @@ pub fn analyze_temperature(
         }
         let discarded = (0.5 * KEPT.ln() / prediction.memory(dt).ln()).ceil();
         if discarded > measured as f64 {
+            let steps = discarded * TRAJECTORIES as f64;
             report.note = Some(format!(
-                "not measured: trajectories of {measured} steps, but the slowest mode remembers its start for {discarded:.0}"
+                "not measured: the slowest mode remembers its start for {discarded:.0} steps, which {TRAJECTORIES} trajectories do not have; help: raise steps above {steps:.1e}, or the friction"
             ));
             continue;
         }
@@ -245,7 +245,7 @@ fn write_measurement(report: &mut ThermostatReport, trajectories: &[Option<Means
     let (count, all) = (finite.len(), trajectories.len());
     if count < all {
         report.note = Some(format!(
-            "not measured: {} of {all} trajectories left the equilibrium for infinity",
+            "not measured: {} of {all} trajectories became infinite: dt is too long for their forces, or the potential has no bound",
             all - count
         ));
     }
@@ -259,19 +259,4 @@ fn write_measurement(report: &mut ThermostatReport, trajectories: &[Option<Means
         temperature.measured_bias = Some(mean - 1.0);
         temperature.standard_error = Some((square / (count as f64 * (count as f64 - 1.0))).sqrt());
     }
-}
-
-/// The method with the least bias of positions.
-fn recommended(thermostats: &[ThermostatReport]) -> Option<String> {
-    let size = |temperature: &TemperatureBias| {
-        let size = temperature.fastest_mode_bias.map_or(f64::INFINITY, f64::abs);
-        if size < ROUNDING { 0.0 } else { size }
-    };
-    let stable = thermostats.iter().filter(|one| one.stable);
-    let best = stable.min_by(|a, b| {
-        let of_positions = size(&a.configuration).total_cmp(&size(&b.configuration));
-        let of_velocities = size(&a.kinetic).total_cmp(&size(&b.kinetic));
-        of_positions.then(a.evaluations.cmp(&b.evaluations)).then(of_velocities)
-    });
-    best.map(|one| one.thermostat.clone())
 }

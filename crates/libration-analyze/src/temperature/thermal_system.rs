@@ -1,10 +1,13 @@
 //! A system with its masses and its modes about an equilibrium.
 
-use libration::Scalar;
 use libration::analysis::{Equilibrium, jacobian};
-use libration::equations::Dynamics;
+use libration::ensemble::dynamics_of;
+use libration::equations::{Degree, Dynamics};
 use libration::linear::{Matrix, cholesky, eigenvalues, solve_matrix};
 use libration::number::Dual;
+use libration::{AnySystem, Scalar};
+use libration_settings::equations::EquationSystem;
+use libration_settings::initial_value_problem::InitialValueProblem;
 
 use super::TemperatureError;
 
@@ -32,7 +35,46 @@ pub struct ThermalSystem {
 }
 
 impl ThermalSystem {
-    /// The system about the equilibrium near `start` (positions, then velocities).
+    /// A system of the catalogue about the equilibrium in whose valley it starts, with the mass `m` if that is given.
+    ///
+    /// # Errors
+    /// [`TemperatureError`]: the reason for which no temperature is stationary.
+    pub fn of_problem(problem: &InitialValueProblem) -> Result<Self, TemperatureError> {
+        let InitialValueProblem { system, actuation, q, v } = problem;
+        let name = system.name();
+        if matches!(system, AnySystem::DrivenOscillator(_)) {
+            return Err(TemperatureError::Time { system: name.to_owned() });
+        }
+        let start: Vec<f64> = q.iter().chain(v).copied().collect();
+        let degrees = q.len();
+        let dynamics = dynamics_of(*system, degrees).ok_or(TemperatureError::Start {
+            found: start.len(),
+            expected: 2 * system.entry().dimensions.start(),
+        })?;
+        ThermalSystem::new(name, &dynamics, &start, actuation.mass())
+    }
+
+    /// A system by equations about the equilibrium in whose valley it starts.
+    ///
+    /// # Errors
+    /// [`TemperatureError`]: the reason for which no temperature is stationary.
+    pub fn of_equations(system: &EquationSystem) -> Result<Self, TemperatureError> {
+        let name = || system.name.clone();
+        for degree in system.equations.degrees() {
+            match degree {
+                Degree::Coordinate(_) => {}
+                Degree::Time => return Err(TemperatureError::Time { system: name() }),
+                Degree::State(state) => {
+                    let state = state.clone();
+                    return Err(TemperatureError::FirstOrder { system: name(), state });
+                }
+            }
+        }
+        let start: Vec<f64> = system.q.iter().chain(&system.v).copied().collect();
+        ThermalSystem::new(&system.name, system.equations.dynamics(), &start, 1.0)
+    }
+
+    /// The system about the equilibrium in whose valley `start` is: positions, then velocities.
     ///
     /// `unit_mass` is the mass over which the energy of the system is given. A system without an energy has the masses `unit_mass`.
     ///
@@ -54,10 +96,10 @@ impl ThermalSystem {
         }
         let mut at = start[..n].to_vec();
         at.resize(2 * n + dynamics.inputs(), 0.0);
+        descend(dynamics, &mut at);
         let positions: Vec<usize> = (0..n).collect();
-        let rest = Equilibrium::near(dynamics, &at, &positions).map_err(|found| {
-            TemperatureError::NoEquilibrium { system: system(), residual: found.residual }
-        })?;
+        let rest = Equilibrium::near(dynamics, &at, &positions)
+            .map_err(|_| TemperatureError::NoEquilibrium { system: system() })?;
         let equilibrium = rest.state[..n].to_vec();
         let energy = Energy { dynamics, unit_mass };
         let mass = energy.mass(&rest.state);
@@ -81,7 +123,8 @@ impl ThermalSystem {
         match (squares.first(), squares.last()) {
             (Some(&least), Some(&most)) if least > NOTHING * most && most.is_finite() => {}
             (least, _) => {
-                let square = least.copied().unwrap_or(f64::NAN);
+                // Not the negative zero.
+                let square = least.copied().unwrap_or(f64::NAN) + 0.0;
                 return Err(TemperatureError::Unstable {
                     system: system(),
                     positions: equilibrium,
@@ -103,6 +146,40 @@ impl ThermalSystem {
     /// The angular frequency of the fastest mode in rad/s.
     pub fn fastest(&self) -> f64 {
         self.frequencies.last().copied().unwrap_or(f64::NAN)
+    }
+}
+
+/// Steps of the descent at most; Newton's method then does the rest.
+const DESCENT: usize = 20_000;
+
+/// Steps of the descent of the same length.
+const SAME_LENGTH: usize = 16;
+
+/// Moves positions down the potential, almost to the bottom of the valley, since Newton's method alone ends at any equilibrium.
+///
+/// By symplectic Euler steps that lose their velocity where it points up (H. Jónsson, G. Mills, K. W. Jacobsen, *Nudged elastic band
+/// method for finding minimum energy paths of transitions*, 1998).
+fn descend(dynamics: &Dynamics, at: &mut [f64]) {
+    let n = dynamics.degrees();
+    let mut accelerations = dynamics.accelerations().on::<f64>();
+    let mut velocities = vec![0.0; n];
+    let (mut dt, mut first) = (0.0, 0.0);
+    for number in 0..DESCENT {
+        if number % SAME_LENGTH == 0 {
+            let stiffness = jacobian(dynamics, at).block((0, 0), (n, n)).row_sum_norm();
+            dt = 0.2 / stiffness.sqrt();
+        }
+        let all: Vec<f64> = accelerations.run(at).collect();
+        let size = all.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        first = f64::max(first, size);
+        if !(dt.is_finite() && size.is_finite()) || size <= 1e-6 * first {
+            return;
+        }
+        let up = velocities.iter().zip(&all).map(|(v, a)| v * a).sum::<f64>() < 0.0;
+        for i in 0..n {
+            velocities[i] = if up { 0.0 } else { velocities[i] } + dt * all[i];
+            at[i] += dt * velocities[i];
+        }
     }
 }
 

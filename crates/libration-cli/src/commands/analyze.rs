@@ -25,6 +25,9 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     if let Some(temperature) = args.temperature {
         return print(&temperature::run(args, temperature)?);
     }
+    if let Some(failure) = temperature::option_without_temperature(args) {
+        return Err(failure);
+    }
     if let Some(request) = args.linear_request(linear_file) {
         return print(&analyze_linear::run(&request?, args.json)?);
     }

@@ -2,7 +2,6 @@
 
 use std::fmt::Write as _;
 
-use libration::ensemble::dynamics_of;
 use libration::thermostat::LangevinMethod;
 use libration_analyze::temperature::{
     TemperatureBias, TemperatureError, TemperatureReport, TemperatureRequest, ThermalSystem,
@@ -53,23 +52,21 @@ fn failure(error: TemperatureError) -> Failure {
 
 fn thermal_system(system: &SystemArgs) -> Result<ThermalSystem, Failure> {
     let found = match equation_file::system(system) {
-        Some(file) => {
-            let file = file?;
-            let start: Vec<f64> = file.q.iter().chain(&file.v).copied().collect();
-            ThermalSystem::new(&file.name, file.equations.dynamics(), &start, 1.0)
-        }
-        None => {
-            let problem = system.resolve()?;
-            let dynamics = dynamics_of(problem.system, problem.q.len());
-            let dynamics = dynamics.ok_or_else(|| {
-                Failure::usage(problem.system.entry().wrong_dimension(problem.q.len()))
-            })?;
-            let start: Vec<f64> = problem.q.iter().chain(&problem.v).copied().collect();
-            let mass = problem.actuation.mass();
-            ThermalSystem::new(problem.system.name(), &dynamics, &start, mass)
-        }
+        Some(file) => ThermalSystem::of_equations(&file?),
+        None => ThermalSystem::of_problem(&system.resolve()?),
     };
     found.map_err(failure)
+}
+
+/// The first option that requires `--temperature`, without it.
+pub(super) fn option_without_temperature(args: &AnalyzeArgs) -> Option<Failure> {
+    let given = [
+        ("--friction", args.friction.is_some()),
+        ("--thermostat", !args.thermostat.is_empty()),
+        ("--seed", args.seed.is_some()),
+    ];
+    let (flag, _) = given.into_iter().find(|(_, given)| *given)?;
+    Some(Failure::usage(format!("{flag} requires --temperature")))
 }
 
 // Writing into a string cannot fail.
@@ -130,13 +127,16 @@ fn describe(report: &TemperatureReport) -> String {
             let _ = writeln!(text, "{}: {note}", one.thermostat);
         }
     }
-    text += "Predicted: the mean over all modes about the equilibrium, by the exact covariance of the step. Measured: on the system itself.\n";
+    text += "Predicted: the mean over all modes about the equilibrium, by the exact covariance of the step; order and formula are those of linear forces.\n";
+    text += "Measured: on the system itself, with its standard error.\n";
     text
 }
 
 /// Returns a relative bias in percent.
 fn percent(bias: Option<f64>) -> String {
-    bias.map_or_else(|| "-".to_owned(), |bias| format!("{:.3} %", 100.0 * (bias + 0.0)))
+    // Not the negative zero.
+    let rounded = |bias: f64| (bias * 1e5).round() / 1e3 + 0.0;
+    bias.map_or_else(|| "-".to_owned(), |bias| format!("{:.3} %", rounded(bias)))
 }
 
 fn order(bias: &TemperatureBias, of: &ThermostatReport) -> String {

@@ -50,5 +50,6 @@ mod steps;
 mod system_advice;
 mod system_lab;
 mod system_loops;
+mod temperature;
 mod timing;
 mod verify;

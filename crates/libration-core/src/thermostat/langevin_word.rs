@@ -138,6 +138,8 @@ impl LangevinWord {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::{Address, Purpose};
+    use crate::system::Oscillator;
 
     fn word(text: &str) -> LangevinWord {
         text.parse().unwrap()
@@ -159,6 +161,39 @@ mod tests {
             [("BAOAB", 1), ("OBABO", 1), ("ABOBA", 1), ("BABOBAB", 2), ("BOBAB", 1), ("AOBAOB", 2)]
         {
             assert_eq!(word(text).evaluations(), evaluations, "{text}");
+        }
+    }
+
+    /// The letter O is the transition of an Ornstein–Uhlenbeck process (C. W. Gardiner, *Stochastic Methods*, section 4.5.4).
+    #[test]
+    fn friction_and_noise_have_the_mean_and_variance_of_the_exact_process() {
+        const COUNT: u64 = 1 << 18;
+        let free = Oscillator { omega2: 0.0 };
+        let (damping, start) = (0.7_f64, 2.0);
+        for text in ["BAOAB", "OABAO", "OAOBO"] {
+            let word = word(text);
+            let letters = word.count(LangevinLetter::OrnsteinUhlenbeck);
+            let step = LangevinStep::new(1.0, damping, letters);
+            let deviation = step.letter_variance().sqrt();
+            let (mut sum, mut square) = (0.0, 0.0);
+            for trajectory in 0..COUNT {
+                let draw = |step| {
+                    let address =
+                        Address { seed: 1, trajectory, step, purpose: Purpose::Thermostat };
+                    [deviation * address.gaussian()[0]]
+                };
+                let noise: Vec<[f64; 1]> = (0..letters as u64).map(draw).collect();
+                let State { v: [v], .. } =
+                    word.step(&free, State { q: [0.0], v: [start] }, step, &noise);
+                let off = v - start * (-damping).exp();
+                (sum, square) = (sum + off, square + off * off);
+            }
+            let count = COUNT as f64;
+            let variance = 1.0 - (-2.0 * damping).exp();
+            // Four standard errors of the mean and of the variance of normal numbers.
+            assert!((sum / count).abs() < 4.0 * (variance / count).sqrt(), "{text}");
+            let off = (square / count - variance).abs();
+            assert!(off < 4.0 * variance * (2.0 / count).sqrt(), "{text} {off}");
         }
     }
 }
