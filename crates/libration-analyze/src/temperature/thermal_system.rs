@@ -183,6 +183,11 @@ fn descend(dynamics: &Dynamics, at: &mut [f64]) {
     }
 }
 
+/// Whether a difference is rounding beside a matrix; false of what is not a number.
+fn is_rounding(difference: &Matrix, of: &Matrix) -> bool {
+    difference.largest() <= ROUNDING * of.largest()
+}
+
 /// The energy of a system, from which masses follow.
 struct Energy<'d> {
     dynamics: &'d Dynamics,
@@ -239,7 +244,7 @@ impl Energy<'_> {
         let system = || name.to_owned();
         let mut there = self.mass(&at);
         there.add_scaled(-1.0, mass);
-        if !(there.largest() <= ROUNDING * mass.largest()) {
+        if !is_rounding(&there, mass) {
             let problem = "masses that depend on the state";
             return Err(TemperatureError::Mass { system: system(), problem });
         }
@@ -253,7 +258,7 @@ impl Energy<'_> {
             }
             true => "",
         };
-        if !(skew.largest() <= ROUNDING * stiffness.largest()) {
+        if !is_rounding(&skew, &stiffness) {
             return Err(TemperatureError::NoPotential { system: system(), help });
         }
         let Some(slopes) = self.slopes(&at) else { return Ok(()) };
