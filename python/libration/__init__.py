@@ -42,6 +42,7 @@ from .replay import ReplayBuffer
 from .rollout import Rollout
 from .simulation import Trajectory, simulate
 from .systems import IMPLICIT_INTEGRATORS, INTEGRATORS, SPLITTING_METHODS, SYSTEMS, CustomSystem, System
+from .temperature import TemperatureAnalysis, analyze_temperature
 
 __all__ = [
     "Advice",
@@ -88,11 +89,13 @@ __all__ = [
     "StateSpace",
     "Steps",
     "System",
+    "TemperatureAnalysis",
     "Trajectory",
     "Uniform",
     "__version__",
     "advise",
     "analyze",
+    "analyze_temperature",
     "audit_energy",
     "compare_integrators",
     "datasets",

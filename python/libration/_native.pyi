@@ -21,6 +21,7 @@ __all__ = [
     "_analyze",
     "_analyze_equations",
     "_analyze_linear",
+    "_analyze_temperature",
     "_audit_energy",
     "_compare_integrators",
     "_dataset_settings",
@@ -93,6 +94,13 @@ def _analyze(
     step: Mapping[str, Any], looped: Mapping[str, Any], options: Mapping[str, Any]
 ) -> str: ...
 def _analyze_linear(config: str, dt: float | None, integrator: str | None) -> str: ...
+def _analyze_temperature(
+    system: _Equations | None,
+    step: Mapping[str, Any] | None,
+    numbers: tuple[float, float, float | None],
+    thermostats: Sequence[str] | None,
+    draws: tuple[int, int],
+) -> str: ...
 def _audit_energy(
     traces: list[tuple[str, float | None, Any, Any]],
     tolerance: float,

@@ -12,6 +12,8 @@ mod equilibrium;
 mod error_forecast;
 mod exponential;
 mod factorisation;
+mod langevin_formula;
+mod langevin_mode;
 mod largest_step;
 mod linear_step;
 mod linear_stepper;
@@ -46,6 +48,11 @@ pub use eigenvalues::{determinant, eigenvalues};
 pub use energy_band::EnergyBand;
 pub use equilibrium::{Equilibrium, jacobian, rate_derivative};
 pub use error_forecast::ErrorForecast;
+pub use langevin_formula::covariance_formulas;
+pub use langevin_mode::{
+    ModeCovariance, bias_orders, letters, mode_biases, mode_covariance, mode_memory,
+    stability_margin,
+};
 pub use largest_step::{Criterion, LargestStep};
 pub use linear_step::StepOn;
 pub use linear_stepper::{LinearStepper, positions_and_velocities};

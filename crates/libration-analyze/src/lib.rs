@@ -14,6 +14,7 @@ pub mod program_stepper;
 mod recording;
 pub mod reference_flow;
 mod step;
+pub mod temperature;
 pub mod trajectory;
 
 pub use step::{

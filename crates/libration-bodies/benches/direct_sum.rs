@@ -69,12 +69,13 @@ impl ByHand {
     /// Returns whether this processor has AVX2 and FMA.
     fn step(&mut self) -> bool {
         #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2")
-            && std::arch::is_x86_feature_detected!("fma")
+        if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
         {
             self.drift();
             // SAFETY: the processor has the instructions.
-            unsafe { x86::accelerations(&self.strengths, &self.positions, &mut self.accelerations) };
+            unsafe {
+                x86::accelerations(&self.strengths, &self.positions, &mut self.accelerations)
+            };
             for (v, a) in self.velocities.iter_mut().zip(&self.accelerations) {
                 *v += DT * a;
             }
@@ -128,8 +129,7 @@ mod x86 {
                     let cube = _mm256_mul_pd(square, _mm256_sqrt_pd(square));
                     let weight = _mm256_div_pd(strength, cube);
                     for axis in 0..3 {
-                        sums[half][axis] =
-                            _mm256_fmadd_pd(weight, offset[axis], sums[half][axis]);
+                        sums[half][axis] = _mm256_fmadd_pd(weight, offset[axis], sums[half][axis]);
                     }
                 }
             }

@@ -204,6 +204,8 @@ fn fused(step: &VectorStep) -> Vec<Fused> {
             VectorOperation::Ratio(a, num, den) => Fused::Action(Action::Ratio(a, num, den)),
             VectorOperation::Constant(_)
             | VectorOperation::TimeStep
+            | VectorOperation::Number(_)
+            | VectorOperation::Noise(_)
             | VectorOperation::AccelerationDerivative(_)
             | VectorOperation::Solution(..) => Fused::None,
         };

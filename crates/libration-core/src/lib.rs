@@ -19,6 +19,7 @@ mod scalar;
 pub mod simulation;
 mod state;
 pub mod system;
+pub mod thermostat;
 
 pub use catalog::{AnySystem, CatalogError};
 pub use implicit_method::{AnyMethod, ImplicitMethod};

@@ -1,6 +1,7 @@
 //! Steps of integrators as programs.
 
 use libration_core::integrator::ImplicitIntegrator;
+use libration_core::thermostat::LangevinMethod;
 use libration_core::{AnyMethod, Integrator};
 
 use super::Dynamics;
@@ -25,7 +26,7 @@ impl StepProgram {
     /// A step of `integrator` on a system, whose inputs are constant during the step: from positions, velocities, inputs and the
     /// time step to positions and velocities.
     pub fn new(integrator: impl Integrator, dynamics: &Dynamics) -> Self {
-        StepProgram::of_vectors(&VectorStep::new(integrator, None), false, dynamics)
+        StepProgram::of_vectors(&VectorStep::new(integrator, None), Shape::default(), dynamics)
     }
 
     /// The same of an integrator that solves equations, by [elimination](libration_core::elimination) with derivatives by dual numbers:
@@ -33,7 +34,7 @@ impl StepProgram {
     ///
     /// The program grows with the cube of the degrees of freedom, and each Newton step is written out.
     pub fn implicit(integrator: impl ImplicitIntegrator, dynamics: &Dynamics) -> Self {
-        StepProgram::of_vectors(&VectorStep::implicit(integrator), false, dynamics)
+        StepProgram::of_vectors(&VectorStep::implicit(integrator), Shape::default(), dynamics)
     }
 
     /// A step that takes the accelerations at its start and hands on those at its end, which saves an evaluation: from positions,
@@ -42,7 +43,21 @@ impl StepProgram {
     /// None if the integrator [carries](Integrator::CARRIES) nothing or an acceleration depends on a velocity.
     pub fn carrying<M: Integrator>(integrator: M, dynamics: &Dynamics) -> Option<Self> {
         let step = VectorStep::carrying(integrator, None).filter(|_| dynamics.is_positional())?;
-        Some(StepProgram::of_vectors(&step, true, dynamics))
+        let shape = Shape { carries: true, ..Shape::default() };
+        Some(StepProgram::of_vectors(&step, shape, dynamics))
+    }
+
+    /// A step of Langevin dynamics that takes the accelerations at its start and hands on those at its end: from positions, velocities,
+    /// accelerations, inputs, the time step, the other numbers of a [`LangevinStep`](libration_core::thermostat::LangevinStep) in their
+    /// order, and the [vectors of noise](LangevinMethod::noises) to positions, velocities and accelerations.
+    ///
+    /// None if an acceleration depends on a velocity.
+    pub fn langevin(method: &LangevinMethod, dynamics: &Dynamics) -> Option<Self> {
+        if !dynamics.is_positional() {
+            return None;
+        }
+        let shape = Shape { carries: true, numbers: 3, noises: method.noises() };
+        Some(StepProgram::of_vectors(&VectorStep::langevin(method), shape, dynamics))
     }
 
     /// A step of a built-in integrator.
@@ -53,13 +68,13 @@ impl StepProgram {
         }
     }
 
-    fn of_vectors(step: &VectorStep, carries: bool, dynamics: &Dynamics) -> Self {
+    fn of_vectors(step: &VectorStep, shape: Shape, dynamics: &Dynamics) -> Self {
         let evaluations = step.operations().iter().map(|operation| match operation {
             VectorOperation::AccelerationsAt(..) | VectorOperation::AccelerationDerivative(_) => 1,
             VectorOperation::Solution(..) => dynamics.degrees(),
             _ => 0,
         });
-        StepProgram { evaluations: evaluations.sum(), program: program(step, carries, dynamics) }
+        StepProgram { evaluations: evaluations.sum(), program: program(step, shape, dynamics) }
     }
 
     /// Evaluations of the accelerations in a step, those along a direction of a derivative included.
@@ -73,14 +88,31 @@ impl StepProgram {
     }
 }
 
+/// The inputs of a program of a step besides positions, velocities, the inputs of the system and the time step.
+#[derive(Clone, Copy, Debug, Default)]
+struct Shape {
+    /// Whether it takes accelerations.
+    carries: bool,
+    /// The count of [numbers](VectorOperation::Number).
+    numbers: usize,
+    /// The count of vectors of [noise](VectorOperation::Noise).
+    noises: usize,
+}
+
 /// The program of recorded operations on vectors.
-fn program(step: &VectorStep, carries: bool, dynamics: &Dynamics) -> Program {
+fn program(
+    step: &VectorStep,
+    Shape { carries, numbers, noises }: Shape,
+    dynamics: &Dynamics,
+) -> Program {
     let degrees = dynamics.degrees();
     let mut builder = ProgramBuilder::literal();
     let (positions, velocities) = (builder.inputs(degrees), builder.inputs(degrees));
     let known = builder.inputs(if carries { degrees } else { 0 });
     let commands = builder.inputs(dynamics.inputs());
     let dt = builder.input();
+    let numbers = builder.inputs(numbers);
+    let noises = builder.inputs(noises * degrees);
     let derivatives = DerivativePrograms::new(dynamics);
     let mut vectors: Vec<Vec<ValueId>> = Vec::with_capacity(step.operations().len());
     for operation in step.operations() {
@@ -96,6 +128,8 @@ fn program(step: &VectorStep, carries: bool, dynamics: &Dynamics) -> Program {
             VectorOperation::Velocities => velocities.clone(),
             VectorOperation::Accelerations => known.clone(),
             VectorOperation::TimeStep => vec![dt; degrees],
+            VectorOperation::Number(i) => vec![numbers[i]; degrees],
+            VectorOperation::Noise(i) => noises[i * degrees..(i + 1) * degrees].to_vec(),
             VectorOperation::Constant(c) => vec![builder.constant(c); degrees],
             VectorOperation::Sum(a, b) => of_two(&mut builder, a, b, Operation::Sum),
             VectorOperation::Difference(a, b) => of_two(&mut builder, a, b, Operation::Difference),

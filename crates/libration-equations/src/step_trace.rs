@@ -28,6 +28,10 @@ pub enum VectorOperation {
     Accelerations,
     /// The time step in each entry.
     TimeStep,
+    /// A number of the step besides its length, in each entry.
+    Number(usize),
+    /// A vector of random numbers.
+    Noise(usize),
     /// A number in each entry.
     Constant(f64),
     /// Sums, entry by entry.

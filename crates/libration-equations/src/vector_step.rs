@@ -1,7 +1,8 @@
 //! The step of an integrator as operations on whole vectors.
 
 use libration_core::integrator::ImplicitIntegrator;
-use libration_core::{Integrator, State};
+use libration_core::thermostat::{LangevinMethod, LangevinStep};
+use libration_core::{Integrator, State, System};
 
 use super::step_trace::{StepTrace, TracedSystem, TracedVector, VectorId, VectorOperation};
 
@@ -42,6 +43,30 @@ impl VectorStep {
                 vec![end.q[0], end.v[0], known[0]]
             })
         })
+    }
+
+    /// A step of Langevin dynamics from positions, velocities and accelerations to those at its end, with [numbers](VectorOperation::Number)
+    /// and [noise](VectorOperation::Noise).
+    pub(crate) fn langevin(method: &LangevinMethod) -> Self {
+        let mut step = VectorStep::record(|system, start, trace| {
+            let dt = time_step(trace, None);
+            let [decay, damping, implicit_factor] =
+                [0, 1, 2].map(|i| trace.record(VectorOperation::Number(i)));
+            let noise: Vec<_> =
+                (0..method.noises()).map(|i| [trace.record(VectorOperation::Noise(i))]).collect();
+            let numbers = LangevinStep { dt, decay, damping, implicit_factor };
+            let end = method.step(system, start, numbers, &noise);
+            let [known] = system.acceleration(&end);
+            vec![end.q[0], end.v[0], known]
+        });
+        for i in 0..step.operations.len() {
+            if let VectorOperation::AccelerationsAt(q, _) = step.operations[i]
+                && step.operations[q] == VectorOperation::Positions
+            {
+                step.operations[i] = VectorOperation::Accelerations;
+            }
+        }
+        step
     }
 
     fn record(

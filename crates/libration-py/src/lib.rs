@@ -30,6 +30,7 @@ mod rollout;
 mod settings;
 mod simulate;
 mod step;
+mod temperature;
 mod time_slices;
 mod trajectories;
 
@@ -78,6 +79,8 @@ mod _native {
     use crate::rollout::Memory;
     #[pymodule_export]
     use crate::simulate::{_analyze, _simulate};
+    #[pymodule_export]
+    use crate::temperature::_analyze_temperature;
     #[pymodule_export]
     use crate::trajectories::Trajectories;
 

@@ -15,7 +15,7 @@ pub use libration_bodies as bodies;
 pub use libration_core::{
     AnyMethod, AnySystem, CatalogError, Elementary, Float, Hamiltonian, ImplicitMethod, Integrator,
     Method, Model, Scalar, State, System, catalog, control, elementary, elimination, integrator,
-    number, random, simulation, system, with_method, with_system,
+    number, random, simulation, system, thermostat, with_method, with_system,
 };
 pub use libration_equations as equations;
 pub use libration_linear as linear;

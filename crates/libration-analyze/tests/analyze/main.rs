@@ -13,6 +13,7 @@ mod overflow;
 mod reference;
 mod reference_flow;
 mod stability_windows;
+mod temperature;
 #[path = "../../src/trajectory/three_digits.rs"]
 mod three_digits;
 mod trajectory;

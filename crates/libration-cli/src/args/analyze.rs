@@ -2,9 +2,10 @@
 
 use clap::{ArgGroup, Args};
 
+use libration::thermostat::LangevinMethod;
 use libration_analyze::Stepping;
 
-use super::number::{criterion, forecast_steps, time_step, tolerance};
+use super::number::{criterion, forecast_steps, seed, time_step, tolerance};
 use super::system::integrators;
 use super::timing::{CostArgs, TimingArgs};
 use super::{LinearAnalysisArgs, SystemArgs};
@@ -27,23 +28,23 @@ pub(crate) struct AnalyzeArgs {
         value_name = "NAME",
         value_parser = integrators(),
         hide_possible_values = true,
-        required_unless_present_any = ["plant", "config", "compare"]
+        required_unless_present_any = ["plant", "config", "compare", "temperature"]
     )]
     pub(crate) integrator: Option<Stepping>,
-    /// Time step in s
+    /// Time step in s [default with --temperature: 1/ω of the fastest mode]
     #[arg(
         long,
         value_name = "SECONDS",
         value_parser = time_step,
         allow_hyphen_values = true,
-        required_unless_present_any = ["plant", "config", "compare"]
+        required_unless_present_any = ["plant", "config", "compare", "temperature"]
     )]
     pub(crate) dt: Option<f64>,
     #[command(flatten)]
     pub(crate) timing: TimingArgs,
     #[command(flatten)]
     pub(crate) cost: CostArgs,
-    /// Number of steps for the largest energy drift (linear systems: up to 1e15)
+    /// Number of steps for the largest energy drift (linear systems: up to 1e15); measured steps of each thermostat
     #[arg(
         long,
         value_name = "N",
@@ -89,6 +90,26 @@ pub(crate) struct AnalyzeArgs {
         requires = "compare"
     )]
     pub(crate) horizon: Option<f64>,
+    /// Temperatures of thermostats at the temperature kT (in units of the energy) and their bias by the time step
+    #[arg(
+        long,
+        value_name = "KT",
+        allow_hyphen_values = true,
+        requires = "friction",
+        conflicts_with_all = [
+            "integrator", "plant", "config", "feedback", "max_drift", "max_amplitude", "max_error", "compare"
+        ]
+    )]
+    pub(crate) temperature: Option<f64>,
+    /// Friction of a thermostat in 1/s with --temperature
+    #[arg(long, value_name = "GAMMA", allow_hyphen_values = true, requires = "temperature")]
+    pub(crate) friction: Option<f64>,
+    /// Word of A (drift), B (kick), O (friction and noise), or gjf, euler-maruyama; repeatable [default: the common ones]
+    #[arg(long, value_name = "WORD", requires = "temperature")]
+    pub(crate) thermostat: Vec<LangevinMethod>,
+    /// Seed of the noise with --temperature [default: 0]
+    #[arg(long, value_name = "N", value_parser = seed, requires = "temperature", allow_hyphen_values = true)]
+    pub(crate) seed: Option<u64>,
     /// Print the result as JSON, with all digits
     #[arg(long)]
     pub(crate) json: bool,
@@ -97,6 +118,7 @@ pub(crate) struct AnalyzeArgs {
 const USAGE: &str = "\
 libration analyze --system <NAME> --integrator <NAME> --dt <SECONDS> [OPTIONS]
        libration analyze --system <NAME> --compare --tolerance <ERROR> --horizon <SECONDS>
+       libration analyze --system <NAME> --temperature <KT> --friction <GAMMA> [--dt <SECONDS>] [--thermostat <WORD>]
        libration analyze --plant <FILE> [--dt <SECONDS>] [--integrator <NAME>] [--lqr <STATES/INPUTS>] [OPTIONS]
        libration analyze --config <FILE> [--dt <SECONDS>] [--integrator <NAME>] [OPTIONS]";
 
@@ -108,6 +130,7 @@ Examples:
       --feedback 10,2 --latency 0.015 --jitter gaussian:0.1
   libration analyze --system pendulum --q 2.5 --integrator velocity-verlet --dt 0.05 --json
   libration analyze --system kepler --compare --tolerance 1e-8 --horizon 100
+  libration analyze --system pendulum --temperature 1 --friction 1 --dt 0.2 --thermostat BAOAB --thermostat OBABO
   libration analyze --plant drive.toml --dt 0.001
   libration analyze --plant drive.toml --dt 0.001 --integrator rk4
   libration analyze --plant drive.toml --lqr 1,100,0,1/0.1 --period 0.001 --latency 0.0008

@@ -8,8 +8,8 @@ use libration::bodies::BodyIntegrator;
 use libration_analyze::trajectory::Format;
 use libration_settings::suggestions;
 
-use super::number::{count, time_step, trajectory_steps};
-use super::simulate::{every, formats, seed};
+use super::number::{count, seed, time_step, trajectory_steps};
+use super::simulate::{every, formats};
 
 /// Arguments of `bodies`.
 #[derive(Args, Debug)]

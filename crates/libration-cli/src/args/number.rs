@@ -108,6 +108,12 @@ pub(super) fn whole_number(text: &str) -> Option<i128> {
     text.parse().ok().or_else(with_exponent)
 }
 
+/// Parses a seed.
+pub(super) fn seed(text: &str) -> Result<u64, String> {
+    let seed = whole_number(text).and_then(|n| u64::try_from(n).ok());
+    seed.ok_or_else(|| format!("expected a whole number from 0 to {}", u64::MAX))
+}
+
 /// Parses a number of trajectories; also as `1e5`.
 pub(super) fn count(text: &str) -> Result<usize, String> {
     let count = whole_number(text).and_then(|n| usize::try_from(n).ok()).filter(|&n| n >= 1);

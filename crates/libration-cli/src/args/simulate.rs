@@ -7,7 +7,7 @@ use clap::{ArgGroup, Args};
 use libration::ensemble::InstructionSet;
 use libration_analyze::trajectory::{FloatType, Format};
 
-use super::number::{count, trajectory_steps, whole_number};
+use super::number::{count, seed, trajectory_steps, whole_number};
 use super::timing::TimingArgs;
 use super::{LinearSimulationArgs, StepArgs, SystemArgs, TopicArgs, simd};
 
@@ -111,12 +111,6 @@ The output file appears only when it is complete.";
 pub(super) fn every(text: &str) -> Result<u64, String> {
     let stride = whole_number(text).and_then(|n| u64::try_from(n).ok()).filter(|&n| n >= 1);
     stride.ok_or_else(|| "expected a whole number of at least 1".to_owned())
-}
-
-/// Parses a seed.
-pub(super) fn seed(text: &str) -> Result<u64, String> {
-    let seed = whole_number(text).and_then(|n| u64::try_from(n).ok());
-    seed.ok_or_else(|| format!("expected a whole number from 0 to {}", u64::MAX))
 }
 
 fn float_types() -> impl TypedValueParser<Value = FloatType> {

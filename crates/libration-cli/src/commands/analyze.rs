@@ -13,7 +13,7 @@ use libration_settings::limits;
 
 use super::closed_loop::{dephasing, describe_loop};
 use super::simulate::linear_file;
-use super::{analyze_equations, analyze_linear, compare_integrators, equation_file};
+use super::{analyze_equations, analyze_linear, compare_integrators, equation_file, temperature};
 use crate::args::{AnalyzeArgs, CostArgs};
 use crate::error::Failure;
 
@@ -26,6 +26,12 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     let of_comparisons = [("--tolerance", args.tolerance), ("--horizon", args.horizon)];
     if let Some((flag, _)) = of_comparisons.into_iter().find(|(_, value)| value.is_some()) {
         return Err(Failure::usage(format!("{flag} requires --compare")));
+    }
+    if let Some(temperature) = args.temperature {
+        return print(&temperature::run(args, temperature)?);
+    }
+    if let Some(failure) = temperature::option_without_temperature(args) {
+        return Err(failure);
     }
     if let Some(request) = args.linear_request(linear_file) {
         return print(&analyze_linear::run(&request?, args.json)?);

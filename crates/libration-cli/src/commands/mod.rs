@@ -36,6 +36,7 @@ mod probe_text;
 mod result_file;
 mod rollout;
 mod simulate;
+mod temperature;
 mod time_stamps;
 mod watched;
 

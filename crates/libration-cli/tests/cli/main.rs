@@ -51,5 +51,6 @@ mod steps;
 mod system_advice;
 mod system_lab;
 mod system_loops;
+mod temperature;
 mod timing;
 mod verify;

@@ -34,6 +34,8 @@ pub enum Purpose {
     Replay,
     /// A disturbance of a plant.
     Disturbance,
+    /// The noise of a thermostat.
+    Thermostat,
 }
 
 /// The place of a draw.

@@ -1,0 +1,108 @@
+//! Temperatures measured in an ensemble of trajectories.
+
+use libration::equations::StepProgram;
+use libration::random::{Address, Purpose};
+use libration::thermostat::{LangevinMethod, LangevinStep};
+use libration_work::{Interrupted, Work};
+
+use super::thermal_system::ThermalSystem;
+
+/// Steps between checks for an interrupt and for a trajectory that left.
+const BLOCK: u64 = 1024;
+
+/// An ensemble of trajectories with a thermostat.
+pub(super) struct Ensemble<'a> {
+    pub(super) system: &'a ThermalSystem,
+    /// `kT` in units of the energy.
+    pub(super) temperature: f64,
+    /// Friction in 1/s.
+    pub(super) friction: f64,
+    /// Time step in s.
+    pub(super) dt: f64,
+    pub(super) seed: u64,
+}
+
+/// The lengths of a trajectory, in steps.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lengths {
+    /// Steps before the measurement.
+    pub(super) discarded: u64,
+    pub(super) measured: u64,
+}
+
+/// Means of a trajectory over `kT`: of the virial of positions, and of the kinetic energy.
+pub(super) type Means = [f64; 2];
+
+impl Ensemble<'_> {
+    /// The means of a trajectory that begins at rest; none if it does not stay finite.
+    pub(super) fn means(
+        &self,
+        work: &Work<'_>,
+        method: &LangevinMethod,
+        lengths: Lengths,
+        trajectory: u64,
+    ) -> Result<Option<Means>, Interrupted> {
+        let ThermalSystem { dynamics, equilibrium, mass, .. } = self.system;
+        let n = dynamics.degrees();
+        let Some(step) = StepProgram::langevin(method, dynamics) else { return Ok(None) };
+        let letters = libration::analysis::letters(method);
+        let numbers = LangevinStep::new(self.dt, self.friction, letters);
+        let LangevinStep { dt, decay, damping, implicit_factor } = numbers;
+        let deviation = (self.temperature * method.noise_variance(numbers)).sqrt();
+        let noise = 3 * n + dynamics.inputs() + 4;
+        let mut inputs = equilibrium.clone();
+        inputs.resize(noise + method.noises() * n, 0.0);
+        inputs[noise - 4..noise].copy_from_slice(&[dt, decay, damping, implicit_factor]);
+        let start: Vec<f64> = dynamics.accelerations().on::<f64>().run(&inputs[..2 * n]).collect();
+        inputs[2 * n..3 * n].copy_from_slice(&start);
+        let mut run = step.program().on::<f64>();
+        let mut next = Vec::with_capacity(3 * n);
+        let mut sums = [0.0; 2];
+        for number in 0..lengths.discarded + lengths.measured {
+            if number % BLOCK == 0 {
+                work.check()?;
+                if !inputs[..2 * n].iter().all(|x| x.is_finite()) {
+                    return Ok(None);
+                }
+            }
+            self.draw(&mut inputs[noise..], (trajectory, number), deviation);
+            next.clear();
+            next.extend(run.run(&inputs));
+            inputs[..3 * n].copy_from_slice(&next);
+            if number >= lengths.discarded {
+                let (q, rest) = next.split_at(n);
+                let (v, a) = rest.split_at(n);
+                for i in 0..n {
+                    for j in 0..n {
+                        let mass = mass[(i, j)];
+                        sums[0] -= (q[i] - equilibrium[i]) * mass * a[j];
+                        sums[1] += v[i] * mass * v[j];
+                    }
+                }
+            }
+        }
+        let scale = 1.0 / (lengths.measured as f64 * n as f64 * self.temperature);
+        let means = sums.map(|sum| sum * scale);
+        Ok(means.iter().all(|x| x.is_finite()).then_some(means))
+    }
+
+    /// Draws the vectors of noise of a step.
+    fn draw(&self, noise: &mut [f64], (trajectory, step): (u64, u64), deviation: f64) {
+        let pairs = noise.len().div_ceil(2) as u64;
+        for (k, pair) in noise.chunks_mut(2).enumerate() {
+            let step = step * pairs + k as u64;
+            let address =
+                Address { seed: self.seed, trajectory, step, purpose: Purpose::Thermostat };
+            for (x, draw) in pair.iter_mut().zip(address.gaussian()) {
+                *x = deviation * draw;
+            }
+        }
+        let root = &self.system.inverse_root;
+        for vector in noise.chunks_mut(root.rows()) {
+            // From below, since a row takes the draws above it.
+            for i in (0..vector.len()).rev() {
+                vector[i] = (0..=i).map(|j| root[(i, j)] * vector[j]).sum();
+            }
+        }
+    }
+}

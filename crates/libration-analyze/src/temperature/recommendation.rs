@@ -1,0 +1,43 @@
+//! The thermostat with the least bias of positions.
+
+use super::{TemperatureBias, ThermostatReport};
+
+/// Biases below this count as none.
+const ROUNDING: f64 = 1e-12;
+
+/// Standard errors within which a measurement may be off.
+const ERRORS: f64 = 4.0;
+
+/// The predicted size of a bias; without one infinite.
+fn predicted(temperature: &TemperatureBias) -> f64 {
+    let size = temperature.fastest_mode_bias.map_or(f64::INFINITY, f64::abs);
+    if size < ROUNDING { 0.0 } else { size }
+}
+
+/// The least and the largest size of a bias that prediction and measurement allow.
+fn range(temperature: &TemperatureBias) -> [f64; 2] {
+    let measured = temperature.measured_bias.map_or(0.0, f64::abs);
+    let off = ERRORS * temperature.standard_error.unwrap_or(0.0);
+    let predicted = predicted(temperature);
+    [predicted.max(measured - off), predicted.max(measured) + off]
+}
+
+/// The name of the thermostat with the least bias of positions: of those that measurements do not exclude the one with the least
+/// prediction, then with the fewest force evaluations, then with the least bias of velocities.
+pub(super) fn recommended(thermostats: &[ThermostatReport]) -> Option<String> {
+    // What became infinite has a note, and so has what was not measured at all: then none has a measurement.
+    let is_measured = thermostats.iter().any(|one| one.configuration.measured_bias.is_some());
+    let fits = |one: &&ThermostatReport| {
+        one.stable && (!is_measured || one.configuration.measured_bias.is_some())
+    };
+    let candidates: Vec<&ThermostatReport> = thermostats.iter().filter(fits).collect();
+    let least =
+        candidates.iter().map(|one| range(&one.configuration)[1]).fold(f64::INFINITY, f64::min);
+    let best = candidates.into_iter().filter(|one| range(&one.configuration)[0] <= least);
+    let best = best.min_by(|a, b| {
+        let of_positions = predicted(&a.configuration).total_cmp(&predicted(&b.configuration));
+        let of_velocities = range(&a.kinetic)[0].total_cmp(&range(&b.kinetic)[0]);
+        of_positions.then(a.evaluations.cmp(&b.evaluations)).then(of_velocities)
+    });
+    best.map(|one| one.thermostat.clone())
+}

@@ -1,0 +1,148 @@
+//! `libration analyze --temperature`.
+
+use std::fmt::Write as _;
+
+use libration::thermostat::LangevinMethod;
+use libration_analyze::temperature::{
+    TemperatureBias, TemperatureError, TemperatureReport, TemperatureRequest, ThermalSystem,
+    ThermostatReport, analyze_temperature,
+};
+use libration_work::Work;
+
+use super::equation_file;
+use crate::args::{AnalyzeArgs, SystemArgs};
+use crate::error::Failure;
+use crate::interrupt;
+use crate::progress::Reporter;
+
+/// Returns the temperatures as text or as JSON.
+pub(super) fn run(args: &AnalyzeArgs, temperature: f64) -> Result<String, Failure> {
+    let (Some(system), Some(friction)) = (&args.system, args.friction) else {
+        return Err(Failure::usage("--temperature requires --system and --friction"));
+    };
+    let thermostats = match args.thermostat.is_empty() {
+        true => LangevinMethod::common(),
+        false => args.thermostat.clone(),
+    };
+    let request = TemperatureRequest {
+        system: thermal_system(system)?,
+        temperature,
+        friction,
+        dt: args.dt,
+        thermostats,
+        steps: args.steps,
+        seed: args.seed.unwrap_or(0),
+    };
+    let reporter = Reporter::new(args.json);
+    let found = analyze_temperature(&Work::new(&reporter, interrupt::listen()), &request);
+    reporter.clear();
+    let found = found.map_err(failure)?;
+    match args.json {
+        true => Ok(serde_json::to_string_pretty(&found).map_err(Failure::run)? + "\n"),
+        false => Ok(describe(&found)),
+    }
+}
+
+fn failure(error: TemperatureError) -> Failure {
+    match error {
+        TemperatureError::Interrupted => Failure::Interrupted(error.to_string()),
+        error => Failure::usage(error),
+    }
+}
+
+fn thermal_system(system: &SystemArgs) -> Result<ThermalSystem, Failure> {
+    let found = match equation_file::system(system) {
+        Some(file) => ThermalSystem::of_equations(&file?),
+        None => ThermalSystem::of_problem(&system.resolve()?),
+    };
+    found.map_err(failure)
+}
+
+/// The first option that requires `--temperature`, without it.
+pub(super) fn option_without_temperature(args: &AnalyzeArgs) -> Option<Failure> {
+    let given = [
+        ("--friction", args.friction.is_some()),
+        ("--thermostat", !args.thermostat.is_empty()),
+        ("--seed", args.seed.is_some()),
+    ];
+    let (flag, _) = given.into_iter().find(|(_, given)| *given)?;
+    Some(Failure::usage(format!("{flag} requires --temperature")))
+}
+
+// Writing into a string cannot fail.
+fn describe(report: &TemperatureReport) -> String {
+    let TemperatureReport { system, temperature, friction, dt, steps, trajectories, .. } = report;
+    let mut text = match &report.recommended {
+        Some(best) => {
+            format!("{best}: the least bias of positions for {system} with steps of {dt:.5} s\n\n")
+        }
+        None => format!("No thermostat is stable for {system} with steps of {dt:.5} s.\n\n"),
+    };
+    let fastest = report.frequencies.last().copied().unwrap_or(f64::NAN);
+    let _ = writeln!(
+        text,
+        "  kT = {temperature}, friction {friction} /s, fastest mode {fastest:.5} rad/s, {steps} steps in {trajectories} trajectories\n"
+    );
+    let kinds: [(&str, fn(&ThermostatReport) -> &TemperatureBias); 2] = [
+        ("Positions: bias of ⟨−q·F⟩/kT", |one| &one.configuration),
+        ("Velocities: bias of ⟨m v²⟩/kT", |one| &one.kinetic),
+    ];
+    for (title, of) in kinds {
+        let _ = writeln!(
+            text,
+            "{title}\n  {:<16} {:>12} {:>12} {:>22} {:>6} {:>12} {:>10}  fastest mode, z = ω·dt",
+            "thermostat",
+            "fastest mode",
+            "predicted",
+            "measured",
+            "order",
+            "dt at 1 % (s)",
+            "stable (s)"
+        );
+        for one in &report.thermostats {
+            let bias = of(one);
+            let measured = match (bias.measured_bias, bias.standard_error) {
+                (Some(bias), Some(error)) => {
+                    format!("{:.3} ± {:.3} %", 100.0 * bias, 100.0 * error)
+                }
+                _ => "-".to_owned(),
+            };
+            let _ = writeln!(
+                text,
+                "  {:<16} {:>12} {:>12} {:>22} {:>6} {:>12.5} {:>10.5}  {}",
+                one.thermostat,
+                percent(bias.fastest_mode_bias),
+                percent(bias.predicted_bias),
+                measured,
+                order(bias, one),
+                bias.accurate_dt,
+                one.stable_dt,
+                bias.formula.as_deref().unwrap_or("depends on the friction"),
+            );
+        }
+        text += "\n";
+    }
+    for one in &report.thermostats {
+        if let Some(note) = &one.note {
+            let _ = writeln!(text, "{}: {note}", one.thermostat);
+        }
+    }
+    text += "Predicted: the mean over all modes about the equilibrium, by the exact covariance of the step; order and formula are those of linear forces.\n";
+    text += "Measured: on the system itself, with its standard error.\n";
+    text
+}
+
+/// Returns a relative bias in percent.
+fn percent(bias: Option<f64>) -> String {
+    // Not the negative zero.
+    let rounded = |bias: f64| (bias * 1e5).round() / 1e3 + 0.0;
+    bias.map_or_else(|| "-".to_owned(), |bias| format!("{:.3} %", rounded(bias)))
+}
+
+fn order(bias: &TemperatureBias, of: &ThermostatReport) -> String {
+    match bias.order {
+        Some(order) => format!("dt^{order}"),
+        None if of.stable => "exact".to_owned(),
+        None => "-".to_owned(),
+    }
+}
