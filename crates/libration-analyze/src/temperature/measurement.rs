@@ -30,8 +30,14 @@ pub(super) struct Lengths {
     pub(super) measured: u64,
 }
 
-/// Means of a trajectory over `kT`: of the virial of positions, and of the kinetic energy.
-pub(super) type Means = [f64; 2];
+/// The result of a trajectory.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Means {
+    /// Means over `kT`: of the virial of positions, and of the kinetic energy.
+    pub(super) temperatures: [f64; 2],
+    /// Whether it ended in the valley of the equilibrium.
+    pub(super) is_at_home: bool,
+}
 
 impl Ensemble<'_> {
     /// The means of a trajectory that begins at rest; none if it does not stay finite.
@@ -82,8 +88,11 @@ impl Ensemble<'_> {
             }
         }
         let scale = 1.0 / (lengths.measured as f64 * n as f64 * self.temperature);
-        let means = sums.map(|sum| sum * scale);
-        Ok(means.iter().all(|x| x.is_finite()).then_some(means))
+        let temperatures = sums.map(|sum| sum * scale);
+        if !temperatures.iter().all(|x| x.is_finite()) {
+            return Ok(None);
+        }
+        Ok(Some(Means { temperatures, is_at_home: self.system.is_in_valley(&inputs[..n]) }))
     }
 
     /// Draws the vectors of noise of a step.

@@ -100,7 +100,7 @@ pub struct ThermostatReport {
     pub configuration: TemperatureBias,
     /// The temperature of velocities: `⟨m v²⟩` for each degree of freedom.
     pub kinetic: TemperatureBias,
-    /// Why a number is missing; none if none is.
+    /// Why a number is missing or uncertain; none if none is.
     pub note: Option<String>,
 }
 
@@ -252,10 +252,16 @@ fn write_measurement(report: &mut ThermostatReport, trajectories: &[Option<Means
     if count < all || all < 2 {
         return;
     }
+    let left = finite.iter().filter(|means| !means.is_at_home).count();
+    if left > 0 {
+        report.note = Some(format!(
+            "{left} of {all} trajectories ended in another valley: the virial converges slowly there, and is no temperature where a coordinate is an angle; help: lower the temperature"
+        ));
+    }
     for (i, temperature) in [&mut report.configuration, &mut report.kinetic].into_iter().enumerate()
     {
-        let mean = finite.iter().map(|means| means[i]).sum::<f64>() / count as f64;
-        let square = finite.iter().map(|means| (means[i] - mean).powi(2)).sum::<f64>();
+        let mean = finite.iter().map(|means| means.temperatures[i]).sum::<f64>() / count as f64;
+        let square = finite.iter().map(|means| (means.temperatures[i] - mean).powi(2)).sum::<f64>();
         temperature.measured_bias = Some(mean - 1.0);
         temperature.standard_error = Some((square / (count as f64 * (count as f64 - 1.0))).sqrt());
     }

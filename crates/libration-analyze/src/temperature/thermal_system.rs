@@ -143,6 +143,15 @@ impl ThermalSystem {
         })
     }
 
+    /// Whether positions descend to the equilibrium, and to no other.
+    pub fn is_in_valley(&self, positions: &[f64]) -> bool {
+        let mut at = positions.to_vec();
+        at.resize(2 * positions.len() + self.dynamics.inputs(), 0.0);
+        descend(&self.dynamics, &mut at);
+        let far = |(x, own): (&f64, &f64)| (x - own).abs() > 1e-3 * own.abs().max(1.0);
+        !at.iter().zip(&self.equilibrium).any(far)
+    }
+
     /// The angular frequency of the fastest mode in rad/s.
     pub fn fastest(&self) -> f64 {
         self.frequencies.last().copied().unwrap_or(f64::NAN)

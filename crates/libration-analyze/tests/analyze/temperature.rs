@@ -81,6 +81,8 @@ fn measured_temperatures_of_linear_forces_are_the_predicted_ones() {
         }
     }
     assert_eq!(report.recommended.as_deref(), Some("BAOA"));
+    // The system has one valley.
+    assert!(report.thermostats.iter().all(|one| one.note.is_none()), "{report:?}");
 }
 
 #[test]
@@ -163,6 +165,8 @@ fn measurements_show_what_linear_forces_do_not() {
         assert!(one.order.is_none() && one.predicted_bias.unwrap().abs() < 1e-12, "{one:?}");
     }
     let errors = |one: &TemperatureBias| one.measured_bias.unwrap() / one.standard_error.unwrap();
+    let note = report.thermostats[1].note.as_ref().unwrap();
+    assert!(note.contains("ended in another valley"), "{note}");
     // A simulation in NumPy has −40 % and +1 % ± 1 % with a friction of 1.
     assert!(errors(aboba) < -20.0 && errors(baoab).abs() < 4.0, "{report:?}");
     assert_eq!(report.recommended.as_deref(), Some("BAOAB"));

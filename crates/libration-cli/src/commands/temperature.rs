@@ -69,6 +69,9 @@ pub(super) fn option_without_temperature(args: &AnalyzeArgs) -> Option<Failure> 
     Some(Failure::usage(format!("{flag} requires --temperature")))
 }
 
+/// One of the two temperatures of a thermostat.
+type BiasOf = fn(&ThermostatReport) -> &TemperatureBias;
+
 // Writing into a string cannot fail.
 fn describe(report: &TemperatureReport) -> String {
     let TemperatureReport { system, temperature, friction, dt, steps, trajectories, .. } = report;
@@ -83,7 +86,7 @@ fn describe(report: &TemperatureReport) -> String {
         text,
         "  kT = {temperature}, friction {friction} /s, fastest mode {fastest:.5} rad/s, {steps} steps in {trajectories} trajectories\n"
     );
-    let kinds: [(&str, fn(&ThermostatReport) -> &TemperatureBias); 2] = [
+    let kinds: [(&str, BiasOf); 2] = [
         ("Positions: bias of ⟨−q·F⟩/kT", |one| &one.configuration),
         ("Velocities: bias of ⟨m v²⟩/kT", |one| &one.kinetic),
     ];
