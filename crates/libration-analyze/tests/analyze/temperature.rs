@@ -44,6 +44,18 @@ fn unequal(beta: f64) -> ThermalSystem {
     .unwrap()
 }
 
+/// Two coordinates with a mass in common, on springs.
+fn coupled() -> ThermalSystem {
+    by_equations(
+        r#"[system]
+        coordinates = ["x", "y"]
+        acceleration.x = "(-x + 0.5*y)/1.75"
+        acceleration.y = "(0.5*x - 2*y)/1.75"
+        energy = "x'^2 + y'^2/2 + x'*y'/2 + (x^2 + y^2)/2""#,
+    )
+    .unwrap()
+}
+
 fn methods(names: &[&str]) -> Vec<LangevinMethod> {
     names.iter().map(|name| name.parse().unwrap()).collect()
 }
@@ -69,8 +81,10 @@ fn analyzed(request: &TemperatureRequest) -> Result<TemperatureReport, Temperatu
 fn measured_temperatures_of_linear_forces_are_the_predicted_ones() {
     let names =
         ["BAOAB", "OBABO", "ABOBA", "OABAO", "BAOA", "BABOBAB", "ABO", "gjf", "euler-maruyama"];
-    let report = analyzed(&request(unequal(0.0), 0.7, &names)).unwrap();
-    for one in &report.thermostats {
+    let [report, of_coupled] =
+        [unequal(0.0), coupled()].map(|system| analyzed(&request(system, 0.7, &names)).unwrap());
+    assert_eq!(of_coupled.mass, [[2.0, 0.5], [0.5, 1.0]]);
+    for one in report.thermostats.iter().chain(&of_coupled.thermostats) {
         for (kind, bias) in [("configuration", &one.configuration), ("kinetic", &one.kinetic)] {
             let (predicted, measured) = (bias.predicted_bias.unwrap(), bias.measured_bias.unwrap());
             let error = bias.standard_error.unwrap();
