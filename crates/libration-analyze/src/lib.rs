@@ -2,6 +2,7 @@
 //!
 //! [`analyze`] derives stability, errors and costs of one step and of a control loop, and [`linear_analysis`] those of linear plants; [`bodies`] simulates gravity; [`comparison`] finds the cheapest integrator of a motion; [`trajectory`] and [`linear_trajectory`] simulate.
 
+pub mod adaptive;
 pub mod bodies;
 pub mod comparison;
 pub mod equation_analysis;

@@ -6,6 +6,15 @@ use libration_core::{Integrator, State, System};
 
 use super::step_trace::{StepTrace, TracedSystem, TracedVector, VectorId, VectorOperation};
 
+/// An exact flow of a part of the system, for a part of the time step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Flow {
+    /// `v += h·a(q)`.
+    Kick(f64),
+    /// `q += h·v`.
+    Drift(f64),
+}
+
 /// A step as operations on vectors of positions, velocities and accelerations, whatever their length.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VectorStep {
@@ -86,6 +95,47 @@ impl VectorStep {
             ends.into_iter().map(|end| trace.id(end)).collect()
         };
         VectorStep { operations: trace.into_operations(), ends }
+    }
+
+    /// The step as kicks and drifts, each with its part of the time step, if it is a sequence of them.
+    pub fn flows(integrator: impl Integrator) -> Option<Vec<Flow>> {
+        let step = VectorStep::new(integrator, Some(1.0));
+        let operations = &step.operations;
+        let (mut q, mut v) = (0, 1);
+        let mut flows = Vec::new();
+        // A vector and its multiple.
+        let multiple = |id: VectorId| match operations[id] {
+            VectorOperation::Product(a, b) => match (&operations[a], &operations[b]) {
+                (VectorOperation::Constant(c), _) => Some((*c, b)),
+                (_, VectorOperation::Constant(c)) => Some((*c, a)),
+                _ => None,
+            },
+            _ => None,
+        };
+        for (id, operation) in operations.iter().enumerate() {
+            match *operation {
+                VectorOperation::Sum(start, increment) => {
+                    let (part, of) = multiple(increment)?;
+                    let is_kick = matches!(operations[of], VectorOperation::AccelerationsAt(at, _) if at == q);
+                    if start == q && of == v {
+                        flows.push(Flow::Drift(part));
+                        q = id;
+                    } else if start == v && is_kick {
+                        flows.push(Flow::Kick(part));
+                        v = id;
+                    } else {
+                        return None;
+                    }
+                }
+                VectorOperation::Positions
+                | VectorOperation::Velocities
+                | VectorOperation::Constant(_)
+                | VectorOperation::Product(..)
+                | VectorOperation::AccelerationsAt(..) => {}
+                _ => return None,
+            }
+        }
+        (step.ends == [q, v]).then_some(flows)
     }
 
     /// The operations; each makes one vector from those before it.

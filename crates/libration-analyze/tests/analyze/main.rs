@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod adaptive;
 mod analyze;
 mod comparison;
 mod dimensions;

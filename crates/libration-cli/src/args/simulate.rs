@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args};
 use libration::ensemble::InstructionSet;
+use libration_analyze::adaptive::StepControl;
 use libration_analyze::trajectory::{FloatType, Format};
 
 use super::number::{count, seed, trajectory_steps, whole_number};
@@ -28,6 +29,14 @@ pub(crate) struct SimulateArgs {
     /// Number of steps (of a loop around a plant: of periods), up to 2^53; --every limits the number of rows
     #[arg(long, value_name = "N", value_parser = trajectory_steps, allow_hyphen_values = true)]
     pub(crate) steps: u64,
+    /// Let the length of the steps follow the forces: --dt is the first; see `docs/adaptive.md`
+    #[arg(
+        long,
+        value_name = "CONTROL",
+        value_parser = controls(),
+        conflicts_with_all = ["count", "plant", "config", "feedback", "lqr", "gain", "time_stamps", "jitter", "skew"]
+    )]
+    pub(crate) adaptive: Option<StepControl>,
     /// Float type of the state, the parameters and every operation
     #[arg(long, value_name = "TYPE", value_parser = float_types(), default_value = "f64")]
     pub(crate) float: FloatType,
@@ -94,6 +103,9 @@ Examples:
   libration simulate --plant drive.toml --lqr 1,100,0,1/0.1 --period 0.001 --latency 0.0008 \\
       --reference \"load angle=1\" --steps 500 --output step.csv
 
+  libration simulate --system kepler --q 0.1,0 --v 0,4.36 --integrator leapfrog --dt 0.001 --steps 1e5 \
+      --adaptive integrating --output orbit.csv
+
   libration simulate --system cart_pole.toml --lqr 1,10,0,1/0.1 --period 0.02 --latency 0.03 \\
       --steps 200 --output balance.csv
 
@@ -111,6 +123,12 @@ The output file appears only when it is complete.";
 pub(super) fn every(text: &str) -> Result<u64, String> {
     let stride = whole_number(text).and_then(|n| u64::try_from(n).ok()).filter(|&n| n >= 1);
     stride.ok_or_else(|| "expected a whole number of at least 1".to_owned())
+}
+
+fn controls() -> impl TypedValueParser<Value = StepControl> {
+    let value = |control: StepControl| PossibleValue::new(control.name()).help(control.summary());
+    PossibleValuesParser::new(StepControl::ALL.map(value))
+        .try_map(|name| StepControl::from_name(&name).ok_or("unknown control"))
 }
 
 fn float_types() -> impl TypedValueParser<Value = FloatType> {

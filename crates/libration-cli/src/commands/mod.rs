@@ -1,5 +1,6 @@
 //! One module for each subcommand.
 
+mod adaptive_steps;
 mod advice_output;
 mod advise;
 mod advise_linear;

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use indicatif::ProgressBar;
 use libration::control::clock::Recorded;
 use libration_advise::linear::{self, LinearRequest, RequestFile};
+use libration_analyze::adaptive;
 use libration_analyze::equation_trajectory;
 use libration_analyze::export::ExportError;
 use libration_analyze::linear_trajectory;
@@ -18,7 +19,7 @@ use libration_analyze::trajectory::{
 use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::{Document, Fault};
 
-use super::{config_file, equation_file, equation_loop, time_stamps};
+use super::{adaptive_steps, config_file, equation_file, equation_loop, time_stamps};
 use crate::args::SimulateArgs;
 use crate::error::Failure;
 use crate::output_file::OutputFile;
@@ -50,6 +51,12 @@ pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
         let request = request?;
         return write(args, quiet, format, &|out, watcher| {
             linear_trajectory::write(&request, format, out, watcher)
+        });
+    }
+    if let Some(control) = args.adaptive {
+        let request = adaptive_steps::request(args, control)?;
+        return write(args, quiet, format, &|out, watcher| {
+            adaptive::write(&request, format, out, watcher)
         });
     }
     if let Some(system) = args.system.as_ref().and_then(equation_file::system) {

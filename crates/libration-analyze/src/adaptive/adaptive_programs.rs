@@ -1,0 +1,26 @@
+//! The programs of a motion with adaptive steps.
+
+use libration::equations::{Dynamics, Flow, Program, StepProgram, VectorStep};
+use libration::{Method, with_method};
+
+/// The programs of a motion with adaptive steps.
+#[derive(Debug)]
+pub struct AdaptivePrograms {
+    pub(super) dynamics: Dynamics,
+    pub(super) step: StepProgram,
+    pub(super) frequency: Program,
+    /// The kicks and drifts of the method, if it is a sequence of them.
+    pub(super) flows: Option<Vec<Flow>>,
+}
+
+impl AdaptivePrograms {
+    /// Those of an integrator on a system whose inputs are zero.
+    pub fn new(dynamics: &Dynamics, method: Method) -> Self {
+        AdaptivePrograms {
+            step: StepProgram::new(method, dynamics),
+            frequency: dynamics.squared_frequency(),
+            flows: with_method!(method, |integrator| VectorStep::flows(integrator)),
+            dynamics: dynamics.clone(),
+        }
+    }
+}

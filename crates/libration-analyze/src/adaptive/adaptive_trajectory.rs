@@ -1,0 +1,199 @@
+//! Trajectories with adaptive steps as tables.
+//!
+//! The columns are `step`, `t`, the length of the step that led there (`dt`), the states, and the energy where the system has one.
+
+use std::io::Write;
+
+use libration::Method;
+use libration::equations::Dynamics;
+use libration_settings::limits;
+use serde_json::{Value, json};
+
+use super::{AdaptiveFailure, AdaptivePrograms, AdaptiveStepper, StepControl};
+use crate::export::Rows;
+use crate::recording::{self, Recording};
+use crate::trajectory::{
+    Divergence, Format, Monitor, Outcome, Trajectory, TrajectoryError, rows as rows_of,
+};
+
+/// Version of the JSON format.
+const SCHEMA: &str = "libration.adaptive-trajectory/1";
+
+/// Steps between two checks of the monitor.
+const CHUNK: u64 = 1 << 12;
+
+/// A motion with adaptive steps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AdaptiveRequest {
+    /// The name of the system.
+    pub system: String,
+    /// The system; its inputs are zero.
+    pub dynamics: Dynamics,
+    /// Positions, then velocities.
+    pub start: Vec<f64>,
+    /// The states that become columns.
+    pub states: Vec<AdaptiveState>,
+    /// The unit of the energy; empty without one.
+    pub energy_unit: String,
+    /// The integrator.
+    pub method: Method,
+    /// How the length of a step is chosen.
+    pub control: StepControl,
+    /// The length of the first step in s.
+    pub dt: f64,
+    /// Number of steps.
+    pub steps: u64,
+    /// The interval of kept steps. The start and the last step are always kept.
+    pub every: u64,
+}
+
+/// A state that becomes a column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AdaptiveState {
+    /// The place among positions and velocities.
+    pub place: usize,
+    /// The name.
+    pub name: String,
+    /// The unit; empty without one.
+    pub unit: String,
+}
+
+/// Simulates the request, until the end or until `monitor` stops it, and keeps all rows.
+///
+/// # Errors
+/// A [`TrajectoryError`], before any work if the request is invalid.
+pub fn simulate_until(
+    request: &AdaptiveRequest,
+    monitor: &dyn Monitor,
+) -> Result<Trajectory, TrajectoryError> {
+    request.check()?;
+    let (table, outcome) = recording::table::<f64>(request, monitor, |_, _| 0)?;
+    Ok(Trajectory { table, outcome })
+}
+
+/// Simulates the request and writes its rows into `out`, until the end or until `monitor` stops it.
+///
+/// # Errors
+/// A [`TrajectoryError`], before any work if the request is invalid.
+pub fn write(
+    request: &AdaptiveRequest,
+    format: Format,
+    out: &mut (dyn Write + Send),
+    monitor: &dyn Monitor,
+) -> Result<Outcome, TrajectoryError> {
+    request.check()?;
+    recording::write::<f64>(request, format, out, monitor)
+}
+
+impl AdaptiveRequest {
+    fn check(&self) -> Result<(), TrajectoryError> {
+        let wrong = |name, value: String, allowed: &str| {
+            Err(TrajectoryError::Value { name, value, allowed: allowed.to_owned() })
+        };
+        if !(self.dt > 0.0 && self.dt.is_finite()) {
+            return wrong("dt", format!("{:?}", self.dt), "positive and finite");
+        }
+        if !limits::TRAJECTORY_STEPS.contains(&self.steps) {
+            let allowed = limits::trajectory_steps_allowed();
+            return wrong("steps", self.steps.to_string(), &allowed);
+        }
+        if self.every == 0 {
+            return wrong("every", "0".to_owned(), "at least 1");
+        }
+        if let Some(x) = self.start.iter().find(|x| !x.is_finite()) {
+            return wrong("start", format!("{x:?}"), "finite");
+        }
+        let programs = AdaptivePrograms::new(&self.dynamics, self.method);
+        match AdaptiveStepper::new(&programs, self.control, &self.start, self.dt) {
+            Some(_) => Ok(()),
+            None => wrong(
+                "adaptive",
+                format!("{} for {}", self.control.name(), self.system),
+                "forces that change in space at the start: their derivatives set the length of a step",
+            ),
+        }
+    }
+
+    fn outcome(&self, failure: AdaptiveFailure, step: u64, t: f64) -> Outcome {
+        let reason = match failure {
+            AdaptiveFailure::NotFinite => "the state stopped being finite",
+            AdaptiveFailure::Density => {
+                "the density of steps is not positive; help: a shorter first step (--dt)"
+            }
+            AdaptiveFailure::NoSolution => {
+                "the length of the step has no solution; help: a shorter first step (--dt)"
+            }
+        };
+        Outcome::Diverged(Divergence { step, t, reason: reason.to_owned() })
+    }
+}
+
+impl Recording<f64> for AdaptiveRequest {
+    fn columns(&self) -> Vec<(String, String)> {
+        let named = |name: &str, unit: &str| (name.to_owned(), unit.to_owned());
+        let mut names = vec![named("step", "1"), named("t", "s"), named("dt", "s")];
+        names.extend(self.states.iter().map(|state| named(&state.name, &state.unit)));
+        names.extend(self.dynamics.energy().map(|_| named("energy", &self.energy_unit)));
+        names
+    }
+
+    fn is_ensemble(&self) -> bool {
+        false
+    }
+
+    fn rows(&self) -> u64 {
+        rows_of(self.steps, self.every, None)
+    }
+
+    fn head(&self) -> Vec<(&'static str, Value)> {
+        let (names, units): (Vec<String>, Vec<String>) = self.columns().into_iter().unzip();
+        vec![
+            ("schema", SCHEMA.into()),
+            ("system", self.system.clone().into()),
+            ("integrator", self.method.name().into()),
+            ("adaptive", self.control.name().into()),
+            ("dt", self.dt.into()),
+            ("steps", self.steps.into()),
+            ("every", self.every.into()),
+            ("columns", json!(names)),
+            ("units", json!(units)),
+        ]
+    }
+
+    fn run(
+        &self,
+        rows: &mut dyn Rows<f64>,
+        monitor: &dyn Monitor,
+    ) -> Result<Outcome, TrajectoryError> {
+        let programs = AdaptivePrograms::new(&self.dynamics, self.method);
+        let stepper = AdaptiveStepper::new(&programs, self.control, &self.start, self.dt);
+        // A checked request has a stepper.
+        let Some(mut stepper) = stepper else { return Ok(Outcome::Complete) };
+        let mut energy_of = self.dynamics.energy().map(|energy| energy.on::<f64>());
+        let mut inputs = self.start.clone();
+        inputs.resize(self.start.len() + self.dynamics.inputs(), 0.0);
+        let mut values = Vec::new();
+        for step in 0..=self.steps {
+            if step % self.every == 0 || step == self.steps {
+                values.clear();
+                values.push(stepper.last_length());
+                values.extend(self.states.iter().map(|state| stepper.state()[state.place]));
+                inputs[..self.start.len()].copy_from_slice(stepper.state());
+                values.extend(energy_of.iter_mut().flat_map(|energy| energy.run(&inputs)));
+                rows.row(&[step], stepper.time(), &values)?;
+            }
+            if step % CHUNK == 0 {
+                if monitor.should_stop() {
+                    return Err(TrajectoryError::Interrupted);
+                }
+                monitor.on_step(step);
+            }
+            if step < self.steps
+                && let Err(failure) = stepper.advance()
+            {
+                return Ok(self.outcome(failure, step + 1, stepper.time()));
+            }
+        }
+        Ok(Outcome::Complete)
+    }
+}
