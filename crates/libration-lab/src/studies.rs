@@ -4,7 +4,7 @@ use libration_study::Registry;
 use libration_study_batch::{Determinism, Memory, Rollout, Storage, Throughput};
 use libration_study_loops::{Asynchrony, Hierarchy, Jitter, Latency};
 use libration_study_motion::{
-    Convergence, Drift, Efficiency, Error, Nonlinear, Precision, Spectrum, Stability,
+    Adaptive, Convergence, Drift, Efficiency, Error, Nonlinear, Precision, Spectrum, Stability,
 };
 
 /// All studies, in the order of the report.
@@ -17,6 +17,7 @@ pub const STUDIES: Registry = Registry {
         &Efficiency,
         &Convergence::FROM_CONFIGURATION,
         &Nonlinear::FROM_CONFIGURATION,
+        &Adaptive,
         &Precision,
         &Latency,
         &Jitter,

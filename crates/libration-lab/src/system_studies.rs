@@ -172,6 +172,9 @@ fn reason(study: &str) -> &'static str {
         "efficiency" => {
             "its costs are those of harmonic motion; `libration analyze --system FILE` counts the operations of a step of this system"
         }
+        "adaptive" => {
+            "its predictions are those of an ellipse; `libration simulate --system FILE --adaptive integrating` has such steps of this system"
+        }
         "latency" | "jitter" | "asynchrony" | "hierarchy" => {
             "about control loops: `libration advise --plant FILE` has the budget of a loop around this system"
         }

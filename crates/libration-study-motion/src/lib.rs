@@ -1,5 +1,6 @@
 //! Studies of free motion: stability, drift, errors, orders and rounding.
 
+mod adaptive;
 mod convergence;
 mod coverage;
 mod drift;
@@ -15,6 +16,7 @@ mod stability;
 mod stable_step;
 mod subject;
 
+pub use adaptive::{Adaptive, AdaptiveSettings};
 pub use convergence::{Convergence, ConvergenceSettings};
 pub use drift::{Drift, DriftSettings};
 pub use efficiency::{Efficiency, EfficiencySettings};

@@ -41,7 +41,7 @@ pub struct AdaptiveStepper<'p> {
 }
 
 /// The part of the frequency at the start below which steps no longer grow: where forces vanish a step stays finite.
-const LEAST_FREQUENCY: f64 = 1e-3;
+const LEAST_FREQUENCY: f64 = 1e-6;
 
 /// Iterations of the equation of a symmetric step.
 const MOST_ITERATIONS: usize = 60;

@@ -237,6 +237,7 @@ fn findings_agree_for_other_springs_starts_methods_and_steps() {
         let others = [
             "convergence",
             "nonlinear",
+            "adaptive",
             "precision",
             "latency",
             "jitter",
