@@ -23,4 +23,10 @@ impl AdaptivePrograms {
             dynamics: dynamics.clone(),
         }
     }
+
+    /// Whether a step of the integrator is the same backwards: a sequence of kicks and drifts that is a palindrome.
+    pub fn is_symmetric(&self) -> bool {
+        let flows = self.flows.as_deref().unwrap_or_default();
+        !flows.is_empty() && flows.iter().eq(flows.iter().rev())
+    }
 }

@@ -89,8 +89,7 @@ impl<'p> AdaptiveStepper<'p> {
     /// None if the integrator is not symmetric, no sequence of kicks and drifts, or the control is not integrating.
     pub fn on_grid(mut self, programs: &'p AdaptivePrograms, exponent: i32) -> Option<Self> {
         let flows = programs.flows.as_deref()?;
-        let is_symmetric = flows.iter().eq(flows.iter().rev());
-        if !is_symmetric || self.control != StepControl::Integrating {
+        if !programs.is_symmetric() || self.control != StepControl::Integrating {
             return None;
         }
         let spacing = 2.0_f64.powi(exponent);

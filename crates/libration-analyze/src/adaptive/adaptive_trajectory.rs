@@ -114,6 +114,20 @@ impl AdaptiveRequest {
         }
     }
 
+    /// Why a step back does not undo a step, if it does not.
+    pub fn irreversibility(&self) -> Option<String> {
+        let method = self.method.name();
+        if self.control == StepControl::Naive {
+            None
+        } else if !self.dynamics.is_positional() {
+            Some("a force depends on a velocity".to_owned())
+        } else if !AdaptivePrograms::new(&self.dynamics, self.method).is_symmetric() {
+            Some(format!("{method} is not symmetric"))
+        } else {
+            None
+        }
+    }
+
     fn outcome(&self, failure: AdaptiveFailure, step: u64, t: f64) -> Outcome {
         let reason = match failure {
             AdaptiveFailure::NotFinite => "the state stopped being finite",

@@ -55,6 +55,9 @@ pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
     }
     if let Some(control) = args.adaptive {
         let request = adaptive_steps::request(args, control)?;
+        if let Some(reason) = request.irreversibility().filter(|_| !quiet) {
+            terminal::say(&format!("note: the steps are not reversible: {reason}"));
+        }
         return write(args, quiet, format, &|out, watcher| {
             adaptive::write(&request, format, out, watcher)
         });

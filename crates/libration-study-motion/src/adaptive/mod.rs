@@ -89,7 +89,7 @@ fn long_runs(
         Ok(energy_errors(case.ellipse, case.steps, per_period, periods))
     })?;
     let columns =
-        ["eccentricity", "steps", "steps a period", "largest in a tenth", "largest in all"];
+        ["eccentricity", "steps", "steps a period", "largest in the first tenth", "largest in all"];
     let mut table = Table::new("energies", &columns);
     for (case, run) in cases.iter().zip(&runs) {
         let done = run.means.len();

@@ -18,8 +18,8 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     if let (Some(naive), Some(integrating)) = (of("naive", "largest"), of("integrating", "bounded"))
     {
         page.answer = format!(
-            "On an orbit of eccentricity {most} steps from the state before them change the energy by {} of itself; steps from a density \
-             that is integrated keep it to {}, with as many steps.",
+            "On an orbit of eccentricity {most} the largest relative error of the energy is {} if steps follow the state before them, and {} if \
+             they follow a density that is integrated, with no more steps.",
             number(naive, 2),
             number(integrating, 2)
         );
@@ -64,7 +64,7 @@ fn eccentricities(record: &Record) -> Vec<f64> {
 fn energies(record: &Record, eccentricities: &[f64]) -> Result<Figure, RecordError> {
     let mut figure = Figure::new("adaptive-energy", "Largest relative energy error of a period")
         .caption(
-            "With as many steps a period for all. Fixed steps fail at the pericentre, naive steps drift, and reversible steps stay where they \
+            "Fixed steps fail at the pericentre, naive steps drift, and reversible steps stay where they \
              begin.",
         )
         .description("Log-log: energy error of each period for four kinds of steps.")
