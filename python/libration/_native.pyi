@@ -21,6 +21,7 @@ __all__ = [
     "_analyze",
     "_analyze_equations",
     "_analyze_linear",
+    "_check_bodies",
     "_analyze_temperature",
     "_audit_energy",
     "_compare_integrators",
@@ -110,6 +111,7 @@ def _audit_energy(
 def _compare_integrators(
     system: _Equations | None, step: Mapping[str, Any] | None, tolerance: float, horizon: float
 ) -> str: ...
+def _check_bodies(system: Mapping[str, Any]) -> None: ...
 def _named_bodies(name: str, count: int, seed: int) -> dict[str, Any]: ...
 def _read_bodies(path: str) -> dict[str, Any]: ...
 def _simulate_bodies(

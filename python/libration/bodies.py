@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from os import PathLike, fspath
 from typing import Any
@@ -11,7 +12,8 @@ import numpy as np
 
 from . import _native
 from ._html import table
-from ._settings import positive
+from ._settings import count as whole
+from ._settings import number, positive
 
 __all__ = ["Bodies", "BodyMotion", "simulate_bodies"]
 
@@ -59,11 +61,14 @@ class Bodies:
         self.velocities = _of_shape("velocities", velocities, (count, 3))
         self.radii = np.zeros(count) if radii is None else _of_shape("radii", radii, (count,))
         self.names = [str(i) for i in range(count)] if names is None else [str(name) for name in names]
-        if len(self.names) != count:
+        if isinstance(names, str) or len(self.names) != count:
             raise ValueError(f"names has {len(self.names)} names; expected {count}")
-        self.gravitational_constant = float(gravitational_constant)
-        self.softening = float(softening)
+        if len(set(self.names)) != count:
+            raise ValueError("two bodies have the same name; expected a name for each")
+        self.gravitational_constant = positive("gravitational_constant", gravitational_constant)
+        self.softening = number("softening", softening, "a length of at least 0", lambda x: 0 <= x < math.inf)
         self.name = name
+        _native._check_bodies(self._table())
 
     @classmethod
     def published(cls, name: str, *, count: int | None = None, seed: int = 0, softening: float = 0.0) -> Bodies:
@@ -73,7 +78,8 @@ class Bodies:
             raise ValueError(f"count applies to 'plummer' only; {name!r} has fixed bodies")
         if name == "plummer" and count is None:
             raise ValueError("'plummer' requires count")
-        return cls._of(_native._named_bodies(name, count or 0, seed), softening)
+        known = 0 if count is None else whole("count", count, 2, 1 << 16)
+        return cls._of(_native._named_bodies(name, known, whole("seed", seed, 0, (1 << 64) - 1)), softening)
 
     @classmethod
     def read(cls, path: str | PathLike[str]) -> Bodies:
@@ -190,17 +196,19 @@ def simulate_bodies(
     """
     if not isinstance(bodies, Bodies):
         raise TypeError(f"bodies is {type(bodies).__name__}; expected Bodies")
-    for name, value in (("steps", steps), ("every", every)):
-        if value is not None and (not isinstance(value, (int, np.integer)) or value < 1):
-            raise ValueError(f"{name} is {value!r}; expected a whole number of at least 1")
+    if not isinstance(integrator, str):
+        raise TypeError(f"integrator is {type(integrator).__name__}; expected a name")
+    for name, flag in (("compensated", compensated), ("predict", predict)):
+        if not isinstance(flag, (bool, np.bool_)):
+            raise TypeError(f"{name} is {type(flag).__name__}; expected True or False")
     options = {
         "integrator": integrator,
         "dt": positive("dt", dt),
-        "steps": int(steps),
-        "every": None if every is None else int(every),
+        "steps": whole("steps", steps, 1, _native._MOST_STEPS),
+        "every": None if every is None else whole("every", every, 1, _native._MOST_STEPS),
         "compensated": bool(compensated),
         "predict": bool(predict),
-        "threads": int(threads),
+        "threads": whole("threads", threads, 0, 1024),
     }
     audit, t, states = _native._simulate_bodies(bodies._table(), options)
     return BodyMotion(bodies, json.loads(audit), t, states)

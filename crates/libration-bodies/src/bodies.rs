@@ -41,7 +41,7 @@ impl Bodies {
     /// [`BodiesError`] if there are none or too many, if a number is not finite, or a mass or radius is negative.
     pub fn new(bodies: &[Body]) -> Result<Self, BodiesError> {
         if bodies.is_empty() || bodies.len() > MOST_BODIES {
-            return Err(BodiesError::Count { count: bodies.len(), most: MOST_BODIES });
+            return Err(BodiesError::Count { count: bodies.len(), least: 1, most: MOST_BODIES });
         }
         for (body, properties) in bodies.iter().enumerate() {
             let coordinates = properties.position.iter().chain(&properties.velocity);

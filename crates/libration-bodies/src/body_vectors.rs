@@ -20,14 +20,18 @@ impl BodyVector {
     }
 }
 
-/// Runs the actions of one step.
+/// Runs the actions of one step. Returns whether none was stopped; after a stop the vectors have no meaning.
 pub(crate) fn run(
     plan: &StepPlan,
     vectors: &mut [BodyVector],
     attraction: &Attraction<'_>,
     on: &Execution,
-) {
+    should_stop: &dyn Fn() -> bool,
+) -> bool {
     for &(action, register) in &plan.actions {
+        if matches!(action, Action::Accelerations(_)) && should_stop() {
+            return false;
+        }
         let mut out = core::mem::take(&mut vectors[register]);
         write(action, vectors, &mut out, attraction, on);
         vectors[register] = out;
@@ -35,6 +39,7 @@ pub(crate) fn run(
     for &(a, b) in &plan.exchanges {
         vectors.swap(a, b);
     }
+    true
 }
 
 fn write(

@@ -24,6 +24,8 @@ pub(crate) struct DemocraticHeliocentric {
     positions: Vec<f64>,
     velocities: Vec<f64>,
     accelerations: Vec<f64>,
+    /// Positions and velocities before the step.
+    last: [Vec<f64>; 2],
     /// Of the centre of mass.
     centre: [f64; 3],
     centre_velocity: [f64; 3],
@@ -73,6 +75,7 @@ impl DemocraticHeliocentric {
             positions: relative(bodies.positions(), first.position),
             velocities: relative(bodies.velocities(), centre_velocity),
             accelerations: vec![0.0; 3 * others.len()],
+            last: [Vec::new(), Vec::new()],
             centre,
             centre_velocity,
         };
@@ -87,6 +90,8 @@ impl DemocraticHeliocentric {
     }
 
     pub(crate) fn step(&mut self, dt: f64, on: &Execution) {
+        self.last[0].clone_from(&self.positions);
+        self.last[1].clone_from(&self.velocities);
         self.kick(0.5 * dt);
         self.jump(0.5 * dt);
         self.orbit(dt);
@@ -116,6 +121,12 @@ impl DemocraticHeliocentric {
             let start = [[x[i], y[i], z[i]], [vx[i], vy[i], vz[i]]];
             [[x[i], y[i], z[i]], [vx[i], vy[i], vz[i]]] = kepler_flow(self.central, start, h);
         }
+    }
+
+    /// Writes the bodies before the last step.
+    pub(crate) fn write_last(&self, bodies: &mut Bodies) {
+        let [positions, velocities] = self.last.clone();
+        DemocraticHeliocentric { positions, velocities, ..self.clone() }.write(bodies);
     }
 
     /// Positions and velocities of all bodies in inertial coordinates.

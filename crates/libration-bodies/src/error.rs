@@ -1,21 +1,22 @@
 //! Why bodies cannot be simulated.
 
-use thiserror::Error;
+use std::error::Error;
+use std::fmt;
 
 /// Why bodies cannot be simulated. Bodies are counted from 0.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BodiesError {
-    /// No bodies, or too many.
-    #[error("{count} bodies; expected 1 to {most}")]
+    /// Too few bodies, or too many.
     Count {
         /// The number given.
         count: usize,
+        /// The smallest number.
+        least: usize,
         /// The largest number.
         most: usize,
     },
     /// A coordinate that is no number.
-    #[error("body {body}: {field} = {value}; expected a finite number")]
     NotFinite {
         /// The body.
         body: usize,
@@ -25,7 +26,6 @@ pub enum BodiesError {
         value: f64,
     },
     /// A mass or radius that is not allowed.
-    #[error("body {body}: {field} = {value}; expected a finite number of at least 0")]
     Negative {
         /// The body.
         body: usize,
@@ -35,30 +35,21 @@ pub enum BodiesError {
         value: f64,
     },
     /// A constant of gravitation that is not allowed.
-    #[error(
-        "gravitational constant {value}; expected a positive number whose products with all masses are finite"
-    )]
     Constant {
         /// The value.
         value: f64,
     },
     /// A softening length that is not allowed.
-    #[error("softening {length}; expected a length of at least 0")]
     Softening {
         /// The value.
         length: f64,
     },
     /// A time step that is not allowed.
-    #[error("dt {dt}; expected a finite number other than 0")]
     TimeStep {
         /// The value.
         dt: f64,
     },
     /// Two bodies at the same place.
-    #[error(
-        "bodies {} and {} are at the same place at t = {time}; help: softening makes their force finite",
-        pair[0], pair[1]
-    )]
     SamePlace {
         /// The bodies.
         pair: [usize; 2],
@@ -66,7 +57,6 @@ pub enum BodiesError {
         time: f64,
     },
     /// Two bodies nearer than the sum of their radii.
-    #[error("bodies {} and {} collide at t = {time}: distance {distance}", pair[0], pair[1])]
     Collision {
         /// The bodies.
         pair: [usize; 2],
@@ -76,20 +66,70 @@ pub enum BodiesError {
         distance: f64,
     },
     /// Numbers outgrew the floats.
-    #[error(
-        "the motion is not finite after t = {time}; bodies {} and {} were nearest; help: a shorter time step or softening",
-        pair[0], pair[1]
-    )]
     Overflow {
-        /// The bodies that were nearest before.
-        pair: [usize; 2],
+        /// The bodies that were nearest before, if there are several.
+        pair: Option<[usize; 2]>,
         /// The time before the step.
         time: f64,
     },
     /// A splitting around a central body that does not apply.
-    #[error("wisdom-holman: {reason}")]
     CentralBody {
         /// The reason.
         reason: &'static str,
     },
+    /// The caller stopped the simulation.
+    Stopped,
 }
+
+impl BodiesError {
+    /// The error in words, with names of the bodies.
+    pub fn with_names(&self, name: impl Fn(usize) -> String) -> String {
+        let both = |[a, b]: [usize; 2]| format!("{} and {}", name(a), name(b));
+        match self {
+            BodiesError::Count { count, least, most } => {
+                let bodies = if *count == 1 { "body" } else { "bodies" };
+                format!("{count} {bodies}; expected {least} to {most}")
+            }
+            BodiesError::NotFinite { body, field, value } => {
+                format!("{}: {field} = {value:?}; expected a finite number", name(*body))
+            }
+            BodiesError::Negative { body, field, value } => {
+                let body = name(*body);
+                format!("{body}: {field} = {value:?}; expected a finite number of at least 0")
+            }
+            BodiesError::Constant { value } => format!(
+                "gravitational constant {value:?}; expected a positive number whose products with all masses are finite"
+            ),
+            BodiesError::Softening { length } => {
+                format!("softening {length:?}; expected a length from 0 to 1e154")
+            }
+            BodiesError::TimeStep { dt } => {
+                format!("dt {dt:?}; expected a finite number other than 0")
+            }
+            BodiesError::SamePlace { pair, time } => format!(
+                "{} are at the same place at t = {time:?}; help: softening makes their force finite",
+                both(*pair)
+            ),
+            BodiesError::Collision { pair, time, distance } => {
+                format!("{} collide at t = {time:?}: distance {distance:?}", both(*pair))
+            }
+            BodiesError::Overflow { pair, time } => {
+                let nearest =
+                    pair.map_or_else(String::new, |pair| format!("; {} were nearest", both(pair)));
+                format!(
+                    "the motion is not finite after t = {time:?}{nearest}; help: a shorter time step or softening"
+                )
+            }
+            BodiesError::CentralBody { reason } => format!("wisdom-holman: {reason}"),
+            BodiesError::Stopped => "interrupted".to_owned(),
+        }
+    }
+}
+
+impl fmt::Display for BodiesError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.with_names(|body| format!("body {body}")))
+    }
+}
+
+impl Error for BodiesError {}

@@ -193,11 +193,11 @@ fn kozai() -> [Body; 3] {
 
 /// Equal masses of a Plummer sphere in the units of Hénon, its outermost part of 0.1 percent of the mass left out.
 fn plummer(count: usize, seed: u64) -> Result<Bodies, BodiesError> {
-    if count < 2 {
-        return Err(BodiesError::Count { count, most: super::MOST_BODIES });
+    if !(2..=super::MOST_BODIES).contains(&count) {
+        return Err(BodiesError::Count { count, least: 2, most: super::MOST_BODIES });
     }
     let scale = 3.0 * PI / 16.0;
-    let bodies: Vec<Body> = (0..count.min(super::MOST_BODIES + 1))
+    let bodies: Vec<Body> = (0..count)
         .map(|i| {
             let uniform = |step: u64| {
                 let address = Address { seed, trajectory: i as u64, step, purpose: Purpose::Start };

@@ -61,29 +61,32 @@ impl Orbit {
             let excess = self.distance * x + self.eta * g2 + self.zeta * g3 - time;
             let distance = self.distance + self.eta * g1 + self.zeta * g2;
             let slope = self.eta * g0 + self.zeta * g1;
-            if excess > 0.0 {
+            // Functions of a hyperbola overflow far beyond the solution, on either side of the start.
+            let is_beyond = if excess.is_nan() { x > 0.0 } else { excess > 0.0 };
+            if is_beyond {
                 high = high.min(x);
             } else {
                 low = low.max(x);
             }
             let root = (16.0 * distance * distance - 20.0 * excess * slope).abs().sqrt();
             let mut next = x - 5.0 * excess / (distance + root);
-            if !(next > low && next < high) && excess != 0.0 {
+            let is_bisected = !(next > low && next < high) && excess != 0.0;
+            if is_bisected {
                 next = match (low.is_finite(), high.is_finite()) {
                     (true, true) => low + 0.5 * (high - low),
                     _ => 2.0 * x,
                 };
             }
             let step = (next - x).abs();
-            // In the last digits steps no longer become smaller.
+            // In the last digits the steps of the iteration no longer become smaller.
             let is_last = step <= f64::EPSILON * x.abs()
-                || (step <= 1e-12 * x.abs() && step >= 0.5 * last_step);
-            if is_last || step.is_nan() {
+                || (!is_bisected && step <= 1e-12 * x.abs() && step >= 0.5 * last_step);
+            if is_last {
                 // The last step is too small to need new functions: G₁' = G₀, G₂' = G₁, G₃' = G₂.
                 let step = next - x;
                 return [g1 + step * g0, g2 + step * g1, g3 + step * g2];
             }
-            (x, last_step) = (next, step);
+            (x, last_step) = (next, if is_bisected { f64::INFINITY } else { step });
         }
         let [_, g1, g2, g3] = self.functions(x);
         [g1, g2, g3]

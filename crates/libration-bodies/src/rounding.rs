@@ -36,7 +36,12 @@ pub(crate) struct Roundings {
 const MEAN_SQUARE: f64 = 1.0 / (8.0 * LN_2);
 
 impl RoundingVariance {
-    pub(crate) fn new(bodies: &Bodies, accelerations: &[f64], roundings: Roundings) -> Self {
+    pub(crate) fn new(
+        bodies: &Bodies,
+        accelerations: &[f64],
+        potentials: &[f64],
+        roundings: Roundings,
+    ) -> Self {
         let Roundings { kicks, drifts, kick_length, is_compensated } = roundings;
         let unit = f64::EPSILON / 2.0;
         let state = if is_compensated { 0.0 } else { MEAN_SQUARE * unit * unit };
@@ -44,12 +49,18 @@ impl RoundingVariance {
         // step.
         let force = 6.0 * MEAN_SQUARE * unit * unit;
         let mut variance = RoundingVariance::default();
-        for (i, body) in bodies.iter().enumerate() {
+        for ((i, body), potential) in bodies.iter().enumerate().zip(potentials) {
             let (mass, q, v) = (body.mass, body.position, body.velocity);
             let a = axes(accelerations).map(|plane| plane[i]);
+            let square = a.iter().map(|a| a * a).sum::<f64>();
+            // Forces are those at rounded positions. Of a single source the gradient is 2Gm/r³ = 2a²/|φ|.
+            let gradient = if *potential == 0.0 { 0.0 } else { 2.0 * square / potential };
+            let shift = MEAN_SQUARE * unit * unit * q.iter().map(|q| q * q).sum::<f64>();
+            let of_places = shift * (kick_length * gradient).powi(2) / 3.0;
             // Variances of the errors of velocity and position in a step.
             let of_v: [f64; 3] = core::array::from_fn(|axis| {
-                kicks * (state * v[axis] * v[axis] + force * (kick_length * a[axis]).powi(2))
+                let of_force = force * (kick_length * a[axis]).powi(2) + of_places;
+                kicks * (state * v[axis] * v[axis] + of_force)
             });
             let of_q: [f64; 3] = core::array::from_fn(|axis| drifts * state * q[axis] * q[axis]);
             let square = mass * mass;

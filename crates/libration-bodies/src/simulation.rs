@@ -141,40 +141,59 @@ impl BodySimulation {
     /// Takes steps.
     ///
     /// # Errors
-    /// [`BodiesError::Collision`] of bodies with radii, [`BodiesError::SamePlace`] and [`BodiesError::Overflow`]. The bodies are then those
-    /// before the step.
+    /// [`BodiesError::Collision`] of bodies with radii, which are then where they collide; [`BodiesError::SamePlace`] and
+    /// [`BodiesError::Overflow`], where the bodies are those before the step.
     pub fn advance(&mut self, steps: u64) -> Result<(), BodiesError> {
+        self.advance_until(steps, &|| false)
+    }
+
+    /// Takes steps until `should_stop` returns true, which it is asked before each sum over all pairs.
+    ///
+    /// # Errors
+    /// As for [`advance`](Self::advance), and [`BodiesError::Stopped`], after which the simulation is of no use.
+    pub fn advance_until(
+        &mut self,
+        steps: u64,
+        should_stop: &dyn Fn() -> bool,
+    ) -> Result<(), BodiesError> {
         for _ in 0..steps {
-            self.step()?;
+            self.step(should_stop)?;
         }
         self.write();
         Ok(())
     }
 
-    fn step(&mut self) -> Result<(), BodiesError> {
-        if self.has_radii {
-            // Distances are those of the bodies that were written.
-            self.write();
-            self.check_distances()?;
-        }
+    fn step(&mut self, should_stop: &dyn Fn() -> bool) -> Result<(), BodiesError> {
         let is_finite = match &mut self.stepper {
             Stepper::Plan { plan, vectors } => {
                 // The state before the step names the bodies of a failure.
                 let (positions, velocities) = self.bodies.state_mut();
                 positions.copy_from_slice(&vectors[POSITIONS].values);
                 velocities.copy_from_slice(&vectors[VELOCITIES].values);
-                body_vectors::run(plan, vectors, &self.bodies.attraction(), &self.on);
+                let attraction = self.bodies.attraction();
+                if !body_vectors::run(plan, vectors, &attraction, &self.on, should_stop) {
+                    return Err(BodiesError::Stopped);
+                }
                 is_finite(&vectors[VELOCITIES].values) && is_finite(&vectors[POSITIONS].values)
             }
             Stepper::Heliocentric(orbits) => {
                 orbits.step(self.dt, &self.on);
-                orbits.is_finite()
+                let is_finite = orbits.is_finite();
+                if !is_finite {
+                    orbits.write_last(&mut self.bodies);
+                }
+                is_finite
             }
         };
         if !is_finite {
             return Err(self.failure());
         }
         self.steps += 1;
+        if self.has_radii {
+            // Distances are those of the bodies that were written.
+            self.write();
+            self.check_distances()?;
+        }
         if let Some(mut closest) = self.encounters.take() {
             self.look(&mut closest);
             self.encounters = Some(closest);
@@ -207,8 +226,7 @@ impl BodySimulation {
         let time = self.time();
         match self.bodies.closest_pair() {
             Some((pair, distance)) if distance == 0.0 => BodiesError::SamePlace { pair, time },
-            Some((pair, _)) => BodiesError::Overflow { pair, time },
-            None => BodiesError::Overflow { pair: [0, 0], time },
+            found => BodiesError::Overflow { pair: found.map(|(pair, _)| pair), time },
         }
     }
 
@@ -285,7 +303,29 @@ impl BodySimulation {
         };
         let kick_length = self.dt / kicks;
         let roundings = Roundings { kicks, drifts, kick_length, is_compensated };
-        RoundingVariance::new(&self.bodies, &accelerations, roundings)
+        let potentials = attraction.potentials(self.bodies.positions(), &self.on);
+        match &self.stepper {
+            Stepper::Plan { .. } => {
+                RoundingVariance::new(&self.bodies, &accelerations, &potentials, roundings)
+            }
+            Stepper::Heliocentric(_) => {
+                // Coordinates are relative to the first body and the centre of mass, whose motion is exact.
+                let centred = self.bodies.clone().centred();
+                let variance =
+                    RoundingVariance::new(&centred, &accelerations, &potentials, roundings);
+                RoundingVariance { momentum: [0.0; 3], ..variance }
+            }
+        }
+    }
+
+    /// The same of a single rounding of all positions and velocities: what the bodies of compensated sums have when they are read.
+    pub fn representation_variance(&self) -> RoundingVariance {
+        let mut accelerations = vec![0.0; 3 * self.bodies.count()];
+        let attraction = self.bodies.attraction();
+        attraction.accelerations(self.bodies.positions(), &mut accelerations, &self.on);
+        let once = Roundings { kicks: 1.0, drifts: 1.0, kick_length: 0.0, is_compensated: false };
+        let potentials = vec![0.0; self.bodies.count()];
+        RoundingVariance::new(&self.bodies, &accelerations, &potentials, once)
     }
 
     /// Energy, momentum and angular momentum.

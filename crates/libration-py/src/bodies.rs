@@ -86,6 +86,12 @@ fn table<'py>(py: Python<'py>, system: &NamedBodies) -> PyResult<Bound<'py, PyDi
     Ok(dict)
 }
 
+/// Raises the error of invalid bodies.
+#[pyfunction]
+pub(crate) fn _check_bodies(system: BodyTable) -> PyResult<()> {
+    system.read().map(|_| ())
+}
+
 /// Published initial conditions.
 #[pyfunction]
 pub(crate) fn _named_bodies(

@@ -42,7 +42,7 @@ mod _native {
     #[pymodule_export]
     use crate::bench::{_seconds_of_rollouts, _seconds_of_steps};
     #[pymodule_export]
-    use crate::bodies::{_named_bodies, _read_bodies, _simulate_bodies};
+    use crate::bodies::{_check_bodies, _named_bodies, _read_bodies, _simulate_bodies};
     #[pymodule_export]
     use crate::catalogue::{
         _implicit_integrators, _integrators, _parameters, _splitting_methods, _studies, _systems,

@@ -4,6 +4,7 @@ use std::io;
 use std::ops::Range;
 use std::path::Path;
 
+use csv::{ReaderBuilder, Trim};
 use libration::bodies::{Bodies, BodiesError, Body};
 use libration_data::read_text_bounded;
 use serde::Deserialize;
@@ -148,40 +149,51 @@ const COLUMNS: [&str; 7] = ["mass", "x", "y", "z", "vx", "vy", "vz"];
 
 /// Reads rows with the columns `mass, x, y, z, vx, vy, vz`, in any order, and perhaps `name` and `radius`.
 fn of_rows(text: &str, file: &str) -> Result<NamedBodies, SettingsError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let wrong = |span: Range<usize>, message: String, help: Option<String>| {
         SettingsError::new(file, text, span, message, help)
     };
-    // Each line with its place.
-    let mut lines = text.split_inclusive('\n').scan(0, |at, line| {
-        let start = *at;
-        *at += line.len();
-        Some((start, line.trim_end()))
-    });
-    let Some((_, head)) = lines.find(|(_, line)| !line.is_empty()) else {
-        return Err(wrong(0..0, "the file is empty; expected a line of names".to_owned(), None));
+    let mut reader =
+        ReaderBuilder::new().trim(Trim::All).flexible(true).from_reader(text.as_bytes());
+    let unreadable = |error: csv::Error| {
+        let at = error.position().map_or(0, |position| position.byte() as usize);
+        wrong(at..at, error.to_string(), None)
     };
-    let heads: Vec<&str> = head.split(',').map(str::trim).collect();
+    let heads = reader.headers().map_err(unreadable)?.clone();
+    let head = 0..text.lines().next().map_or(0, str::len);
+    if heads.is_empty() {
+        return Err(wrong(head, "the file is empty; expected a line of names".to_owned(), None));
+    }
     let known: Vec<&str> = COLUMNS.into_iter().chain(["name", "radius"]).collect();
     if let Some(other) = heads.iter().find(|head| !known.contains(head)) {
         let help = suggestions::suggest("columns", other, known.iter().copied());
-        return Err(wrong(0..head.len(), format!("unknown column `{other}`"), Some(help)));
+        return Err(wrong(head, format!("unknown column `{other}`"), Some(help)));
     }
-    let column = |name: &str| heads.iter().position(|head| *head == name);
+    let names_of_columns: Vec<String> = heads.iter().map(str::to_owned).collect();
+    if let Some(i) = repeated(&names_of_columns) {
+        let message = format!("two columns have the name `{}`", names_of_columns[i]);
+        return Err(wrong(head, message, None));
+    }
+    let column = |name: &str| heads.iter().position(|head| head == name);
     if let Some(missing) = COLUMNS.into_iter().find(|name| column(name).is_none()) {
         let message = format!("no column `{missing}`; expected {}", COLUMNS.join(", "));
-        return Err(wrong(0..head.len(), message, None));
+        return Err(wrong(head, message, None));
     }
     let (mut bodies, mut names, mut places) = (Vec::new(), Vec::new(), Vec::new());
-    for (start, line) in lines.filter(|(_, line)| !line.is_empty()) {
-        let span = start..start + line.len();
-        let cells: Vec<&str> = line.split(',').map(str::trim).collect();
+    for cells in reader.records() {
+        let cells = cells.map_err(unreadable)?;
+        let start = cells.position().map_or(0, |position| position.byte() as usize);
+        // A record starts after the end of the line before it.
+        let blank = text[start..].len() - text[start..].trim_start().len();
+        let start = start + blank;
+        let span = start..start + text[start..].lines().next().map_or(0, str::len);
         if cells.len() != heads.len() {
             let message = format!("{} cells; expected {}", cells.len(), heads.len());
             return Err(wrong(span, message, None));
         }
         let number = |name: &str| {
             let Some(place) = column(name) else { return Ok(0.0) };
-            let message = || format!("{name} = `{}`; expected a number", cells[place]);
+            let message = || format!("{name} = `{}`; expected a number", &cells[place]);
             cells[place].parse::<f64>().map_err(|_| wrong(span.clone(), message(), None))
         };
         let body = Body {
@@ -190,8 +202,8 @@ fn of_rows(text: &str, file: &str) -> Result<NamedBodies, SettingsError> {
             velocity: [number("vx")?, number("vy")?, number("vz")?],
             radius: number("radius")?,
         };
-        let name = column("name").map(|place| cells[place].to_owned());
-        names.push(name.unwrap_or_else(|| bodies.len().to_string()));
+        let name = column("name").map(|place| &cells[place]).filter(|name| !name.is_empty());
+        names.push(name.map_or_else(|| bodies.len().to_string(), str::to_owned));
         bodies.push(body);
         places.push(span);
     }
@@ -200,7 +212,7 @@ fn of_rows(text: &str, file: &str) -> Result<NamedBodies, SettingsError> {
         return Err(wrong(places[i].clone(), message, None));
     }
     let all = Bodies::new(&bodies).map_err(|error| {
-        let place = body_of(&error).map_or(0..head.len(), |i| places[i].clone());
+        let place = body_of(&error).map_or(head, |i| places[i].clone());
         wrong(place, error.to_string(), None)
     });
     Ok(NamedBodies { name: stem(file), bodies: all?, names })
@@ -239,6 +251,9 @@ mod tests {
         let rows =
             "name, mass, x,y,z, vy,vx,vz,radius\nsun,1,0,0,0,0,0,0,0\n\n1,0.5,1,2,3,5,4,6,.1\n";
         let rows = NamedBodies::parse(rows, "two.csv").unwrap();
+        let quoted = "\u{feff}\"name\",mass,x,y,z,vx,vy,vz\r\n\"sun, our\",1,0,0,0,0,0,0\r\n,0,1,0,0,0,1,0\r\n";
+        let quoted = NamedBodies::parse(quoted, "two.csv").unwrap();
+        assert_eq!(quoted.names, ["sun, our", "1"]);
         assert_eq!(rows.names, read.names);
         assert!(rows.bodies.iter().eq(read.bodies.iter()));
     }
@@ -249,13 +264,14 @@ mod tests {
             NamedBodies::parse(&TWO.replace(from, to), "two.toml").unwrap_err().sentence()
         };
         let message = changed("mass = 0.5", "mass = -2");
-        let expected = "line 10: body 1: mass = -2; expected a finite number of at least 0";
+        let expected = "line 10: body 1: mass = -2.0; expected a finite number of at least 0";
         assert_eq!(message, expected);
         assert_eq!(changed("[1, 2, 3]", "[1, 2]"), "line 11: `position` has 2 numbers; expected 3");
         assert!(changed("mass = 1\n", "mas = 1\n").contains("unknown key `mas`"));
         assert!(changed("= 4\n", "= 0\n").starts_with("line 2: gravitational constant 0"));
         let rows = |text: &str| NamedBodies::parse(text, "two.csv").unwrap_err().sentence();
         assert!(rows("mass,x,y,z,vx,vy\n").contains("no column `vz`"));
+        assert!(rows("mass,x,y,z,vx,vy,vz,x\n").contains("two columns have the name `x`"));
         let message = rows("mass,x,y,z,vx,vy,vz\n1,0,0,0,0,0,0\n1,0,zero,0,0,0,0\n");
         assert_eq!(message, "line 3: y = `zero`; expected a number");
         let message = rows("mass,x,y,z,vx,vy,vz\n1,0,0,0,0,0,0\n1,0,0,0,0,inf,0\n");

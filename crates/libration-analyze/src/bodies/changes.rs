@@ -13,14 +13,29 @@ pub(super) struct Changes {
     largest: [f64; 3],
     /// Sums of the variances of rounding in one step over the samples.
     variances: [f64; 3],
+    /// Sums of the variances of reading a state.
+    of_reading: [f64; 3],
     samples: f64,
+}
+
+/// Variances of energy, momentum and angular momentum.
+fn totals(variance: RoundingVariance) -> [f64; 3] {
+    let RoundingVariance { energy, momentum, angular_momentum } = variance;
+    let sum = |of: [f64; 3]| of.iter().sum::<f64>();
+    [energy, sum(momentum), sum(angular_momentum)]
 }
 
 impl Changes {
     /// No changes yet.
     pub(super) fn new(start: &BodySimulation) -> Self {
         let start = start.conserved();
-        Changes { start, largest: [0.0; 3], variances: [0.0; 3], samples: 0.0 }
+        Changes {
+            start,
+            largest: [0.0; 3],
+            variances: [0.0; 3],
+            of_reading: [0.0; 3],
+            samples: 0.0,
+        }
     }
 
     /// Looks at the present state; returns its energy.
@@ -34,13 +49,12 @@ impl Changes {
             distance(now.momentum, self.start.momentum),
             distance(now.angular_momentum, self.start.angular_momentum),
         ];
-        let RoundingVariance { energy, momentum, angular_momentum } =
-            simulation.rounding_variance();
-        let sum = |of: [f64; 3]| of.iter().sum::<f64>();
-        let variances = [energy, sum(momentum), sum(angular_momentum)];
+        let variances = totals(simulation.rounding_variance());
+        let of_reading = totals(simulation.representation_variance());
         for i in 0..3 {
             self.largest[i] = self.largest[i].max(changes[i]);
             self.variances[i] += variances[i];
+            self.of_reading[i] += of_reading[i];
         }
         self.samples += 1.0;
         now.energy
@@ -59,8 +73,14 @@ impl Changes {
     /// The largest changes that rounding alone would make in so many steps, as expected of random walks: the mean of the largest distance
     /// from the start is √(π/2) standard deviations of the last. Sums in the audit itself round once more.
     pub(super) fn by_rounding(&self, steps: u64, sizes: [f64; 3]) -> [f64; 3] {
-        let largest = (core::f64::consts::FRAC_PI_2 * steps as f64 / self.samples.max(1.0)).sqrt();
-        core::array::from_fn(|i| largest * self.variances[i].sqrt() + f64::EPSILON * sizes[i])
+        let samples = self.samples.max(1.0);
+        let steps = core::f64::consts::FRAC_PI_2 * steps as f64;
+        core::array::from_fn(|i| {
+            // Of the states that are read, the largest error of many samples is near three standard deviations.
+            let of_reading = 3.0 * (self.of_reading[i] / samples).sqrt();
+            let walk = (steps * self.variances[i] / samples).sqrt();
+            walk + of_reading + f64::EPSILON * sizes[i]
+        })
     }
 }
 

@@ -93,7 +93,7 @@ pub fn simulate(
     monitor: &dyn Monitor,
 ) -> Result<BodiesAudit, TrajectoryError> {
     check(request)?;
-    let mut simulation = request.simulation(request.dt)?;
+    let mut simulation = request.simulation(request.dt).map_err(|error| named(&error, request))?;
     let stride = request.stride();
     let mut closest = Closest::new(&request.system.bodies);
     closest.start(&mut simulation);
@@ -108,11 +108,13 @@ pub fn simulate(
     };
     let (changes, samples, stopped) =
         run(&mut simulation, request.steps, stride, monitor, 0, &mut keep)?;
+    let sizes = sizes(&request.system.bodies, &start);
     let by_order = match &stopped {
-        None if request.is_predicted && request.steps >= 4 => by_order(request, stride, monitor)?,
+        None if request.is_predicted && request.steps >= 4 => {
+            by_order(request, stride, monitor, sizes)?
+        }
         _ => None,
     };
-    let sizes = sizes(&request.system.bodies, &start);
     let by_rounding = changes.by_rounding(simulation.steps(), sizes);
     let conserved = (0..3).map(|i| ConservedChange {
         quantity: QUANTITIES[i],
@@ -138,7 +140,7 @@ pub fn simulate(
         energy: changes.start_energy(),
         conserved: conserved.collect(),
         encounter: closest.encounter(&simulation, request),
-        stopped: stopped.map(|error| named(&error, &request.system.names)),
+        stopped: stopped.map(|error| named(&error, request).to_string()),
     })
 }
 
@@ -191,8 +193,10 @@ fn run(
         }
         monitor.on_step(done + step);
         let next = (step / stride + 1).saturating_mul(stride).min(steps);
-        if let Err(error) = simulation.advance((next - step).min(look)) {
-            return Ok((changes, samples, Some(error)));
+        match simulation.advance_until((next - step).min(look), &|| monitor.should_stop()) {
+            Ok(()) => {}
+            Err(BodiesError::Stopped) => return Err(TrajectoryError::Interrupted),
+            Err(error) => return Ok((changes, samples, Some(error))),
         }
     }
 }
@@ -202,8 +206,9 @@ fn by_order(
     request: &BodiesRequest,
     stride: u64,
     monitor: &dyn Monitor,
+    sizes: [f64; 3],
 ) -> Result<Option<[f64; 3]>, TrajectoryError> {
-    let mut coarse = request.simulation(2.0 * request.dt)?;
+    let Ok(mut coarse) = request.simulation(2.0 * request.dt) else { return Ok(None) };
     let steps = request.steps / 2;
     let stride = stride.div_ceil(2);
     let (changes, _, stopped) =
@@ -211,7 +216,7 @@ fn by_order(
     if stopped.is_some() {
         return Ok(None);
     }
-    let rounding = changes.by_rounding(steps, [0.0; 3]);
+    let rounding = changes.by_rounding(steps, sizes);
     let power = 2.0_f64.powi(i32::try_from(request.integrator.order()).unwrap_or(i32::MAX));
     Ok(Some(core::array::from_fn(|i| {
         let largest = changes.largest()[i];
@@ -221,7 +226,7 @@ fn by_order(
 }
 
 /// Changes up to this many times that of rounding may be rounding.
-const HIDDEN: f64 = 8.0;
+const HIDDEN: f64 = 4.0;
 
 /// A monitor without progress.
 struct Quiet<'a>(&'a dyn Monitor);
@@ -233,19 +238,7 @@ impl Monitor for Quiet<'_> {
 }
 
 /// The error with the names of the bodies.
-fn named(error: &BodiesError, names: &[String]) -> String {
-    let name = |[a, b]: [usize; 2]| format!("`{}` and `{}`", names[a], names[b]);
-    match error {
-        BodiesError::SamePlace { pair, time } => {
-            format!("{} are at the same place at t = {time}", name(*pair))
-        }
-        BodiesError::Collision { pair, time, distance } => {
-            format!("{} collide at t = {time}: distance {distance}", name(*pair))
-        }
-        BodiesError::Overflow { pair, time } => format!(
-            "the motion is not finite after t = {time}; {} were nearest; help: a shorter time step or softening",
-            name(*pair)
-        ),
-        error => error.to_string(),
-    }
+fn named(error: &BodiesError, request: &BodiesRequest) -> TrajectoryError {
+    let name = |body: usize| format!("`{}`", request.system.names[body]);
+    TrajectoryError::Bodies(error.with_names(name))
 }

@@ -1,7 +1,6 @@
 //! Errors of trajectories.
 
 use libration::CatalogError;
-use libration::bodies::BodiesError;
 use libration::control::Latency;
 use libration::ensemble::{EnsembleError, InsufficientMemory};
 use libration::linear_loops::LinearLoopsError;
@@ -41,8 +40,8 @@ pub enum TrajectoryError {
     #[error(transparent)]
     Catalog(#[from] CatalogError),
     /// The bodies or their integrator are invalid.
-    #[error(transparent)]
-    Bodies(#[from] BodiesError),
+    #[error("{0}")]
+    Bodies(String),
     /// The simulator rejected the request.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
