@@ -71,15 +71,20 @@ def test_files_have_the_bodies(tmp_path: Path) -> None:
         ({"masses": [1.0, -1.0]}, "body 1: mass = -1"),
         ({"positions": np.zeros((2, 2))}, r"positions has shape \(2, 2\); expected \(2, 3\)"),
         ({"velocities": np.full((2, 3), np.nan)}, "body 0: vx = NaN"),
-        ({"positions": np.zeros((2, 3))}, "bodies 0 and 1 are at the same place"),
-        ({"softening": -1.0}, "softening -1"),
+        ({"softening": -1.0}, "softening is -1.0"),
         ({"names": ["a"]}, "names has 1 names; expected 2"),
+        ({"names": ["a", "a"]}, "two bodies have the same name"),
     ],
 )
 def test_wrong_bodies_are_refused(change: dict[str, Any], message: str) -> None:
     fields: dict[str, Any] = {"masses": [1.0, 1.0], "positions": [[0, 0, 0], [1, 0, 0]], "velocities": np.zeros((2, 3))}
     with pytest.raises(ValueError, match=message):
-        libration.simulate_bodies(Bodies(**{**fields, **change}), integrator="leapfrog", dt=0.1, steps=1)
+        Bodies(**{**fields, **change})
+
+
+def test_bodies_at_one_place_cannot_start() -> None:
+    with pytest.raises(ValueError, match="`a` and `b` are at the same place"):
+        libration.simulate_bodies(Bodies([1.0, 1.0], np.zeros((2, 3)), np.zeros((2, 3)), names=["a", "b"]), integrator="leapfrog", dt=0.1, steps=1)
 
 
 def test_wrong_options_are_refused() -> None:
@@ -94,6 +99,9 @@ def test_wrong_options_are_refused() -> None:
         options: dict[str, Any] = {"integrator": "leapfrog", "dt": 0.1, "steps": 1, **change}
         with pytest.raises(ValueError, match=message):
             libration.simulate_bodies(eight, **options)
+    for change in ({"compensated": "no"}, {"steps": True}, {"integrator": None}, {"threads": 1.5}):
+        with pytest.raises(TypeError, match=next(iter(change))):
+            libration.simulate_bodies(eight, **{"integrator": "leapfrog", "dt": 0.1, "steps": 1, **change})
     with pytest.raises(ValueError, match="'plummer' requires count"):
         Bodies.published("plummer")
     with pytest.raises(ValueError, match="did you mean `figure-eight`"):

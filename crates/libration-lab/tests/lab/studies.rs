@@ -87,8 +87,7 @@ fn predictions_are_those_of_the_textbook() {
     }
 }
 
-/// Claims about speed, on which machines may differ: how much slower Verlet is, and what array
-/// operations and blocks of steps gain, and what fills its memory.
+/// Claims about speed, on which machines may differ: how slow Verlet is, what arrays and blocks gain, what fills the memory.
 const OF_THE_MACHINE: [&str; 15] = [
     "C01", "C02", "C36", "C37", "C39", "C40", "C42", "C46", "C47", "C56", "C57", "C81", "C82",
     "C95", "C96",
