@@ -133,11 +133,11 @@ mod x86 {
                     }
                 }
             }
-            for half in 0..2 {
-                for axis in 0..3 {
+            for (half, sums) in sums.into_iter().enumerate() {
+                for (axis, sum) in sums.into_iter().enumerate() {
                     let place = axis * count + first + 4 * half;
                     // SAFETY: there are four numbers from `place` on.
-                    unsafe { _mm256_storeu_pd(out[place..].as_mut_ptr(), sums[half][axis]) };
+                    unsafe { _mm256_storeu_pd(out[place..].as_mut_ptr(), sum) };
                 }
             }
         }

@@ -4,6 +4,7 @@
 //! `libration-core` moves them; the splitting of Wisdom and Holman is for orbits around one heavy body.
 
 mod bodies;
+mod body_integrator;
 mod body_vectors;
 mod closest_pair;
 mod conserved;
@@ -17,9 +18,10 @@ mod simulation;
 mod step_plan;
 
 pub use bodies::{Bodies, Body, MOST_BODIES};
+pub use body_integrator::BodyIntegrator;
 pub use conserved::Conserved;
 pub use error::BodiesError;
 pub use initial_conditions::{InitialConditions, KOZAI_TILT};
 pub use kepler_flow::kepler_flow;
 pub use rounding::RoundingVariance;
-pub use simulation::{BodyIntegrator, BodySimulation};
+pub use simulation::BodySimulation;

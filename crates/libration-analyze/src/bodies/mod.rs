@@ -180,7 +180,7 @@ fn run(
     let mut samples = 0;
     loop {
         let step = simulation.steps();
-        if step % stride == 0 || step == steps {
+        if step.is_multiple_of(stride) || step == steps {
             changes.sample(simulation);
             keep(simulation)?;
             samples += 1;

@@ -63,7 +63,7 @@ fn drift(control: StepControl, e: f64, dt: f64, periods: f64) -> f64 {
         stepper.advance().unwrap();
         let part = stepper.time() / end;
         let place = if part < 0.1 { 0 } else { 1 };
-        if part < 0.1 || part > 0.9 {
+        if !(0.1..=0.9).contains(&part) {
             // Weights as long as the steps: a mean over time.
             let weight = stepper.last_length();
             means[place].0 += weight * energy(state(&stepper));
