@@ -222,15 +222,10 @@ fn systems_without_a_stationary_temperature_are_refused_with_the_reason() {
         (reason(known("kepler", &[], None)), "no equilibrium"),
         (reason(known("duffing", &[], Some(&[0.0]))), "is not stable"),
         (reason(known("oscillator", &[("omega2", 0.0)], None)), "has no stiffness"),
-        // A minimum of fourth order, alone and beside a spring.
         (
             reason(by_equations(
                 "[system]\ncoordinates = [\"x\"]\nacceleration.x = \"-x^3\"\nstart = { x = 1.0 }",
             )),
-            "has no stiffness",
-        ),
-        (
-            reason(text("acceleration.x = \"-x^3\"\nacceleration.y = \"-y\"\nstart = { x = 1.0 }")),
             "has no stiffness",
         ),
         (
