@@ -161,11 +161,14 @@ pub fn mode_biases(method: &LangevinMethod, z: f64, friction: f64) -> Option<[f6
     Some([wide.qq, wide.vv].map(|x| (x - TwoFloat::one()).to_f64()))
 }
 
-/// The powers of the time step as which both biases vanish, of `⟨q²⟩` and `⟨v²⟩`; none of a bias that is zero.
-pub fn bias_orders(method: &LangevinMethod, friction: f64) -> Option<[Option<u32>; 2]> {
+/// The friction over the frequency at which orders are found. At extreme ones 106 bits lose the bias, or the step is unstable.
+const ORDER_FRICTION: f64 = 0.7;
+
+/// The powers of the time step as which both biases vanish, of `⟨q²⟩` and `⟨v²⟩`, whatever the friction; none of a bias that is zero.
+pub fn bias_orders(method: &LangevinMethod) -> Option<[Option<u32>; 2]> {
     // So small that the leading term is left, and not so small that 106 bits lose it.
-    let unit = 1.0 / friction.max(1.0);
-    let [large, small] = [unit / 512.0, unit / 1024.0].map(|z| mode_biases(method, z, friction));
+    let [large, small] =
+        [512.0_f64, 1024.0].map(|parts| mode_biases(method, parts.recip(), ORDER_FRICTION));
     let (large, small) = (large?, small?);
     let order = |i: usize| {
         // The rounding of 106 bits, over the part of a motion that a step forgets.
@@ -227,12 +230,40 @@ mod tests {
             ("BAOAB", [None, Some(2)]),
             ("OBABO", [Some(2), None]),
             ("BAOA", [None, None]),
-            // An autoregression of two terms: ⟨q²⟩ = 1/(1 − z²/(4 − 2γh)).
-            ("euler-maruyama", [Some(2), Some(1)]),
+            // ⟨v²⟩ = 1 + (γ/2 + 1/γ)·z and ⟨q²⟩ = 1 + z/γ, to first order.
+            ("euler-maruyama", [Some(1), Some(1)]),
         ] {
+            assert_eq!(bias_orders(&method(name)), Some(orders), "{name}");
+            // The order at a friction of the power by which the bias falls with the step.
             for friction in [0.1, 1.0, 10.0] {
-                assert_eq!(bias_orders(&method(name), friction), Some(orders), "{name} {friction}");
+                let [large, small] =
+                    [1.0, 0.5].map(|h| mode_biases(&method(name), h / 512.0, friction).unwrap());
+                for i in [0, 1] {
+                    let factor = orders[i].map_or(1.0, |order| 2.0_f64.powi(order as i32));
+                    let off = (large[i] - factor * small[i]).abs();
+                    assert!(off <= 0.1 * large[i].abs() + 1e-20, "{name} {friction}");
+                }
             }
+        }
+    }
+
+    /// Stein's equation of `[[1, z], [−z, 1 − γz]]` by hand: with `d = 1 − γz`, `⟨q²⟩ = ⟨v²⟩·(1 + d + z²)/2` and
+    /// `⟨v²⟩ = 2γz/(1 − d² − z²·d − z²·(1 + d + z²)/2)`. It is stable where `z < γ` and `z² − 2γz + 4 > 0`.
+    #[test]
+    fn euler_maruyama_has_its_covariance_and_its_stable_steps() {
+        let euler = method("euler-maruyama");
+        for (z, friction) in [(0.1, 1.0), (0.5, 2.0), (0.3, 0.5), (0.2, 6.0)] {
+            let d = 1.0 - friction * z;
+            let vv =
+                2.0 * friction * z / (1.0 - d * d - z * z * d - z * z * (1.0 + d + z * z) / 2.0);
+            let qq = vv * (1.0 + d + z * z) / 2.0;
+            let found = mode_covariance(&euler, z, friction).unwrap();
+            assert!((found.qq - qq).abs() < 1e-12 * qq, "{z} {friction} {found:?}");
+            assert!((found.vv - vv).abs() < 1e-12 * vv, "{z} {friction} {found:?}");
+        }
+        for (friction, limit) in [(0.5, 0.5), (1.0, 1.0), (4.0, 4.0 - 12.0_f64.sqrt())] {
+            assert!(mode_biases(&euler, limit * 0.999, friction).is_some(), "{friction}");
+            assert!(mode_biases(&euler, limit * 1.001, friction).is_none(), "{friction}");
         }
     }
 }

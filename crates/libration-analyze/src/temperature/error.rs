@@ -16,6 +16,16 @@ pub enum TemperatureError {
         /// Why, if that is not clear; empty otherwise.
         reason: &'static str,
     },
+    /// The time step is too short for the slowest mode.
+    #[error(
+        "dt {dt:e}: expected at least {} s: below, rounding hides the temperature of the slowest mode", super::significant(*.least)
+    )]
+    Resolution {
+        /// The time step in s.
+        dt: f64,
+        /// The least one in s.
+        least: f64,
+    },
     /// The number of steps is out of range.
     #[error("steps {steps}: expected {TRAJECTORIES} to 1e10", TRAJECTORIES = super::TRAJECTORIES)]
     Steps {
@@ -68,6 +78,18 @@ pub enum TemperatureError {
         "the equilibrium of {system} at {positions:?} is not stable: the square of a frequency is {square:.3e} /s²; expected more than 0 for all; help: start near a minimum of the potential"
     )]
     Unstable {
+        /// The name of the system.
+        system: String,
+        /// The positions.
+        positions: Vec<f64>,
+        /// The least square of a frequency.
+        square: f64,
+    },
+    /// The state at rest has a direction without stiffness.
+    #[error(
+        "the equilibrium of {system} at {positions:?} has no stiffness in a direction: the square of a frequency is {square:.3e} /s²; expected a minimum that is quadratic in all directions, not flat or of fourth order; help: add a linear force, or choose another start"
+    )]
+    NoStiffness {
         /// The name of the system.
         system: String,
         /// The positions.

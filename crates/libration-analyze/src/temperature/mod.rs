@@ -4,6 +4,7 @@ mod error;
 mod measurement;
 mod prediction;
 mod recommendation;
+mod significant_digits;
 mod thermal_system;
 
 use libration::analysis::covariance_formulas;
@@ -15,6 +16,7 @@ pub use error::TemperatureError;
 use measurement::{Ensemble, Lengths, Means};
 use prediction::{ModeBiases, Prediction};
 use recommendation::recommended;
+pub use significant_digits::significant;
 pub use thermal_system::ThermalSystem;
 
 /// Version of the JSON format.
@@ -31,6 +33,10 @@ const MOST_STEPS: u64 = 10_000_000_000;
 
 /// The part of the start that a trajectory may keep when its measurement begins, in second moments.
 const KEPT: f64 = 1e-8;
+
+/// The least product of `z²`, with `z = ωΔt` of the slowest mode, and the smaller of 1 and `γΔt`. Stein's equation is close to singular by
+/// this factor: 106 bits then leave eight digits of a temperature.
+const RESOLUTION: f64 = 1e-22;
 
 /// A system at a temperature.
 #[derive(Clone, Debug)]
@@ -146,15 +152,18 @@ pub fn analyze_temperature(
     let mut jobs = Vec::new();
     for (i, (prediction, report)) in predictions.iter().zip(&mut thermostats).enumerate() {
         if !report.stable {
-            let limit = report.stable_dt;
-            report.note = Some(format!("not stable: dt must be below {limit:.5} s"));
+            let limit = significant(report.stable_dt);
+            report.note = Some(format!("not stable: dt must be below {limit} s"));
             continue;
         }
-        let discarded = (0.5 * KEPT.ln() / prediction.memory(dt).ln()).ceil();
+        // Rounding may give a memory of 1.
+        let memory = prediction.memory(dt).min(1.0 - 0.5 * f64::EPSILON);
+        let discarded = (0.5 * KEPT.ln() / memory.ln()).ceil();
         if discarded > measured as f64 {
             let steps = discarded * TRAJECTORIES as f64;
+            let discarded = significant(discarded);
             report.note = Some(format!(
-                "not measured: the slowest mode remembers its start for {discarded:.0} steps, which {TRAJECTORIES} trajectories do not have; help: raise steps above {steps:.1e}, or the friction"
+                "not measured: the slowest mode remembers its start for {discarded} steps, which {TRAJECTORIES} trajectories do not have; help: raise steps above {steps:.1e}, or the friction"
             ));
             continue;
         }
@@ -201,6 +210,12 @@ fn check(request: &TemperatureRequest, dt: f64) -> Result<(), TemperatureError> 
         if !(value.is_finite() && value > 0.0) {
             return Err(TemperatureError::Number { name, value, reason });
         }
+    }
+    let slowest = request.system.frequencies.first().copied().unwrap_or(f64::NAN);
+    let least = (RESOLUTION.sqrt() / slowest)
+        .max((RESOLUTION / request.friction).cbrt() / slowest.cbrt().powi(2));
+    if dt < least {
+        return Err(TemperatureError::Resolution { dt, least });
     }
     if !(TRAJECTORIES..=MOST_STEPS).contains(&request.steps) {
         return Err(TemperatureError::Steps { steps: request.steps });

@@ -9,7 +9,7 @@ use super::BIAS_LIMIT;
 const POINTS: u32 = 512;
 
 /// Halvings of an interval, to the last digit.
-const HALVINGS: u32 = 50;
+const HALVINGS: u32 = 100;
 
 /// A method on the modes of a system.
 pub(super) struct Prediction<'a> {
@@ -45,7 +45,7 @@ impl Prediction<'_> {
 
     /// Powers of the time step as which the biases vanish; none of a bias that is zero.
     pub(super) fn orders(&self) -> [Option<u32>; 2] {
-        bias_orders(self.method, self.friction / self.fastest()).unwrap_or_default()
+        bias_orders(self.method).unwrap_or_default()
     }
 
     /// The end of the stable time steps of the fastest mode in s.

@@ -14,7 +14,7 @@ use super::TemperatureError;
 /// A relative difference that counts as rounding: derivatives are exact to some operations.
 const ROUNDING: f64 = 1e-9;
 
-/// A part of the square of the highest frequency below which a square of a frequency counts as zero.
+/// A part of the square of the highest frequency, at the start or in the equilibrium, below which a square of a frequency counts as zero.
 const NOTHING: f64 = 1e-12;
 
 /// A system with a potential and constant masses, about a stable equilibrium.
@@ -96,6 +96,7 @@ impl ThermalSystem {
         }
         let mut at = start[..n].to_vec();
         at.resize(2 * n + dynamics.inputs(), 0.0);
+        let at_start = largest_square(dynamics, &at);
         descend(dynamics, &mut at);
         let positions: Vec<usize> = (0..n).collect();
         let rest = Equilibrium::near(dynamics, &at, &positions)
@@ -120,17 +121,16 @@ impl ThermalSystem {
         let squares = eigenvalues(&(&back * &inverse_root).scaled(-1.0)).unwrap_or_default();
         let mut squares: Vec<f64> = squares.iter().map(|value| value.re).collect();
         squares.sort_by(f64::total_cmp);
-        match (squares.first(), squares.last()) {
-            (Some(&least), Some(&most)) if least > NOTHING * most && most.is_finite() => {}
-            (least, _) => {
-                // Not the negative zero.
-                let square = least.copied().unwrap_or(f64::NAN) + 0.0;
-                return Err(TemperatureError::Unstable {
-                    system: system(),
-                    positions: equilibrium,
-                    square,
-                });
-            }
+        let [least, most] =
+            [squares.first(), squares.last()].map(|x| x.copied().unwrap_or(f64::NAN));
+        let zero = NOTHING * most.max(at_start);
+        if !(least > zero && most.is_finite()) {
+            // Not the negative zero.
+            let (system, positions, square) = (system(), equilibrium, least + 0.0);
+            return Err(match least.abs() <= zero {
+                true => TemperatureError::NoStiffness { system, positions, square },
+                false => TemperatureError::Unstable { system, positions, square },
+            });
         }
         let frequencies = squares.into_iter().map(f64::sqrt).collect();
         Ok(ThermalSystem {
@@ -156,6 +156,14 @@ impl ThermalSystem {
     pub fn fastest(&self) -> f64 {
         self.frequencies.last().copied().unwrap_or(f64::NAN)
     }
+}
+
+/// The largest size of a square of a frequency about a state; zero if there is none.
+fn largest_square(dynamics: &Dynamics, at: &[f64]) -> f64 {
+    let n = dynamics.degrees();
+    let squares = eigenvalues(&jacobian(dynamics, at).block((0, 0), (n, n))).unwrap_or_default();
+    let sizes = squares.iter().map(|value| value.re.abs()).filter(|size| size.is_finite());
+    sizes.fold(0.0, f64::max)
 }
 
 /// Steps of the descent at most; Newton's method then does the rest.

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use libration::thermostat::LangevinMethod;
 use libration_analyze::temperature::{
     TemperatureBias, TemperatureError, TemperatureReport, TemperatureRequest, ThermalSystem,
-    ThermostatReport, analyze_temperature,
+    ThermostatReport, analyze_temperature, significant,
 };
 use libration_work::Work;
 
@@ -75,16 +75,18 @@ type BiasOf = fn(&ThermostatReport) -> &TemperatureBias;
 // Writing into a string cannot fail.
 fn describe(report: &TemperatureReport) -> String {
     let TemperatureReport { system, temperature, friction, dt, steps, trajectories, .. } = report;
+    let dt = significant(*dt);
+    let [temperature, friction] = [temperature, friction].map(|x| significant(*x));
     let mut text = match &report.recommended {
         Some(best) => {
-            format!("{best}: the least bias of positions for {system} with steps of {dt:.5} s\n\n")
+            format!("{best}: the least bias of positions for {system} with steps of {dt} s\n\n")
         }
-        None => format!("No thermostat is stable for {system} with steps of {dt:.5} s.\n\n"),
+        None => format!("No thermostat is stable for {system} with steps of {dt} s.\n\n"),
     };
-    let fastest = report.frequencies.last().copied().unwrap_or(f64::NAN);
+    let fastest = significant(report.frequencies.last().copied().unwrap_or(f64::NAN));
     let _ = writeln!(
         text,
-        "  kT = {temperature}, friction {friction} /s, fastest mode {fastest:.5} rad/s, {steps} steps in {trajectories} trajectories\n"
+        "  kT = {temperature}, friction {friction} /s, fastest mode {fastest} rad/s, {steps} steps in {trajectories} trajectories\n"
     );
     let kinds: [(&str, BiasOf); 2] = [
         ("Positions: bias of ⟨−q·F⟩/kT", |one| &one.configuration),
@@ -93,7 +95,7 @@ fn describe(report: &TemperatureReport) -> String {
     for (title, of) in kinds {
         let _ = writeln!(
             text,
-            "{title}\n  {:<16} {:>12} {:>12} {:>22} {:>6} {:>12} {:>10}  fastest mode, z = ω·dt",
+            "{title}\n  {:<16} {:>12} {:>12} {:>22} {:>6} {:>13} {:>11}  fastest mode, z = ω·dt",
             "thermostat",
             "fastest mode",
             "predicted",
@@ -106,20 +108,20 @@ fn describe(report: &TemperatureReport) -> String {
             let bias = of(one);
             let measured = match (bias.measured_bias, bias.standard_error) {
                 (Some(bias), Some(error)) => {
-                    format!("{:.3} ± {:.3} %", 100.0 * bias, 100.0 * error)
+                    format!("{} ± {} %", decimals(100.0 * bias), decimals(100.0 * error))
                 }
                 _ => "-".to_owned(),
             };
             let _ = writeln!(
                 text,
-                "  {:<16} {:>12} {:>12} {:>22} {:>6} {:>12.5} {:>10.5}  {}",
+                "  {:<16} {:>12} {:>12} {:>22} {:>6} {:>13} {:>11}  {}",
                 one.thermostat,
                 percent(bias.fastest_mode_bias),
                 percent(bias.predicted_bias),
                 measured,
                 order(bias, one),
-                bias.accurate_dt,
-                one.stable_dt,
+                significant(bias.accurate_dt),
+                significant(one.stable_dt),
                 bias.formula.as_deref().unwrap_or("depends on the friction"),
             );
         }
@@ -137,9 +139,16 @@ fn describe(report: &TemperatureReport) -> String {
 
 /// Returns a relative bias in percent.
 fn percent(bias: Option<f64>) -> String {
-    // Not the negative zero.
-    let rounded = |bias: f64| (bias * 1e5).round() / 1e3 + 0.0;
-    bias.map_or_else(|| "-".to_owned(), |bias| format!("{:.3} %", rounded(bias)))
+    bias.map_or_else(|| "-".to_owned(), |bias| format!("{} %", decimals(100.0 * bias)))
+}
+
+/// A percentage with three decimals; scientific from a million.
+fn decimals(x: f64) -> String {
+    match x.abs() < 1e6 {
+        // Not the negative zero.
+        true => format!("{:.3}", (x * 1e3).round() / 1e3 + 0.0),
+        false => format!("{x:.2e}"),
+    }
 }
 
 fn order(bias: &TemperatureBias, of: &ThermostatReport) -> String {

@@ -47,6 +47,25 @@ fn the_default_step_is_that_of_the_fastest_mode() {
 }
 
 #[test]
+fn numbers_of_any_size_are_printed_with_five_digits() {
+    libration("analyze --system oscillator --set m=1.67e-27 --set k=1000 --temperature 4.1e-21 --friction 1e12 --dt 5e-16 --thermostat BAOAB --steps 32")
+        .success()
+        .stdout(contains("with steps of 5e-16 s").and(contains("kT = 4.1e-21, friction 1e12 /s")));
+    libration("analyze --system oscillator --set omega2=1 --temperature 1 --friction 1 --dt 1e300")
+        .success()
+        .stdout(
+            contains("with steps of 1e300 s.").and(contains("not stable: dt must be below 2 s")),
+        );
+}
+
+#[test]
+fn an_exact_thermostat_is_exact_at_a_high_friction() {
+    libration("analyze --system oscillator --set omega2=1 --temperature 1 --friction 1e4 --dt 1 --thermostat BAOAB --steps 32")
+        .success()
+        .stdout(contains(" exact ").and(contains("dt^0").not()));
+}
+
+#[test]
 fn wrong_requests_of_temperatures_are_usage_errors() {
     let fails = |words: &str, what: &str| {
         libration(&format!("analyze {words}")).failure().code(2).stderr(contains(what));
@@ -61,6 +80,11 @@ fn wrong_requests_of_temperatures_are_usage_errors() {
     fails("--system oscillator --temperature nan --friction 1", "temperature NaN: expected");
     fails(&format!("{oscillator} --thermostat BAXAB"), "`X` is no letter of a word");
     fails(&format!("{oscillator} --thermostat BAAB"), "the word has no O");
+    fails(
+        "--system pendulum --temperature 1 --friction 1 --dt 1e-300",
+        "dt 1e-300: expected at least",
+    );
+    fails("--temperature 1 --friction 1 --force=-q0^3 --dt .1", "has no stiffness");
     fails(&format!("{oscillator} --integrator rk4"), "cannot be used with");
     fails("--system damped-oscillator --temperature 1 --friction 1", "depends on a velocity");
     fails("--system kepler --temperature 1 --friction 1", "no equilibrium");

@@ -17,7 +17,8 @@ pub enum LangevinMethod {
     /// The method of N. Grønbech-Jensen and O. Farago, *A simple and effective Verlet-type algorithm for simulating Langevin dynamics*,
     /// Molecular Physics 111, 2013.
     Gjf,
-    /// Symplectic Euler with friction and noise in its kick.
+    /// The method of G. Maruyama, *Continuous Markov processes and stochastic equations*, 1955: explicit Euler with noise,
+    /// `q += h·v` and `v += h·(a(q) − γv) + √(2γh·kT/m)·ξ`, both of the state at the start.
     EulerMaruyama,
 }
 
@@ -110,8 +111,8 @@ impl LangevinMethod {
             LangevinMethod::Word(word) => word.step(system, state, step, noise),
             LangevinMethod::EulerMaruyama => {
                 let kept = S::one() - damping;
-                let damped = State { v: each(|i| kept * state.v[i] + first[i]), ..state };
-                damped.kicked(system.acceleration(&state), dt).drift(dt)
+                let damped = State { v: each(|i| kept * state.v[i] + first[i]), ..state.drift(dt) };
+                damped.kicked(system.acceleration(&state), dt)
             }
             LangevinMethod::Gjf => {
                 let half = dt.ratio(1, 2);
@@ -135,6 +136,17 @@ impl LangevinMethod {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::system::Oscillator;
+
+    #[test]
+    fn euler_maruyama_drifts_with_the_velocity_at_the_start() {
+        let step = LangevinStep::of_decay(0.5, 0.125, 0.0);
+        let start = State { q: [2.0], v: [3.0] };
+        let system = Oscillator { omega2: 4.0 };
+        let end = LangevinMethod::EulerMaruyama.step(&system, start, step, &[[0.25]]);
+        // 2 + 0.5·3, and 3 + 0.5·(−4·2) − 0.125·3 + 0.25.
+        assert_eq!((end.q, end.v), ([3.5], [-1.125]));
+    }
 
     #[test]
     fn every_common_method_has_its_name() {
