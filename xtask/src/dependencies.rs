@@ -3,10 +3,11 @@
 use crate::{Outcome, command};
 
 /// The engine, and what it depends on directly.
-const ALLOWED: [&str; 21] = [
+const ALLOWED: [&str; 22] = [
     "libration",
     "libration-analysis",
     "libration-batch",
+    "libration-bodies",
     "libration-core",
     "libration-equations",
     "libration-linear",
