@@ -165,6 +165,7 @@ def simulate_bodies(
     steps: int,
     every: int | None = None,
     compensated: bool = False,
+    adaptive: bool = False,
     predict: bool = True,
     threads: int = 0,
 ) -> BodyMotion:
@@ -182,6 +183,8 @@ def simulate_bodies(
         Steps from sample to sample [default: at most 1000 samples].
     compensated
         Whether positions and velocities keep what their sums round off.
+    adaptive
+        Whether the length of the steps follows the encounters, reversibly: ``dt`` is the first. Requires a symmetric splitting method.
     predict
         Whether a second run with twice the time step predicts the changes by the order, which takes half of the time again.
     threads
@@ -198,7 +201,7 @@ def simulate_bodies(
         raise TypeError(f"bodies is {type(bodies).__name__}; expected Bodies")
     if not isinstance(integrator, str):
         raise TypeError(f"integrator is {type(integrator).__name__}; expected a name")
-    for name, flag in (("compensated", compensated), ("predict", predict)):
+    for name, flag in (("compensated", compensated), ("predict", predict), ("adaptive", adaptive)):
         if not isinstance(flag, (bool, np.bool_)):
             raise TypeError(f"{name} is {type(flag).__name__}; expected True or False")
     options = {
@@ -208,6 +211,7 @@ def simulate_bodies(
         "every": None if every is None else whole("every", every, 1, _native._MOST_STEPS),
         "compensated": bool(compensated),
         "predict": bool(predict),
+        "adaptive": bool(adaptive),
         "threads": whole("threads", threads, 0, 1024),
     }
     audit, t, states = _native._simulate_bodies(bodies._table(), options)

@@ -20,9 +20,10 @@ impl BodyVector {
     }
 }
 
-/// Runs the actions of one step. Returns whether none was stopped; after a stop the vectors have no meaning.
+/// Runs the actions of one step, whose time step is multiplied by `scale`. Returns whether none was stopped; after a stop the vectors have no meaning.
 pub(crate) fn run(
     plan: &StepPlan,
+    scale: f64,
     vectors: &mut [BodyVector],
     attraction: &Attraction<'_>,
     on: &Execution,
@@ -32,6 +33,12 @@ pub(crate) fn run(
         if matches!(action, Action::Accelerations(_)) && should_stop() {
             return false;
         }
+        let action = match action {
+            Action::Increment { x, factor, y } => {
+                Action::Increment { x, factor: factor * scale, y }
+            }
+            action => action,
+        };
         let mut out = core::mem::take(&mut vectors[register]);
         write(action, vectors, &mut out, attraction, on);
         vectors[register] = out;

@@ -77,6 +77,16 @@ pub enum BodiesError {
         /// The reason.
         reason: &'static str,
     },
+    /// Adaptive steps that do not apply.
+    Adaptive {
+        /// The reason.
+        reason: &'static str,
+    },
+    /// A density of steps that is not positive.
+    Density {
+        /// The time.
+        time: f64,
+    },
     /// The caller stopped the simulation.
     Stopped,
 }
@@ -121,6 +131,10 @@ impl BodiesError {
                 )
             }
             BodiesError::CentralBody { reason } => format!("wisdom-holman: {reason}"),
+            BodiesError::Adaptive { reason } => format!("adaptive {reason}"),
+            BodiesError::Density { time } => format!(
+                "the density of steps is not positive after t = {time:?}; help: a shorter first step"
+            ),
             BodiesError::Stopped => "interrupted".to_owned(),
         }
     }

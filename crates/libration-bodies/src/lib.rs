@@ -15,6 +15,7 @@ mod initial_conditions;
 mod kepler_flow;
 mod rounding;
 mod simulation;
+mod step_density;
 mod step_plan;
 
 pub use bodies::{Bodies, Body, MOST_BODIES};

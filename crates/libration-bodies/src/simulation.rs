@@ -1,6 +1,8 @@
 //! A simulation of bodies.
 
 use libration_batch::ensemble::Execution;
+use libration_core::with_method;
+use libration_equations::VectorStep;
 
 use super::BodiesError;
 use super::bodies::Bodies;
@@ -10,6 +12,7 @@ use super::closest_pair::ClosestPair;
 use super::conserved::Conserved;
 use super::democratic_heliocentric::DemocraticHeliocentric;
 use super::rounding::{RoundingVariance, Roundings};
+use super::step_density::StepDensity;
 use super::step_plan::{ACCELERATIONS, POSITIONS, StepPlan, VELOCITIES};
 
 /// Bodies in motion, with a fixed time step.
@@ -23,6 +26,8 @@ pub struct BodySimulation {
     stepper: Stepper,
     has_radii: bool,
     encounters: Option<ClosestPair>,
+    time: f64,
+    density: Option<StepDensity>,
 }
 
 #[derive(Clone, Debug)]
@@ -76,6 +81,8 @@ impl BodySimulation {
             stepper,
             has_radii,
             encounters: None,
+            time: 0.0,
+            density: None,
         };
         simulation.check_distances()?;
         simulation.evaluate_start();
@@ -120,6 +127,7 @@ impl BodySimulation {
     }
 
     fn step(&mut self, should_stop: &dyn Fn() -> bool) -> Result<(), BodiesError> {
+        let (length, scale) = self.next_length()?;
         let is_finite = match &mut self.stepper {
             Stepper::Plan { plan, vectors } => {
                 // The state before the step names the bodies of a failure.
@@ -127,7 +135,7 @@ impl BodySimulation {
                 positions.copy_from_slice(&vectors[POSITIONS].values);
                 velocities.copy_from_slice(&vectors[VELOCITIES].values);
                 let attraction = self.bodies.attraction();
-                if !body_vectors::run(plan, vectors, &attraction, &self.on, should_stop) {
+                if !body_vectors::run(plan, scale, vectors, &attraction, &self.on, should_stop) {
                     return Err(BodiesError::Stopped);
                 }
                 is_finite(&vectors[VELOCITIES].values) && is_finite(&vectors[POSITIONS].values)
@@ -145,6 +153,10 @@ impl BodySimulation {
             return Err(self.failure());
         }
         self.steps += 1;
+        self.time = match self.density {
+            Some(_) => self.time + length,
+            None => self.steps as f64 * self.dt,
+        };
         if self.has_radii {
             // Distances are those of the bodies that were written.
             self.write();
@@ -175,6 +187,41 @@ impl BodySimulation {
     /// The two bodies that came nearest to each other since [`watch_encounters`](Self::watch_encounters), their distance and the time.
     pub fn closest_encounter(&self) -> Option<([usize; 2], f64, f64)> {
         self.encounters.as_ref().and_then(ClosestPair::found)
+    }
+
+    /// The length of the next step, and that over the time step of the plan.
+    fn next_length(&mut self) -> Result<(f64, f64), BodiesError> {
+        let (Some(density), Stepper::Plan { vectors, .. }) = (&mut self.density, &self.stepper)
+        else {
+            return Ok((self.dt, 1.0));
+        };
+        let (q, v) = (&vectors[POSITIONS].values, &vectors[VELOCITIES].values);
+        match density.next_length(&self.bodies, q, v) {
+            Some(length) => Ok((length, length / self.dt)),
+            None => Err(BodiesError::Density { time: self.time }),
+        }
+    }
+
+    /// The same bodies with steps that follow their encounters and stay reversible: `dt` is the length of the first. The distances of all
+    /// pairs at each step take time of their own.
+    ///
+    /// # Errors
+    /// [`BodiesError::Adaptive`] unless the integrator is a symmetric sequence of kicks and drifts, and a pair attracts.
+    pub fn adaptive(mut self) -> Result<Self, BodiesError> {
+        let flows = match self.integrator {
+            BodyIntegrator::Method(method) => {
+                with_method!(method, |integrator| VectorStep::flows(integrator))
+            }
+            BodyIntegrator::WisdomHolman => None,
+        };
+        if !flows.is_some_and(|flows| flows.iter().eq(flows.iter().rev())) {
+            let reason = "requires a symmetric integrator of kicks and drifts, such as leapfrog";
+            return Err(BodiesError::Adaptive { reason });
+        }
+        let density = StepDensity::new(&self.bodies, self.dt);
+        let reason = "requires two bodies, one of them with a mass";
+        self.density = Some(density.ok_or(BodiesError::Adaptive { reason })?);
+        Ok(self)
     }
 
     /// Names the bodies that were nearest before the step.
@@ -239,9 +286,9 @@ impl BodySimulation {
         self.dt
     }
 
-    /// The time: steps times `dt`.
+    /// The time: steps times `dt`, or the sum of the lengths of adaptive steps.
     pub fn time(&self) -> f64 {
-        self.steps as f64 * self.dt
+        self.time
     }
 
     /// Variances of the changes of conserved quantities in one step by rounding, at the present state.

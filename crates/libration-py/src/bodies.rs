@@ -41,6 +41,7 @@ pub(crate) struct BodyOptions {
     every: Option<u64>,
     compensated: bool,
     predict: bool,
+    adaptive: bool,
     threads: usize,
 }
 
@@ -147,7 +148,8 @@ pub(crate) fn _simulate_bodies<'py>(
     system: BodyTable,
     options: BodyOptions,
 ) -> PyResult<Motion<'py>> {
-    let BodyOptions { integrator, dt, steps, every, compensated, predict, threads } = options;
+    let BodyOptions { integrator, dt, steps, every, compensated, predict, adaptive, threads } =
+        options;
     let integrator = BodyIntegrator::from_name(&integrator).ok_or_else(|| {
         let own = Method::ALL.map(Method::name);
         unknown(
@@ -163,6 +165,7 @@ pub(crate) fn _simulate_bodies<'py>(
         steps,
         every,
         is_compensated: compensated,
+        is_adaptive: adaptive,
         is_predicted: predict,
         execution: Execution::serial().threads(threads).map_err(Raised::raised)?,
     };

@@ -15,7 +15,7 @@ pub struct Encounter {
     /// The time.
     pub t: f64,
     /// Steps of an orbit at that distance: `2π √(d³/G(m₁ + m₂))` over the time step. Below some 20 the step is too long for the encounter.
-    /// None without masses.
+    /// None without masses, and for adaptive steps.
     pub steps_per_orbit: Option<f64>,
 }
 
@@ -68,7 +68,7 @@ impl Closest {
             bodies: [names[i].clone(), names[j].clone()],
             distance,
             t,
-            steps_per_orbit: (mass > 0.0).then(|| orbit / request.dt.abs()),
+            steps_per_orbit: (mass > 0.0 && !request.is_adaptive).then(|| orbit / request.dt.abs()),
         })
     }
 }

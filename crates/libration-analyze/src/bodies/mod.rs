@@ -36,7 +36,7 @@ pub struct BodiesAudit {
     pub integrator: &'static str,
     /// Its order.
     pub order: u32,
-    /// The time step.
+    /// The time step, or the first of adaptive steps.
     pub dt: f64,
     /// Steps taken.
     pub steps: u64,
@@ -50,6 +50,8 @@ pub struct BodiesAudit {
     pub softening: f64,
     /// Whether sums were compensated.
     pub is_compensated: bool,
+    /// Whether steps followed the encounters.
+    pub is_adaptive: bool,
     /// Samples of the conserved quantities.
     pub samples: u64,
     /// The energy at the start.
@@ -136,6 +138,7 @@ pub fn simulate(
         gravitational_constant: request.system.bodies.constant(),
         softening: request.system.bodies.softening_length(),
         is_compensated: request.is_compensated,
+        is_adaptive: request.is_adaptive,
         samples,
         energy: changes.start_energy(),
         conserved: conserved.collect(),

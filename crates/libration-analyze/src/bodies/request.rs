@@ -19,6 +19,8 @@ pub struct BodiesRequest {
     pub every: Option<u64>,
     /// Whether positions and velocities keep what their sums round off.
     pub is_compensated: bool,
+    /// Whether steps follow the encounters; `dt` is then the first.
+    pub is_adaptive: bool,
     /// Whether a second run with twice the time step predicts the changes by the order: half of the time again.
     pub is_predicted: bool,
     /// Where the sums over pairs run.
@@ -42,7 +44,9 @@ impl BodiesRequest {
     pub(super) fn simulation(&self, dt: f64) -> Result<BodySimulation, BodiesError> {
         let bodies = self.system.bodies.clone();
         let execution = self.execution.clone();
-        BodySimulation::new(bodies, self.integrator, dt, self.is_compensated, execution)
+        let simulation =
+            BodySimulation::new(bodies, self.integrator, dt, self.is_compensated, execution)?;
+        if self.is_adaptive { simulation.adaptive() } else { Ok(simulation) }
     }
 
     /// Number of rows: one for each body of each sample.

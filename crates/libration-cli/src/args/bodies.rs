@@ -45,6 +45,9 @@ pub(crate) struct BodiesArgs {
     /// Keep what the sums of positions and velocities round off
     #[arg(long)]
     pub(crate) compensated: bool,
+    /// Let the length of the steps follow the encounters, reversibly: --dt is the first; requires a symmetric splitting method
+    #[arg(long)]
+    pub(crate) adaptive: bool,
     /// Skip the second run with twice the time step, which predicts changes by the order
     #[arg(long)]
     pub(crate) no_prediction: bool,
@@ -66,6 +69,7 @@ const EXAMPLES: &str = "\
 Examples:
   libration bodies figure-eight --integrator yoshida4 --dt 0.01 --steps 1e4
   libration bodies outer-solar-system --integrator wisdom-holman --dt 100 --steps 3.65e5
+  libration bodies pythagorean --integrator kahan-li-6-9a --adaptive --dt 0.02 --steps 2e4
   libration bodies plummer --count 1024 --softening 0.01 --integrator leapfrog --dt 0.001 --steps 1e3
   libration bodies mine.csv --integrator blanes-moan-srkn-11-6 --dt 0.01 --steps 1e4 --output orbits.parquet
 

@@ -32,6 +32,7 @@ pub(crate) fn run(args: &BodiesArgs, quiet: bool) -> Result<(), Failure> {
         steps: args.steps,
         every: args.every,
         is_compensated: args.compensated,
+        is_adaptive: args.adaptive,
         is_predicted: !args.no_prediction,
         execution: execution.map_err(|error| Failure::ensemble(&error))?,
     };
@@ -152,13 +153,14 @@ fn failed(error: TrajectoryError) -> Failure {
 // Writing into a string cannot fail.
 fn describe(audit: &BodiesAudit) -> String {
     let mut text = format!(
-        "{} bodies of {} with {} (order {}): {} steps of {} to t = {}\n\n",
+        "{} bodies of {} with {} (order {}): {} {} {} to t = {}\n\n",
         audit.bodies,
         audit.system,
         audit.integrator,
         audit.order,
         audit.steps,
-        audit.dt,
+        if audit.is_adaptive { "adaptive steps from" } else { "steps of" },
+        short(audit.dt),
         short(audit.t),
     );
     let _ = writeln!(

@@ -1,0 +1,55 @@
+//! Steps that follow encounters.
+
+use libration_batch::ensemble::Execution;
+use libration_bodies::{BodiesError, BodyIntegrator, BodySimulation, InitialConditions};
+
+fn pythagorean(integrator: &str, dt: f64) -> BodySimulation {
+    let bodies = InitialConditions::Pythagorean.bodies(0, 0).unwrap();
+    let integrator = BodyIntegrator::from_name(integrator).unwrap();
+    BodySimulation::new(bodies, integrator, dt, false, Execution::serial()).unwrap()
+}
+
+/// The relative error of the energy at a time, and the steps that it took.
+fn energy_error(mut run: BodySimulation, time: f64) -> (f64, u64) {
+    let start = run.conserved().energy;
+    while run.time() < time {
+        run.advance(1).unwrap();
+    }
+    ((run.conserved().energy / start - 1.0).abs(), run.steps())
+}
+
+#[test]
+fn adaptive_steps_pass_encounters_that_fixed_ones_do_not() {
+    // Bodies 4 and 5 pass each other at some 0.01 near t = 1.88, and nearer later.
+    let (adaptive, steps) =
+        energy_error(pythagorean("kahan-li-6-9a", 0.01).adaptive().unwrap(), 10.0);
+    assert!(adaptive < 1e-6, "{adaptive}");
+    let (fixed, _) = energy_error(pythagorean("kahan-li-6-9a", 10.0 / steps as f64), 10.0);
+    assert!(fixed > 1e3 * adaptive, "{fixed} {adaptive} {steps}");
+}
+
+#[test]
+fn the_published_closest_encounter_is_found() {
+    // Szebehely and Peters 1967: bodies 4 and 5 at a distance of 4e-4 at t = 15.8299.
+    let mut run = pythagorean("kahan-li-8-17a", 0.01).adaptive().unwrap();
+    run.watch_encounters();
+    while run.time() < 16.5 {
+        run.advance(1).unwrap();
+    }
+    let (pair, distance, time) = run.closest_encounter().unwrap();
+    assert_eq!(pair, [1, 2]);
+    assert!((time - 15.8299).abs() < 1e-3, "{time}");
+    assert!((distance - 4e-4).abs() < 5e-5, "{distance}");
+}
+
+#[test]
+fn adaptive_steps_require_a_symmetric_splitting() {
+    for name in ["rk4", "symplectic-euler", "ruth-3", "explicit-euler"] {
+        let refused = pythagorean(name, 0.01).adaptive().map(|_| ()).unwrap_err();
+        assert!(matches!(refused, BodiesError::Adaptive { .. }), "{name}");
+    }
+    let planets = InitialConditions::OuterSolarSystem.bodies(0, 0).unwrap();
+    let on = Execution::serial();
+    let run = BodySimulation::new(planets, BodyIntegrator::WisdomHolman, 9.0, false, on).unwrap();
+    assert!(run.adaptive().is_err());
+}
