@@ -53,21 +53,21 @@ impl RoundingVariance {
             let (mass, q, v) = (body.mass, body.position, body.velocity);
             let a = axes(accelerations).map(|plane| plane[i]);
             let square = a.iter().map(|a| a * a).sum::<f64>();
-            // Forces are those at rounded positions. Of a single source the gradient is 2Gm/r³ = 2a²/|φ|.
+            // Forces are those at rounded positions, between which they still are opposite and central. Of a single source the gradient is 2Gm/r³ = 2a²/|φ|.
             let gradient = if *potential == 0.0 { 0.0 } else { 2.0 * square / potential };
             let shift = MEAN_SQUARE * unit * unit * q.iter().map(|q| q * q).sum::<f64>();
             let of_places = shift * (kick_length * gradient).powi(2) / 3.0;
             // Variances of the errors of velocity and position in a step.
             let of_v: [f64; 3] = core::array::from_fn(|axis| {
-                let of_force = force * (kick_length * a[axis]).powi(2) + of_places;
-                kicks * (state * v[axis] * v[axis] + of_force)
+                kicks * (state * v[axis] * v[axis] + force * (kick_length * a[axis]).powi(2))
             });
             let of_q: [f64; 3] = core::array::from_fn(|axis| drifts * state * q[axis] * q[axis]);
             let square = mass * mass;
             for axis in 0..3 {
                 let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
-                variance.energy +=
-                    square * (v[axis] * v[axis] * of_v[axis] + a[axis] * a[axis] * of_q[axis]);
+                variance.energy += square
+                    * (v[axis] * v[axis] * (of_v[axis] + kicks * of_places)
+                        + a[axis] * a[axis] * of_q[axis]);
                 variance.momentum[axis] += square * of_v[axis];
                 variance.angular_momentum[axis] += square
                     * (q[next] * q[next] * of_v[last]

@@ -1,19 +1,23 @@
 //! The frequency at which forces change in space.
 
+use libration_core::Scalar;
 use libration_core::number::Dual;
-use libration_core::{Elementary, Scalar};
 
 use super::program::Program;
 use super::{Dynamics, Recorded};
 
 impl Dynamics {
-    /// The program from positions, velocities and inputs to the square of the local frequency, and to its rate of change along the motion.
+    /// The program from positions, velocities and inputs to the fourth power of the local frequency, and to its rate of change along the
+    /// motion.
     ///
     /// The frequency is `ω = (Σ (∂aᵢ/∂qⱼ)²)^(1/4)`, the root of the Frobenius norm of the stiffness: that of an oscillator, and
-    /// `⁴√5·√(μ/r³)` of an orbit in a plane. Its reciprocal is a time in which a step is short everywhere.
-    pub fn squared_frequency(&self) -> Program {
+    /// `⁴√5·√(μ/r³)` of an orbit in a plane. Its reciprocal is a time in which a step is short everywhere. A coordinate that never
+    /// accelerates, such as time, is no direction of space.
+    pub fn fourth_power_of_frequency(&self) -> Program {
         let d = self.degrees();
         let is_positional = self.is_positional();
+        let accelerated: Vec<usize> =
+            (0..d).filter(|&i| !self.accelerations().is_zero(i)).collect();
         Program::record(2 * d + self.inputs(), |x| {
             let accelerations: Vec<Recorded> = match is_positional {
                 true => vec![Recorded::zero(); d],
@@ -27,7 +31,7 @@ impl Dynamics {
             };
             let mut run = self.accelerations().on::<Dual<Dual<Recorded>>>();
             let mut sum = Dual::constant(Recorded::zero());
-            for j in 0..d {
+            for &j in &accelerated {
                 let inputs: Vec<_> = (0..x.len())
                     .map(|i| {
                         let du = if i == j { Recorded::one() } else { Recorded::zero() };
@@ -38,8 +42,7 @@ impl Dynamics {
                     sum = sum + entry.du * entry.du;
                 }
             }
-            let norm = sum.sqrt();
-            vec![norm.re, norm.du]
+            vec![sum.re, sum.du]
         })
     }
 }

@@ -131,6 +131,11 @@ impl Program {
         self.outputs.iter().map(|&output| degrees[output]).collect()
     }
 
+    /// Whether output `i` is the constant zero.
+    pub(crate) fn is_zero(&self, i: usize) -> bool {
+        self.outputs.get(i).is_some_and(|&id| self.values[id] == Operation::Constant(0.0))
+    }
+
     /// Whether all outputs have derivatives: no function has a kink or a jump.
     pub fn is_smooth(&self) -> bool {
         self.values.iter().all(|operation| match operation {

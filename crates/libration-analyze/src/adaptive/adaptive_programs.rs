@@ -18,7 +18,7 @@ impl AdaptivePrograms {
     pub fn new(dynamics: &Dynamics, method: Method) -> Self {
         AdaptivePrograms {
             step: StepProgram::new(method, dynamics),
-            frequency: dynamics.squared_frequency(),
+            frequency: dynamics.fourth_power_of_frequency(),
             flows: with_method!(method, |integrator| VectorStep::flows(integrator)),
             dynamics: dynamics.clone(),
         }

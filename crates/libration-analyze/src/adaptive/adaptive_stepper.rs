@@ -9,10 +9,15 @@ use super::{AdaptivePrograms, StepControl};
 pub enum AdaptiveFailure {
     /// The state is not finite.
     NotFinite,
-    /// The density of steps is not positive: the steps are too long for the motion.
+    /// The density of steps is not positive, or far from the frequency of the forces: the steps are too long, or the frequency passes near
+    /// zero.
     Density,
     /// The equation of a symmetric step has no solution near the last: the steps are too long for the motion.
     NoSolution,
+    /// Steps are so short that time stands still, as in a collision.
+    NoTime,
+    /// Numbers are too large for the grid.
+    OffGrid,
 }
 
 /// A motion whose steps follow the local frequency `ω` of its forces: a step is `dt·ω₀/ω`, with `ω₀` at the start.
@@ -21,7 +26,7 @@ pub struct AdaptiveStepper<'p> {
     control: StepControl,
     /// The length of the first step.
     dt: f64,
-    /// The square of the frequency at the start.
+    /// The fourth power of the frequency at the start.
     reference: f64,
     step: Evaluation<'p, f64>,
     frequency: Evaluation<'p, f64>,
@@ -41,7 +46,10 @@ pub struct AdaptiveStepper<'p> {
 }
 
 /// The part of the frequency at the start below which steps no longer grow: where forces vanish a step stays finite.
-const LEAST_FREQUENCY: f64 = 1e-6;
+const LEAST_FREQUENCY: f64 = 1e-5;
+
+/// Largest ratio of an integrated density and the frequency of the forces.
+const MOST_RATIO: f64 = 8.0;
 
 /// Iterations of the equation of a symmetric step.
 const MOST_ITERATIONS: usize = 60;
@@ -74,11 +82,11 @@ impl<'p> AdaptiveStepper<'p> {
             grid: None,
             evaluations: 0,
         };
-        let [square, _] = stepper.squared_frequency();
-        if !(square > 0.0 && square.is_finite()) {
+        let [power, _] = stepper.fourth_power();
+        if !(power > 0.0 && power.is_finite()) {
             return None;
         }
-        stepper.reference = square;
+        stepper.reference = power;
         stepper.begin();
         Some(stepper)
     }
@@ -116,24 +124,30 @@ impl<'p> AdaptiveStepper<'p> {
         self.grid.map_or(x, |spacing| rounded(x, spacing))
     }
 
-    /// The square of the frequency and its rate of change.
-    fn squared_frequency(&mut self) -> [f64; 2] {
+    /// The fourth power of the frequency and its rate of change.
+    fn fourth_power(&mut self) -> [f64; 2] {
         let mut out = self.frequency.run(&self.state[..self.state.len() - 1]);
         [out.next().unwrap_or(f64::NAN), out.next().unwrap_or(f64::NAN)]
     }
 
     /// The density of steps at the state: the frequency over that of the start, with a floor.
     fn density_here(&mut self) -> f64 {
-        let [square, _] = self.squared_frequency();
-        (square / self.reference + LEAST_FREQUENCY * LEAST_FREQUENCY).sqrt()
+        let [power, _] = self.fourth_power();
+        (power / self.reference + LEAST_FREQUENCY.powi(4)).sqrt().sqrt()
     }
 
     /// The rate of change of the density along the motion, per unit of the fictitious time in which steps are equal.
     fn density_rate(&mut self) -> f64 {
-        let [square, rate] = self.squared_frequency();
-        let floored = square + LEAST_FREQUENCY * LEAST_FREQUENCY * self.reference;
-        // ρ = √x, so that ρ̇/ρ = ẋ/2x.
-        0.5 * rate / floored
+        let [power, rate] = self.fourth_power();
+        let floored = power + LEAST_FREQUENCY.powi(4) * self.reference;
+        // ρ = x^(1/4), so that ρ̇/ρ = ẋ/4x.
+        0.25 * rate / floored
+    }
+
+    /// Whether a density is that of the forces. Where their frequency passes near zero, one that is integrated loses it.
+    fn is_lost(&mut self, density: f64) -> bool {
+        let ratio = density / self.density_here();
+        !(1.0 / MOST_RATIO..MOST_RATIO).contains(&ratio)
     }
 
     /// Takes a step.
@@ -147,7 +161,7 @@ impl<'p> AdaptiveStepper<'p> {
             StepControl::Integrating => {
                 let change = self.dt * self.density_rate();
                 let next = self.density + self.on_spacing(change);
-                if next.is_nan() || next <= 0.0 {
+                if next.is_nan() || next <= 0.0 || self.is_lost(next) {
                     return Err(AdaptiveFailure::Density);
                 }
                 self.density = next;
@@ -155,8 +169,7 @@ impl<'p> AdaptiveStepper<'p> {
             }
         };
         self.evaluate(length)?;
-        self.accept(length);
-        Ok(())
+        self.accept(length)
     }
 
     /// A step whose length is the mean of the lengths at its ends.
@@ -178,8 +191,7 @@ impl<'p> AdaptiveStepper<'p> {
             if excess.abs() <= 2.0 * f64::EPSILON * length
                 || (excess.abs() <= 1e-12 * length && excess.abs() >= last_change)
             {
-                self.accept(length);
-                return Ok(());
+                return self.accept(length);
             }
             // The secant of the last two, or the iteration itself.
             let next = match before_that {
@@ -235,10 +247,19 @@ impl<'p> AdaptiveStepper<'p> {
         }
     }
 
-    fn accept(&mut self, length: f64) {
+    fn accept(&mut self, length: f64) -> Result<(), AdaptiveFailure> {
+        if self.time + length == self.time {
+            return Err(AdaptiveFailure::NoTime);
+        }
+        // Beyond 2⁵³ multiples sums on the grid are rounded.
+        let most = self.grid.map_or(f64::INFINITY, |spacing| spacing * 2.0_f64.powi(53));
+        if self.next.iter().any(|x| x.abs() >= most) || self.density >= most {
+            return Err(AdaptiveFailure::OffGrid);
+        }
         self.state[..self.states].copy_from_slice(&self.next);
         self.time += length;
         self.last_length = length;
+        Ok(())
     }
 
     /// Turns the motion around: the next steps go back.

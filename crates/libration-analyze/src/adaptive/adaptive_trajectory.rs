@@ -132,11 +132,13 @@ impl AdaptiveRequest {
         let reason = match failure {
             AdaptiveFailure::NotFinite => "the state stopped being finite",
             AdaptiveFailure::Density => {
-                "the density of steps is not positive; help: a shorter first step (--dt)"
+                "the density of steps lost the frequency of the forces; help: a shorter first step (--dt), or fixed steps where the frequency passes near zero"
             }
             AdaptiveFailure::NoSolution => {
-                "the length of the step has no solution; help: a shorter first step (--dt)"
+                "the length of the step has no solution; help: a shorter first step (--dt), or fixed steps where the frequency passes near zero"
             }
+            AdaptiveFailure::NoTime => "steps are so short that time stands still: a collision",
+            AdaptiveFailure::OffGrid => "the state is too large for the grid",
         };
         Outcome::Diverged(Divergence { step, t, reason: reason.to_owned() })
     }

@@ -38,9 +38,12 @@ impl Changes {
         }
     }
 
-    /// Looks at the present state; returns its energy.
-    pub(super) fn sample(&mut self, simulation: &BodySimulation) -> f64 {
+    /// Looks at the present state, unless it is stopped.
+    pub(super) fn sample(&mut self, simulation: &BodySimulation, should_stop: &dyn Fn() -> bool) {
         let now = simulation.conserved();
+        if should_stop() {
+            return;
+        }
         let distance = |a: [f64; 3], b: [f64; 3]| -> f64 {
             a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
         };
@@ -57,7 +60,6 @@ impl Changes {
             self.of_reading[i] += of_reading[i];
         }
         self.samples += 1.0;
-        now.energy
     }
 
     /// The largest changes.

@@ -184,7 +184,7 @@ fn run(
     loop {
         let step = simulation.steps();
         if step.is_multiple_of(stride) || step == steps {
-            changes.sample(simulation);
+            changes.sample(simulation, &|| monitor.should_stop());
             keep(simulation)?;
             samples += 1;
         }

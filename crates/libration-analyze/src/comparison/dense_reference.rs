@@ -81,28 +81,32 @@ impl Nodes {
 }
 
 impl DenseReference {
+    /// Pieces are at most `longest` seconds long. `sizes` are about the largest of the states in the motion.
+    ///
     /// # Errors
     /// [`ComparisonError::NotFinite`], [`ComparisonError::NotSmooth`] and [`ComparisonError::TooLong`].
     pub(super) fn new(
         rates: &mut Rates<'_, TwoFloat>,
         start: &[f64],
+        sizes: &[f64],
         horizon: f64,
         tolerance: f64,
+        longest: f64,
     ) -> Result<Self, ComparisonError> {
         let nodes = Nodes::new();
         let mut state: Point = start.iter().map(|&x| TwoFloat::from_f64(x)).collect();
         let mut scales: Vec<f64> = start.iter().map(|x| x.abs()).collect();
         let mut lost = vec![0.0; start.len()];
-        let (mut pieces, mut time, mut length) = (Vec::new(), 0.0, horizon / 8.0);
+        let (mut pieces, mut time, mut length) = (Vec::new(), 0.0, longest);
         while time < horizon {
             let is_last = time + length >= horizon * (1.0 - 1e-12);
             let own = if is_last { horizon - time } else { length };
             let trial = attempt(&nodes, rates, &state, own);
             let near = |trial: &Trial| {
                 let mut worst = 0.0_f64;
-                for (i, scale) in scales.iter().enumerate() {
+                for (i, (scale, size)) in scales.iter().zip(sizes).enumerate() {
                     let sizes = trial.nodes.iter().map(|node| node[i].to_f64().abs());
-                    let scale = sizes.fold(*scale, f64::max);
+                    let scale = sizes.fold(scale.max(*size), f64::max);
                     // What rests at zero has no size.
                     let relative = |off: f64| if off == 0.0 { 0.0 } else { off / scale };
                     let flow = relative(trial.flow[i]) * horizon / own;
@@ -136,12 +140,28 @@ impl DenseReference {
             state.clone_from(&trial.nodes[DEGREE]);
             time = if is_last { horizon } else { time + own };
             // The error of a polynomial falls with its degree: far below the limit the next may be longer.
-            length = if off < 1e-4 { 2.0 * own } else { own };
+            length = if off < 1e-4 { (2.0 * own).min(longest) } else { own };
         }
         let scales: Vec<f64> =
             scales.iter().map(|&size| if size > 0.0 { size } else { 1.0 }).collect();
         let error = lost.iter().zip(&scales).map(|(off, scale)| off / scale).fold(0.0, f64::max);
         Ok(DenseReference { nodes, pieces, scales, error: error + PART * tolerance })
+    }
+
+    /// The largest difference from another reference at the ends of the pieces, relative to the scales, and its time.
+    pub(super) fn largest_difference(&self, other: &Self) -> (f64, f64) {
+        let (mut worst, mut at, mut hint) = (0.0, 0.0, 0);
+        let mut state = vec![0.0; self.scales.len()];
+        for piece in &self.pieces {
+            other.write(piece.start, &mut hint, &mut state);
+            for ((x, y), scale) in state.iter().zip(&piece.states[0]).zip(&self.scales) {
+                let off = (x - y).abs() / scale;
+                if off > worst {
+                    (worst, at) = (off, piece.start);
+                }
+            }
+        }
+        (worst, at)
     }
 
     /// Whether no state ever leaves its start.

@@ -50,6 +50,8 @@ pub struct Comparison {
     pub reference_error: f64,
     /// Whether forces depend on positions alone. Otherwise splitting methods lose their order, and those by tables are left out.
     pub is_positional: bool,
+    /// Whether forces have no kinks and jumps. Otherwise what acts for less than the horizon over 2048 may be missed.
+    pub is_smooth: bool,
     /// The integrators, the cheapest first; those that do not meet the tolerance come last.
     pub integrators: Vec<ComparedIntegrator>,
 }
@@ -106,6 +108,7 @@ pub fn compare(
         tolerance: request.tolerance,
         reference_error: motion.reference_error(),
         is_positional,
+        is_smooth: request.dynamics.accelerations().is_smooth(),
         integrators,
     })
 }

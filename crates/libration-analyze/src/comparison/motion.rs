@@ -13,6 +13,25 @@ use crate::reference_flow::Rates;
 /// Steps up to which errors are taken after each of them; of more, after as many that are evenly spread.
 const MOST_SAMPLES: u64 = 4096;
 
+/// The fewest pieces of the reference of a motion whose forces have kinks or jumps.
+pub(super) const PIECES: f64 = 2048.0;
+
+/// About the largest size of each state: RK4 in as many steps as there are samples.
+fn sizes(request: &ComparisonRequest) -> Vec<f64> {
+    let step = StepProgram::new(Method::Rk4, &request.dynamics);
+    let mut stepper = ProgramStepper::<f64>::new(&step, &request.dynamics, &request.start);
+    let mut sizes: Vec<f64> = request.start.iter().map(|x| x.abs()).collect();
+    for _ in 0..MOST_SAMPLES {
+        let state = stepper.step(request.horizon / MOST_SAMPLES as f64);
+        if !state.iter().all(|x| x.is_finite()) {
+            // What is not known is no size.
+            return vec![0.0; request.start.len()];
+        }
+        sizes.iter_mut().zip(state).for_each(|(size, x)| *size = size.max(x.abs()));
+    }
+    sizes
+}
+
 /// A motion with its exact states.
 pub(super) struct Motion<'r> {
     pub(super) request: &'r ComparisonRequest,
@@ -23,7 +42,20 @@ impl<'r> Motion<'r> {
     pub(super) fn new(request: &'r ComparisonRequest) -> Result<Self, ComparisonError> {
         let ComparisonRequest { horizon, tolerance, ref start, .. } = *request;
         let mut rates = Rates::<TwoFloat>::new(&request.dynamics);
-        let reference = DenseReference::new(&mut rates, start, horizon, tolerance)?;
+        let sizes = sizes(request);
+        let is_smooth = request.dynamics.accelerations().is_smooth();
+        let mut follow = |longest: f64| {
+            DenseReference::new(&mut rates, start, &sizes, horizon, tolerance, longest)
+        };
+        let mut reference = follow(if is_smooth { horizon / 8.0 } else { horizon / PIECES })?;
+        if !is_smooth {
+            // A kink between two evaluations is seen by neither: the pieces of a second reference end elsewhere.
+            let (off, time) = reference.largest_difference(&follow(0.7 * horizon / PIECES)?);
+            if off > tolerance / 20.0 {
+                return Err(ComparisonError::NotSmooth { time, horizon });
+            }
+            reference.error += off;
+        }
         let reference_error = reference.error;
         if reference_error.is_nan() || reference_error > tolerance / 10.0 {
             return Err(ComparisonError::Reference { reference_error, horizon, tolerance });

@@ -177,3 +177,71 @@ fn wrong_requests_are_refused_before_any_work() {
     let short = ComparisonRequest { start: vec![1.0], ..ellipse(1e-6) };
     assert_eq!(fails(short), ComparisonError::Start { found: 1, expected: 4 });
 }
+
+fn of_forces(text: &str, start: &[f64], horizon: f64, tolerance: f64) -> ComparisonRequest {
+    let system =
+        libration_settings::equations::EquationSystem::parse(text, "own.toml", &[]).unwrap();
+    let dynamics = system.equations.dynamics().clone();
+    ComparisonRequest { system: "own".into(), dynamics, start: start.to_vec(), horizon, tolerance }
+}
+
+#[test]
+fn a_ball_on_a_wall_has_its_closed_form() {
+    let text = "[system]\nname = \"ball\"\ncoordinates = [\"y\"]\nacceleration.y = \"1e4*max(-y, 0) - 9.81\"\n";
+    let comparison = match compared(&of_forces(text, &[0.1, 0.0], 0.3, 1e-3)) {
+        Ok(comparison) => comparison,
+        // An honest refusal.
+        Err(ComparisonError::NotSmooth { .. }) => return,
+        Err(other) => panic!("{other}"),
+    };
+    assert!(!comparison.is_smooth);
+    // Free fall, a part of an oscillation about −g/k, and the way back up.
+    let (g, omega): (f64, f64) = (9.81, 100.0);
+    let fall = (0.2 / g).sqrt();
+    let speed = g * fall;
+    let (depth, angle) = (g / omega.powi(2), (speed / omega).atan2(g / omega.powi(2)));
+    let contact = (std::f64::consts::TAU - 2.0 * angle) / omega;
+    let place = |t: f64| {
+        let after = t - fall;
+        if after < 0.0 {
+            0.1 - 0.5 * g * t * t
+        } else if after < contact {
+            depth * (omega * after).cos() - speed / omega * (omega * after).sin() - depth
+        } else {
+            let t = after - contact;
+            speed * t - 0.5 * g * t * t
+        }
+    };
+    let rk4 = named(&comparison, "rk4");
+    let (dt, found) = (rk4.dt.unwrap(), rk4.error.unwrap());
+    let acceleration = |y: f64| 1e4 * (-y).max(0.0) - g;
+    let (mut y, mut v, mut worst) = (0.1, 0.0, 0.0_f64);
+    for step in 1..=(0.3 / dt).round() as u64 {
+        let k1 = (v, acceleration(y));
+        let k2 = (v + 0.5 * dt * k1.1, acceleration(y + 0.5 * dt * k1.0));
+        let k3 = (v + 0.5 * dt * k2.1, acceleration(y + 0.5 * dt * k2.0));
+        let k4 = (v + dt * k3.1, acceleration(y + dt * k3.0));
+        y += dt / 6.0 * (k1.0 + 2.0 * (k2.0 + k3.0) + k4.0);
+        v += dt / 6.0 * (k1.1 + 2.0 * (k2.1 + k3.1) + k4.1);
+        worst = worst.max((y - place(step as f64 * dt)).abs() / 0.1);
+    }
+    // The error of the velocity counts as well, so that this one is no larger.
+    assert!(worst < 1.1 * found, "{worst} {found}");
+}
+
+#[test]
+fn masses_far_from_a_start_do_not_stop_the_reference() {
+    let names: Vec<String> = (0..12).map(|i| format!("\"x{i}\"")).collect();
+    let force = |i: usize| {
+        let at = |i: usize| if i < 12 { format!("x{i}") } else { "0".to_owned() };
+        let left = if i == 0 { "0".to_owned() } else { at(i - 1) };
+        format!("acceleration.x{i} = \"{} - 2*x{i} + {left}\"\n", at(i + 1))
+    };
+    let forces: String = (0..12).map(force).collect();
+    let text =
+        format!("[system]\nname = \"chain\"\ncoordinates = [{}]\n{forces}", names.join(", "));
+    let mut start = vec![0.0; 24];
+    start[0] = 0.5;
+    let comparison = compared(&of_forces(&text, &start, 10.0, 1e-4)).unwrap();
+    assert!(comparison.integrators[0].evaluations.is_some());
+}

@@ -34,7 +34,7 @@ pub(crate) struct SimulateArgs {
         long,
         value_name = "CONTROL",
         value_parser = controls(),
-        conflicts_with_all = ["count", "plant", "config", "feedback", "lqr", "gain", "time_stamps", "jitter", "skew"]
+        conflicts_with_all = ["count", "plant", "config", "feedback", "lqr", "gain", "time_stamps", "jitter", "skew", "spread", "seed", "threads", "simd"]
     )]
     pub(crate) adaptive: Option<StepControl>,
     /// Float type of the state, the parameters and every operation

@@ -111,6 +111,9 @@ fn describe(comparison: &Comparison) -> String {
                 },
         );
     }
+    if !comparison.is_smooth {
+        text += "The forces have kinks or jumps: what acts for less than the horizon over 2048 may be missed.\n";
+    }
     if !is_positional {
         text += "Splitting methods by tables are left out: a force of this system depends on a velocity.\n";
     }

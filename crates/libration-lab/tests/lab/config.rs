@@ -239,6 +239,6 @@ fn the_schema_describes_every_key() {
         }
     }
     let schema = STUDIES.schema();
-    assert_eq!(schema["properties"].as_object().unwrap().len(), 18);
+    assert_eq!(schema["properties"].as_object().unwrap().len(), 19);
     assert_described(&schema);
 }

@@ -9,13 +9,13 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 
 /// Steps of a period.
-const STEPS: RangeInclusive<u64> = 100..=100_000;
+const STEPS: RangeInclusive<u64> = 200..=1000;
 
 /// Periods of the long run; fewer show no drift.
 const PERIODS: RangeInclusive<u64> = 100..=1_000_000;
 
-/// The largest eccentricity.
-const MOST: f64 = 0.999;
+/// Eccentricities at which the steps resolve the orbit, and the drift is above rounding.
+const ECCENTRICITIES: RangeInclusive<f64> = 0.5..=0.99;
 
 /// Settings of the study `adaptive`.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,8 +78,8 @@ impl Settings for AdaptiveSettings {
     fn check(&self) -> Result<(), Fault> {
         let key = "adaptive.eccentricities";
         for (i, e) in self.eccentricities.iter().enumerate() {
-            if !(*e > 0.0 && *e <= MOST) {
-                let message = format!("{e} is not above 0 and at most {MOST}");
+            if !ECCENTRICITIES.contains(e) {
+                let message = format!("{e} is not 0.5 to 0.99");
                 return Err(Fault::at(key, i, message));
             }
             if self.eccentricities[..i].contains(e) {
