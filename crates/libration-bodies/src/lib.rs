@@ -3,6 +3,7 @@
 //! Forces are direct sums over all pairs, in vectors and on all cores, with the same bits on every machine. Each integrator of
 //! `libration-core` moves them; the splitting of Wisdom and Holman is for orbits around one heavy body.
 
+mod audit;
 mod bodies;
 mod body_integrator;
 mod body_vectors;
