@@ -1,5 +1,7 @@
 //! Steps that follow encounters.
 
+#![allow(clippy::unwrap_used)]
+
 use libration_batch::ensemble::Execution;
 use libration_bodies::{BodiesError, BodyIntegrator, BodySimulation, InitialConditions};
 
