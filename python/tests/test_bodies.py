@@ -99,9 +99,11 @@ def test_wrong_options_are_refused() -> None:
         options: dict[str, Any] = {"integrator": "leapfrog", "dt": 0.1, "steps": 1, **change}
         with pytest.raises(ValueError, match=message):
             libration.simulate_bodies(eight, **options)
-    for change in ({"compensated": "no"}, {"steps": True}, {"integrator": None}, {"threads": 1.5}):
+    of_wrong_type: list[dict[str, Any]] = [{"compensated": "no"}, {"steps": True}, {"integrator": None}, {"threads": 1.5}]
+    for change in of_wrong_type:
+        options = {"integrator": "leapfrog", "dt": 0.1, "steps": 1, **change}
         with pytest.raises(TypeError, match=next(iter(change))):
-            libration.simulate_bodies(eight, **{"integrator": "leapfrog", "dt": 0.1, "steps": 1, **change})
+            libration.simulate_bodies(eight, **options)
     with pytest.raises(ValueError, match="'plummer' requires count"):
         Bodies.published("plummer")
     with pytest.raises(ValueError, match="did you mean `figure-eight`"):
