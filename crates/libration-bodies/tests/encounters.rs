@@ -31,6 +31,34 @@ fn adaptive_steps_pass_encounters_that_fixed_ones_do_not() {
 }
 
 #[test]
+fn a_step_is_as_long_as_the_time_scale_of_all_pairs() {
+    let frequency = |run: &BodySimulation| {
+        let bodies: Vec<_> = run.bodies().iter().collect();
+        let pairs = (0..3).flat_map(|j| (0..j).map(move |i| (i, j)));
+        let square = |(i, j): (usize, usize)| {
+            let (a, b) = (&bodies[i], &bodies[j]);
+            let offset = a.position.iter().zip(b.position).map(|(a, b)| (a - b).powi(2));
+            (a.mass + b.mass) / offset.sum::<f64>().powf(1.5)
+        };
+        pairs.map(square).sum::<f64>().sqrt()
+    };
+    let dt = 1e-4;
+    let mut run = pythagorean("leapfrog", dt).adaptive().unwrap();
+    let start = frequency(&run);
+    let mut shortest = f64::INFINITY;
+    while run.time() < 2.5 {
+        let before = run.time();
+        run.advance(1).unwrap();
+        let length = run.time() - before;
+        let ratio = length / (dt * start / frequency(&run));
+        assert!((ratio - 1.0).abs() < 0.02, "{ratio} at {before}");
+        shortest = length.min(shortest);
+    }
+    // The first encounter is at a hundredth of the first distances.
+    assert!(shortest < dt / 100.0, "{shortest}");
+}
+
+#[test]
 fn the_published_closest_encounter_is_found() {
     // Szebehely and Peters 1967: bodies 4 and 5 at a distance of 4e-4 at t = 15.8299.
     let mut run = pythagorean("kahan-li-8-17a", 0.01).adaptive().unwrap();
