@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::budget::{Budget, FirstFailure};
 use super::combined_effect::CombinedEffect;
-use super::integrator_choice::{IntegratorChoice, sort_by_cost};
+use super::integrator_choice::{IntegratorChoice, evaluations, sort_by_cost};
 use super::request::{Measure, Request, Tolerance};
 use super::stabilising_changes::StabilisingChanges;
 use super::stability_map::StabilityMap;
@@ -171,9 +171,10 @@ impl Advice {
 
     /// Sorts the integrators by cost, and sets the runner-up and warnings.
     pub(super) fn choose(&mut self, request: &Request, mut choices: Vec<IntegratorChoice>) {
+        let is_positional = request.system.is_positional(request.q.len());
         for choice in &mut choices {
             let method = Method::from_name(choice.integrator);
-            let each = method.and_then(|m| request.system.evaluations(&request.q, &request.v, m));
+            let each = method.map(|method| evaluations(method, is_positional));
             choice.evaluations = each.zip(choice.dt).map(|(each, dt)| each as f64 / dt);
         }
         sort_by_cost(&mut choices);

@@ -2,9 +2,7 @@
 
 use libration::catalog::Actuation;
 use libration::ensemble::{AnyEnsemble, BatchFloat, EnsembleError, Execution};
-use libration::system::{DampedOscillator, Oscillator};
-use libration::{AnySystem, Method};
-use libration_analyze::{Criteria, Request, Stepping, Timing, analyze};
+use libration::{AnySystem, Method, Model, System, with_system};
 use libration_settings::equations::EquationSystem;
 use libration_settings::units::{self, Units};
 
@@ -101,33 +99,17 @@ impl AdvisedSystem {
         }
     }
 
-    /// Counted force evaluations per step.
-    pub(super) fn evaluations(&self, q: &[f64], v: &[f64], method: Method) -> Option<u64> {
-        let (system, q, v) = match self {
-            AdvisedSystem::Catalogued { system, .. } => (*system, q.to_vec(), v.to_vec()),
-            // They depend on whether forces depend on velocities, and on nothing else of a system.
-            AdvisedSystem::Equations { system, .. } => {
-                let like = match system.equations.dynamics().is_positional() {
-                    true => AnySystem::Oscillator(Oscillator { omega2: 1.0 }),
-                    false => {
-                        AnySystem::DampedOscillator(DampedOscillator { omega2: 1.0, gamma: 0.1 })
-                    }
-                };
-                (like, vec![1.0], vec![0.0])
+    /// Whether accelerations depend on positions alone.
+    pub(super) fn is_positional(&self, dimension: usize) -> bool {
+        fn of<const D: usize, M: Model<D>>(_: &M) -> bool {
+            <M::On<f64> as System<f64, D>>::POSITIONAL
+        }
+        match self {
+            AdvisedSystem::Catalogued { system, .. } => {
+                with_system!(*system, dimension, |model, D| of::<D, _>(&model), false)
             }
-        };
-        let request = Request {
-            system,
-            actuation: Actuation::Acceleration,
-            stepping: Stepping::Method(method),
-            dt: 1e-6,
-            q,
-            v,
-            steps: 1,
-            criteria: Criteria::default(),
-            timing: Timing::default(),
-        };
-        analyze(&request).ok().map(|analysis| analysis.force_evaluations_per_step)
+            AdvisedSystem::Equations { system, .. } => system.equations.dynamics().is_positional(),
+        }
     }
 
     /// An ensemble of `count` trajectories from one start.

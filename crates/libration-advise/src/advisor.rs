@@ -7,7 +7,7 @@ use libration_work::Work;
 use super::advice::{Advice, FloatChoice, LoopAdvice};
 use super::control::Control;
 use super::free_motion::FreeMotion;
-use super::integrator_choice::{best_possible, largest_step};
+use super::integrator_choice::{best_possible, largest_step, offered_methods};
 use super::loop_simulation::{LoopSimulation, MOST_PERIODS};
 use super::loops::{Loop, LoopError, PlantModel};
 use super::request::{Measure, Request, Tolerance};
@@ -24,13 +24,13 @@ pub(super) fn advise_simulation(
     let free = FreeMotion::new(work, system, request)?;
     let mut advice = Advice::new(request);
     let most = request.tolerance.most;
-    let mut choices =
-        work.sweep("the largest step of each integrator", &Method::ALL, |&method| {
-            largest_step(work, &free, method, most, free.steps())
-        })?;
+    let methods: Vec<Method> = offered_methods(system.is_positional()).collect();
+    let mut choices = work.sweep("the largest step of each integrator", &methods, |&method| {
+        largest_step(work, &free, method, most, free.steps_of(method))
+    })?;
     if choices.iter().all(|choice| choice.dt.is_none()) {
-        choices = work.sweep("the smallest error of each integrator", &Method::ALL, |&method| {
-            best_possible(work, &free, method, free.steps())
+        choices = work.sweep("the smallest error of each integrator", &methods, |&method| {
+            best_possible(work, &free, method, free.steps_of(method))
         })?;
         // If the search does not end by rounding, shorter steps have smaller errors.
         let [shortest, _] = free.steps();

@@ -1,6 +1,8 @@
 //! The choice of integrator and step: the cheapest that meets a tolerance.
 
-use libration::Method;
+use libration::simulation::Simulator;
+use libration::system::{DampedOscillator, Oscillator};
+use libration::{Method, State, System};
 use libration_work::Work;
 
 use super::AdviseError;
@@ -49,6 +51,28 @@ pub(super) trait StepTrial: Sync {
 
     /// The step below which errors fall with the step.
     fn resolving_step(&self) -> f64;
+}
+
+/// The methods that are tried: those with code of their own, and the most efficient tables where forces depend on positions alone.
+pub(super) fn offered_methods(is_positional: bool) -> impl Iterator<Item = Method> {
+    let tables = Method::most_efficient_tables().filter(move |_| is_positional);
+    Method::ALL.into_iter().chain(tables)
+}
+
+/// Counted force evaluations per step. They depend on whether forces depend on positions alone, and on nothing else of a system.
+pub(super) fn evaluations(method: Method, is_positional: bool) -> u64 {
+    fn counted(system: impl System<f64, 1> + Copy, method: Method) -> u64 {
+        let start = State { q: [1.0], v: [0.0] };
+        Simulator::new(system, method, start, 1e-6).map_or(0, |mut one| {
+            // The step is finite.
+            let _ = one.run(1, &mut ());
+            one.evaluations()
+        })
+    }
+    match is_positional {
+        true => counted(Oscillator { omega2: 1.0 }, method),
+        false => counted(DampedOscillator { omega2: 1.0, gamma: 0.1 }, method),
+    }
 }
 
 /// Ratio of neighbouring tried steps.

@@ -24,8 +24,13 @@ pub(super) trait SimulatedSystem: Sync {
     /// The most steps of a run, and of one that is compared with finer steps: a search takes hundreds of runs.
     fn most_steps(&self) -> [f64; 2];
 
-    /// A method that is of order four on this system: splitting methods lose order where forces depend on velocities.
-    fn reference_method(&self) -> Method;
+    /// Whether accelerations depend on positions alone: elsewhere splitting methods lose their order.
+    fn is_positional(&self) -> bool;
+
+    /// The method with the smaller error of those with code of their own that are of order four on this system.
+    fn reference_method(&self) -> Method {
+        if self.is_positional() { Method::Suzuki4 } else { Method::Rk4 }
+    }
 
     /// The largest angle of an exact step of a second, of a linear system that has exact steps, in rad.
     fn exact_rate(&self) -> Option<f64>;
@@ -51,11 +56,6 @@ pub(super) trait SimulatedSystem: Sync {
 
     /// Exact steps, of a linear system that has them.
     fn exact_steps(&self, dt: f64, start: &[f64]) -> Option<Box<dyn Steps + '_>>;
-}
-
-/// The method with the smaller error of those that are of order four.
-pub(super) fn reference_method(is_positional: bool) -> Method {
-    if is_positional { Method::Suzuki4 } else { Method::Rk4 }
 }
 
 /// A trajectory, step by step.
@@ -96,8 +96,8 @@ impl<M: Model<D>, const D: usize> SimulatedSystem for Compiled<M, D> {
         [2e7, 1e6]
     }
 
-    fn reference_method(&self) -> Method {
-        reference_method(<M::On<f64> as System<f64, D>>::POSITIONAL)
+    fn is_positional(&self) -> bool {
+        <M::On<f64> as System<f64, D>>::POSITIONAL
     }
 
     fn exact_rate(&self) -> Option<f64> {

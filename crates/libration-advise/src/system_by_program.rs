@@ -1,21 +1,22 @@
 //! Systems by their programs.
 
+use std::sync::OnceLock;
+
 use libration::equations::{Degree, Dynamics, Evaluation, StepProgram};
 use libration::number::Dual;
 use libration::{Float, Method};
 use libration_settings::equations::EquationSystem;
 
-use super::simulated_system::{
-    Accelerations, Energy, SimulatedSystem, Slopes, Steps, reference_method,
-};
+use super::integrator_choice::offered_methods;
+use super::simulated_system::{Accelerations, Energy, SimulatedSystem, Slopes, Steps};
 
 /// A system by its program, whose inputs are zero.
 pub(super) struct SystemByProgram<'a> {
     dynamics: &'a Dynamics,
     states: Vec<usize>,
     depends_on_time: bool,
-    /// The steps of [all methods](Method::ALL).
-    steps: Vec<StepProgram>,
+    /// The steps of [all offered methods](offered_methods), of those that were asked for.
+    steps: Vec<(Method, OnceLock<StepProgram>)>,
 }
 
 impl<'a> SystemByProgram<'a> {
@@ -26,17 +27,18 @@ impl<'a> SystemByProgram<'a> {
             // Other places only carry time or an integral.
             states: system.states.iter().map(|state| state.place).collect(),
             depends_on_time: system.equations.degrees().contains(&Degree::Time),
-            steps: Method::ALL.map(|method| StepProgram::new(method, dynamics)).into(),
+            steps: offered_methods(true).map(|method| (method, OnceLock::new())).collect(),
         }
     }
 
     fn steps_on<S: Float>(&self, method: Method, dt: f64, start: &[f64]) -> ProgramSteps<'_, S> {
-        let place = Method::ALL.iter().position(|&other| other == method).unwrap_or_default();
+        let place = self.steps.iter().position(|&(other, _)| other == method).unwrap_or_default();
+        let (method, step) = &self.steps[place];
+        let step = step.get_or_init(|| StepProgram::new(*method, self.dynamics));
         let mut inputs: Vec<S> = start.iter().map(|&x| S::from_f64(x)).collect();
         inputs.resize(start.len() + self.dynamics.inputs(), S::zero());
         inputs.push(S::from_f64(dt));
-        let step = self.steps[place].program().on();
-        ProgramSteps { step, inputs, next: Vec::new(), shown: start.to_vec() }
+        ProgramSteps { step: step.program().on(), inputs, next: Vec::new(), shown: start.to_vec() }
     }
 }
 
@@ -54,8 +56,8 @@ impl SimulatedSystem for SystemByProgram<'_> {
         [2e6, 2e5]
     }
 
-    fn reference_method(&self) -> Method {
-        reference_method(self.dynamics.is_positional())
+    fn is_positional(&self) -> bool {
+        self.dynamics.is_positional()
     }
 
     fn exact_rate(&self) -> Option<f64> {

@@ -181,6 +181,21 @@ mod tests {
     }
 
     #[test]
+    fn the_most_efficient_tables_are_those_of_their_certificates() {
+        let of_order = |order: usize| -> Vec<(&str, f64)> {
+            let certified = tables().filter(|table| table.order as usize == order);
+            let effective = certified.map(|table| {
+                let certificate = SplittingCertificate::new(table, order).unwrap();
+                (table.name, certificate.effective_error())
+            });
+            effective.collect()
+        };
+        let best = [2, 4, 6, 8, 10]
+            .map(|order| of_order(order).into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap().0);
+        assert!(SplittingTable::most_efficient().map(|table| table.name).eq(best));
+    }
+
+    #[test]
     fn two_wrong_digits_that_cancel_in_the_sums_are_found() {
         for published in tables().filter(|table| table.order < 9) {
             let numbers = published.coefficients.numbers();

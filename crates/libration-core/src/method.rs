@@ -160,6 +160,11 @@ impl Method {
         SplittingTable::ALL.into_iter().flatten().map(Method::Splitting)
     }
 
+    /// The [most efficient](SplittingTable::most_efficient) published splitting methods.
+    pub fn most_efficient_tables() -> impl Iterator<Item = Method> {
+        SplittingTable::most_efficient().map(Method::Splitting)
+    }
+
     /// All of them: those with code of their own, then the published splitting methods.
     pub fn all() -> impl Iterator<Item = Method> {
         Method::ALL.into_iter().chain(Method::tables())

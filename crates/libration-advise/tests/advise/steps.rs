@@ -63,15 +63,15 @@ fn every_integrator_gets_the_largest_step_that_meets_the_tolerance() {
     }
     // By how much the angle in the plane of q and v/ω is off in the end, with all its turns.
     let phase = |method: Method, dt: f64| {
-        let (omega, mut angle) = (10.0_f64.sqrt(), 0.0_f64);
+        let (omega, mut ahead) = (10.0_f64.sqrt(), 0.0_f64);
         let mut state = State { q: [1.0], v: [0.0] };
         let steps = (60.0 / dt).round();
         for _ in 0..steps as u64 {
             let next = method.step(&oscillator, state, dt);
             let [a, b] = [state, next].map(|y| (-y.v[0] / omega).atan2(y.q[0]));
-            // A step turns by less than half a turn.
-            let turn = b - a;
-            angle += turn - TAU * (turn / TAU).round();
+            // A step is off by less than half a turn.
+            let turn = b - a - omega * dt;
+            ahead += turn - TAU * (turn / TAU).round();
             state = next;
             // A swing that is twice as large or half has no phase to speak of.
             if !(0.5..2.0).contains(&state.q[0].hypot(state.v[0] / omega)) {
@@ -79,7 +79,7 @@ fn every_integrator_gets_the_largest_step_that_meets_the_tolerance() {
             }
         }
         // The advice takes ω from samples of the motion, and is off by parts of a thousand.
-        (angle - omega * steps * dt).abs() / 1.005
+        ahead.abs() / 1.005
     };
     // The largest distance from steps of order four of a ten-thousandth of a second.
     let far = |method: Method, dt: f64| {
@@ -91,9 +91,10 @@ fn every_integrator_gets_the_largest_step_that_meets_the_tolerance() {
             states[0] = method.step(&pendulum, states[0], dt);
             for _ in 0..parts as u64 {
                 states[1] = Method::Rk4.step(&pendulum, states[1], dt / parts);
+                let State { q: [q], v: [v] } = states[1];
+                (far, fast) = (far.max(q.abs()), fast.max(v.abs()));
             }
             let [own, truth] = states;
-            (far, fast) = (far.max(truth.q[0].abs()), fast.max(truth.v[0].abs()));
             off.push([own.q[0] - truth.q[0], own.v[0] - truth.v[0]]);
         }
         let omega = fast / far.max(2.0);
@@ -128,7 +129,8 @@ fn every_integrator_gets_the_largest_step_that_meets_the_tolerance() {
     for (request, lost) in &cases {
         let advice = advice(request).unwrap();
         let most = request.tolerance.most;
-        assert_eq!(advice.integrators.len(), Method::ALL.len());
+        let tables = Method::most_efficient_tables().count();
+        assert_eq!(advice.integrators.len(), Method::ALL.len() + tables);
         let mut found = 0;
         for choice in &advice.integrators {
             let Some(dt) = choice.dt else { continue };
@@ -136,7 +138,13 @@ fn every_integrator_gets_the_largest_step_that_meets_the_tolerance() {
             let method = Method::from_name(choice.integrator).unwrap();
             let name = format!("{} {method:?}, {dt}", advice.system);
             assert!(lost(method, dt) <= most, "{name}: {}", lost(method, dt));
-            assert!(lost(method, 1.2 * dt) > most, "{name}: {}", lost(method, 1.2 * dt));
+            if choice.lost_beyond.is_some_and(|beyond| beyond <= most) {
+                let listed = |warning: &&String| warning.contains(choice.integrator);
+                let warning = advice.warnings.iter().find(listed).expect(&name);
+                assert!(warning.contains("were not tried"), "{name}: {warning}");
+            } else {
+                assert!(lost(method, 1.2 * dt) > most, "{name}: {}", lost(method, 1.2 * dt));
+            }
         }
         assert!(found >= 8, "{found} of {}", advice.system);
         // The cheapest first.
@@ -247,7 +255,7 @@ fn errors_against_the_reference_are_those_against_a_circular_orbit_in_closed_for
     let request =
         free(AnySystem::Kepler(kepler), &[1.0, 0.0], &[0.0, 1.0], Measure::Trajectory, 1e-3, 7.0);
     let found = advice(&request).unwrap();
-    let mut orders = [0; 3];
+    let mut orders = [0; 6];
     for choice in found.integrators.iter().filter(|choice| choice.dt.is_some()) {
         let (method, dt) = (Method::from_name(choice.integrator).unwrap(), choice.dt.unwrap());
         let mut state = State { q: [1.0, 0.0], v: [0.0, 1.0] };
@@ -265,5 +273,5 @@ fn errors_against_the_reference_are_those_against_a_circular_orbit_in_closed_for
         assert!((ratio - 1.0).abs() < 1.0 / 4000.0, "{}: {ratio}", choice.integrator);
         orders[method.order() as usize / 2] += 1;
     }
-    assert!(orders.iter().all(|&count| count >= 2), "{orders:?}");
+    assert_eq!(orders.map(|count| count.min(2)), [2, 2, 2, 1, 1, 1], "{orders:?}");
 }

@@ -129,7 +129,7 @@ fn describe(advice: &Advice) -> String {
     if !advice.integrators.is_empty() {
         let _ = writeln!(
             text,
-            "\n{:<30} {:>12} {:>12} {:>12} {:>12} {:>14}",
+            "\n{:<34} {:>12} {:>12} {:>12} {:>12} {:>14}",
             "integrator", "largest dt/s", "steps/period", "error", "next longer", "evaluations/s"
         );
     }
@@ -141,7 +141,7 @@ fn describe(advice: &Advice) -> String {
     for choice in &advice.integrators {
         let _ = writeln!(
             text,
-            "{:<30} {:>12} {:>12} {:>12} {:>12} {:>14}",
+            "{:<34} {:>12} {:>12} {:>12} {:>12} {:>14}",
             choice.integrator,
             shown(choice.dt),
             choice.substeps.map_or_else(String::new, |count| count.to_string()),

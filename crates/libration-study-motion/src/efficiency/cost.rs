@@ -29,7 +29,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<Vec<Cost>, S
         "cost of a step",
         &["integrator", "force evaluations", "time (ns)", "spread (ns)"],
     );
-    for &method in &lab.config.integrators {
+    for method in super::methods(lab.config) {
         lab.check()?;
         let (evaluations, times) = with_method!(method, |m| time(lab, m, steps))?;
         let nanoseconds = times[REPEATS / 2];

@@ -13,7 +13,7 @@ use libration_study::SourceClaim;
 
 pub use self::settings::EfficiencySettings;
 use self::source_claims::SOURCE_CLAIMS;
-use libration::State;
+use libration::{Method, State};
 use libration_report::Record;
 use libration_report::page::Page;
 use libration_report::record::RecordError;
@@ -52,6 +52,12 @@ impl Study for Efficiency {
     fn render(&self, record: &Record, page: &mut Page) -> Result<(), RecordError> {
         render::render(record, page)
     }
+}
+
+/// The integrators, then the splitting methods.
+fn methods(config: &Config) -> Vec<Method> {
+    let more = config.get::<EfficiencySettings>().splitting_methods;
+    config.integrators.iter().copied().chain(more).collect()
 }
 
 /// The start in units in which `ω = 1`.

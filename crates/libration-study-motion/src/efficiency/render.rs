@@ -1,7 +1,7 @@
 //! The chapter on efficiency.
 
 use libration::Method;
-use libration_report::figure::{Axis, Figure, Mark, Panel};
+use libration_report::figure::{Axis, Figure, Mark, Panel, Role};
 use libration_report::notation::list;
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Cell, Record, RecordError, Series};
@@ -106,9 +106,7 @@ fn answer(record: &Record, page: &mut Page) -> Result<(), RecordError> {
 
 /// The methods of which the record holds work–precision series.
 fn series(record: &Record) -> impl Iterator<Item = (Method, &Series)> {
-    Method::ALL
-        .into_iter()
-        .filter_map(|m| Some((m, record.series(&format!("work-{}", m.name())).ok()?)))
+    Method::all().filter_map(|m| Some((m, record.series(&format!("work-{}", m.name())).ok()?)))
 }
 
 /// Errors against work, a panel for each kind.
@@ -135,11 +133,15 @@ fn precision(record: &Record) -> Result<Figure, RecordError> {
             false => ("force_evaluations_per_period", Axis::log("force evaluations per period")),
         };
         let mut panel = Panel::new(label, axis).title(title);
+        let mut accents = (3..).map(Role::Accent);
         for (method, series) in series(record) {
+            let role = match method {
+                Method::Splitting(_) => accents.next().unwrap_or(Role::Neutral),
+                _ => method_color(method),
+            };
             let x = series.column(x)?;
             let measured = shown(series.column(column)?);
-            panel = panel
-                .mark(Mark::line(x, measured).role(method_color(method)).label(method.title()));
+            panel = panel.mark(Mark::line(x, measured).role(role).label(method.title()));
             if !by_time {
                 let bound = shown(series.column(&format!("{column}_bound"))?);
                 let every = |v: &[f64]| -> Vec<f64> { v.iter().step_by(2).copied().collect() };

@@ -1,10 +1,14 @@
 //! Settings of the study `efficiency`.
 
-use libration_settings::validation::{check_counts, check_list, parse_counts};
+use libration::{Integrator, Method};
+use libration_settings::validation::{check_counts, check_list, parse_counts, parse_names};
 use libration_settings::{Count, Fault, Number, limits, numbers};
 use libration_study::{Settings, schema};
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
+
+/// The most force evaluations of a step of a splitting method: the exact polynomials of longer ones take minutes.
+const MOST_EVALUATIONS: usize = 14;
 
 /// Settings of the study `efficiency`.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +17,8 @@ pub struct EfficiencySettings {
     pub tolerances: Vec<f64>,
     /// Horizons in periods of the oscillator, ascending.
     pub periods: Vec<u64>,
+    /// Published splitting methods that are studied besides the integrators.
+    pub splitting_methods: Vec<Method>,
 }
 
 impl Default for EfficiencySettings {
@@ -20,8 +26,19 @@ impl Default for EfficiencySettings {
         EfficiencySettings {
             tolerances: vec![1e-6, 1e-4, 1e-2],
             periods: vec![10, 1_000, 1_000_000],
+            splitting_methods: offered()
+                .filter(|method| DEFAULT_SPLITTING_METHODS.contains(&method.name()))
+                .collect(),
         }
     }
+}
+
+/// Those of the orders 4 and 6 with the smallest and the second smallest error per evaluation.
+const DEFAULT_SPLITTING_METHODS: [&str; 2] = ["blanes-moan-srkn-6-4", "blanes-moan-srkn-11-6"];
+
+/// The splitting methods that can be studied.
+fn offered() -> impl Iterator<Item = Method> {
+    Method::tables().filter(|method| method.evaluations() <= MOST_EVALUATIONS)
 }
 
 /// Settings of the study `efficiency`.
@@ -34,6 +51,14 @@ pub struct Table {
     /// Horizons in periods of the oscillator, each once.
     #[schemars(schema_with = "schema::horizons")]
     periods: Vec<Count>,
+    /// Published splitting methods that are studied besides the integrators, each once.
+    #[schemars(schema_with = "splitting_methods")]
+    splitting_methods: Vec<String>,
+}
+
+fn splitting_methods(_: &mut SchemaGenerator) -> Schema {
+    let names: Vec<&str> = offered().map(Method::name).collect();
+    json_schema!({ "type": "array", "uniqueItems": true, "items": schema::one_of(&names) })
 }
 
 impl Default for Table {
@@ -51,6 +76,7 @@ impl Settings for EfficiencySettings {
         Table {
             tolerances: self.tolerances.iter().copied().map(Number).collect(),
             periods: self.periods.iter().map(|&n| Count(n.into())).collect(),
+            splitting_methods: self.splitting_methods.iter().map(|m| m.name().into()).collect(),
         }
     }
 
@@ -58,12 +84,25 @@ impl Settings for EfficiencySettings {
         Ok(EfficiencySettings {
             tolerances: numbers(table.tolerances),
             periods: parse_counts("efficiency.periods", table.periods)?,
+            splitting_methods: parse_names(
+                "efficiency.splitting_methods",
+                ("splitting method", "splitting methods"),
+                &table.splitting_methods,
+                &offered().map(Method::name).collect::<Vec<_>>(),
+                |name| offered().find(|method| method.name() == name),
+            )?,
         })
     }
 
     fn check(&self) -> Result<(), Fault> {
         check_list("efficiency.tolerances", "tolerance", limits::TOLERANCE, &self.tolerances)?;
         check_counts("efficiency.periods", &self.periods)?;
+        for (i, method) in self.splitting_methods.iter().enumerate() {
+            if self.splitting_methods[..i].contains(method) {
+                let message = format!("the splitting method `{}` is named twice", method.name());
+                return Err(Fault::at("efficiency.splitting_methods", i, message));
+            }
+        }
         Ok(())
     }
 

@@ -25,6 +25,15 @@ mod splittings_4;
 mod splittings_5;
 mod splittings_6;
 
+/// Names of the tables of [`SplittingTable::most_efficient`], by rising order.
+const MOST_EFFICIENT: [&str; 5] = [
+    "mclachlan-s2-dkd",
+    "blanes-moan-srkn-6-4",
+    "blanes-moan-srkn-14-6",
+    "blanes-casas-escorihuela-rkn-19-8",
+    "sofroniou-spaletta-10-35",
+];
+
 impl SplittingTable {
     /// All of them by kind, then by rising order.
     pub const ALL: [&'static [SplittingTable]; 14] = [
@@ -43,4 +52,16 @@ impl SplittingTable {
         nystrom_8::TABLES,
         nearly_integrable::TABLES,
     ];
+
+    /// Of each even order, the one with the smallest error per force evaluation where forces depend on positions alone: the product of the
+    /// evaluations and the root of the error constant, as [`ALL`](SplittingTable::ALL) are compared by McLachlan, SIAM J. Sci. Comput. 16,
+    /// 151 (1995).
+    pub fn most_efficient() -> impl Iterator<Item = &'static SplittingTable> {
+        MOST_EFFICIENT.into_iter().filter_map(SplittingTable::from_name)
+    }
+
+    /// The table of that name, if there is one.
+    pub fn from_name(name: &str) -> Option<&'static SplittingTable> {
+        SplittingTable::ALL.into_iter().flatten().find(|table| table.name == name)
+    }
 }
