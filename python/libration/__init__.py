@@ -41,7 +41,7 @@ from .probing import probe
 from .replay import ReplayBuffer
 from .rollout import Rollout
 from .simulation import Trajectory, simulate
-from .systems import IMPLICIT_INTEGRATORS, INTEGRATORS, SPLITTING_METHODS, SYSTEMS, CustomSystem, System
+from .systems import IMPLICIT_INTEGRATORS, INTEGRATORS, RUNGE_KUTTA_METHODS, SPLITTING_METHODS, SYSTEMS, CustomSystem, System
 from .temperature import TemperatureAnalysis, analyze_temperature
 
 __all__ = [
@@ -82,6 +82,7 @@ __all__ = [
     "ReplayBuffer",
     "Results",
     "Rollout",
+    "RUNGE_KUTTA_METHODS",
     "SPLITTING_METHODS",
     "STUDIES",
     "SYSTEMS",

@@ -11,17 +11,18 @@ from numpy.typing import ArrayLike, NDArray
 from ._settings import count, number
 from .perturbations import gains, law, numbers
 from .perturbations import latency as _latency
-from .systems import IMPLICIT_INTEGRATORS, INTEGRATORS, SPLITTING_METHODS, System
+from .systems import IMPLICIT_INTEGRATORS, INTEGRATORS, RUNGE_KUTTA_METHODS, SPLITTING_METHODS, System
 
 
 def step_request(system: System, integrator: Any, dt: Any, q: Any, v: Any) -> dict[str, Any]:
     """Return a system, its start and its step in the format of the engine."""
     text("integrator", integrator)
-    known = [*INTEGRATORS, *IMPLICIT_INTEGRATORS, *SPLITTING_METHODS]
+    known = [*INTEGRATORS, *IMPLICIT_INTEGRATORS, *SPLITTING_METHODS, *RUNGE_KUTTA_METHODS]
     if integrator not in known:
         near = f"did you mean {close[0]!r}? " if (close := get_close_matches(integrator, known, n=1)) else ""
         listed = ", ".join(known[: len(INTEGRATORS) + len(IMPLICIT_INTEGRATORS)])
-        raise ValueError(f"unknown integrator {integrator!r}: {near}known are {listed} and libration.SPLITTING_METHODS")
+        tables = "libration.SPLITTING_METHODS and libration.RUNGE_KUTTA_METHODS"
+        raise ValueError(f"unknown integrator {integrator!r}: {near}known are {listed}, and those of {tables}")
     return {
         "system": system._request(),
         "q": coordinates("q", q),

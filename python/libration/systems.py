@@ -17,7 +17,7 @@ from .equations import EquationSystem
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-__all__ = ["CustomSystem", "IMPLICIT_INTEGRATORS", "INTEGRATORS", "SPLITTING_METHODS", "SYSTEMS", "System"]
+__all__ = ["CustomSystem", "IMPLICIT_INTEGRATORS", "INTEGRATORS", "RUNGE_KUTTA_METHODS", "SPLITTING_METHODS", "SYSTEMS", "System"]
 
 INTEGRATORS: Mapping[str, str] = MappingProxyType(dict(_native._integrators()))
 """Description of each integrator, by name. ``"exact"`` is for linear systems only, not for ensembles or environments."""
@@ -27,6 +27,11 @@ IMPLICIT_INTEGRATORS: Mapping[str, str] = MappingProxyType(dict(_native._implici
 
 SPLITTING_METHODS: Mapping[str, str] = MappingProxyType({name: f"{about}; {source}" for name, about, source in _native._splitting_methods()})
 """Description and source of each published splitting method, by name: integrators for all that takes one of :data:`INTEGRATORS`."""
+
+RUNGE_KUTTA_METHODS: Mapping[str, str] = MappingProxyType(
+    {name: f"{about}; {source}" for name, about, source in _native._runge_kutta_methods()}
+)
+"""Description and source of each published Runge–Kutta method, by name: integrators for all that takes one of :data:`INTEGRATORS`."""
 
 SYSTEMS: Mapping[str, str] = MappingProxyType({entry[0]: entry[1] for entry in _native._systems()})
 """Description of each system, by name."""

@@ -39,6 +39,7 @@ def test_wrong_limits_are_refused(tolerance: float, horizon: float, what: str) -
 
 def test_splitting_methods_are_integrators_of_simulations_and_ensembles() -> None:
     assert len(libration.SPLITTING_METHODS) == 80
+    assert len(libration.RUNGE_KUTTA_METHODS) == 6
     assert "Blanes" in libration.SPLITTING_METHODS["blanes-moan-srkn-11-6"]
     for name in ("blanes-moan-srkn-11-6", "mclachlan-ss17-8"):
         end = libration.simulate("oscillator", integrator=name, dt=0.1, steps=10, q=1.0, v=0.0)

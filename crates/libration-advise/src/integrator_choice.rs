@@ -53,10 +53,15 @@ pub(super) trait StepTrial: Sync {
     fn resolving_step(&self) -> f64;
 }
 
-/// The methods that are tried: those with code of their own, and the most efficient tables where forces depend on positions alone.
+/// Runge–Kutta methods of high orders that are tried.
+const RUNGE_KUTTA: [&str; 2] = ["dormand-prince-8", "dormand-prince-rkn-12"];
+
+/// The methods that are tried: those with code of their own, and the most efficient tables that have their order on such forces.
 pub(super) fn offered_methods(is_positional: bool) -> impl Iterator<Item = Method> {
-    let tables = Method::most_efficient_tables().filter(move |_| is_positional);
-    Method::ALL.into_iter().chain(tables)
+    let runge_kutta = RUNGE_KUTTA.into_iter().filter_map(Method::from_name);
+    let tables = Method::most_efficient_tables().chain(runge_kutta);
+    let suits = move |method: &Method| is_positional || !method.supposes_positional_forces();
+    Method::ALL.into_iter().chain(tables.filter(suits))
 }
 
 /// Counted force evaluations per step. They depend on whether forces depend on positions alone, and on nothing else of a system.

@@ -17,8 +17,8 @@ use super::order_certificate::rounding_of_words;
 pub struct NystromCertificate {
     /// The Euclidean norm of the differences of the coefficients in `Δt`, `Δt²`, …, of positions and velocities.
     pub residuals: Vec<Wide>,
-    /// What the rounding of weights to `f64` may leave of them.
-    rounding: Vec<f64>,
+    /// The largest difference of each power, in units of what the rounding of weights to `f64` may leave of it.
+    excess: Vec<f64>,
 }
 
 impl NystromCertificate {
@@ -35,7 +35,11 @@ impl NystromCertificate {
             let off = Wide::from(tableau.time) - Wide::one();
             *sum = off * off;
         }
+        let of_sizes = tableau.of_sizes();
+        let b_sizes = [of_sizes.b, of_sizes.b_position];
+        let mut excess = vec![0.0_f64; degree];
         let mut weights: Vec<Vec<Wide>> = Vec::with_capacity(trees.len());
+        let mut sizes: Vec<Vec<f64>> = Vec::with_capacity(trees.len());
         for tree in &trees {
             // The position that a child's force has moved, at each evaluation.
             let moved = |child: usize| -> Vec<Wide> {
@@ -52,28 +56,40 @@ impl NystromCertificate {
             let exact = tree.density * (order * (order + Wide::one())).recip();
             let position = dot(&b_position, &weight) - exact;
             let share = tree.symmetry.recip();
-            for (power, residual) in [(tree.order, velocity), (tree.order + 1, position)] {
+            let size = |i: usize| {
+                let leaves = of_sizes.c[i].powi(tree.leaves as i32);
+                let moved =
+                    tree.children.iter().map(|&child| dot_of_sizes(&of_sizes.a[i], &sizes[child]));
+                leaves * moved.product::<f64>()
+            };
+            let size: Vec<f64> = (0..c.len()).map(size).collect();
+            for ((i, residual), b) in [velocity, position].into_iter().enumerate().zip(&b_sizes) {
+                let power = tree.order + i;
                 if let Some(sum) = squares.get_mut(power - 1) {
                     *sum = *sum + residual * residual * share * share;
+                    // Each of as many coefficients as the power is rounded once.
+                    let rounding = power as f64 * f64::EPSILON * dot_of_sizes(b, &size);
+                    excess[power - 1] = excess[power - 1].max(residual.to_f64().abs() / rounding);
                 }
             }
             weights.push(weight);
+            sizes.push(size);
         }
-        let residuals = squares.into_iter().map(Wide::sqrt).collect();
-        // Of a word these coefficients are sums of those of its words, without their factorial.
-        let path = path_of(&tableau);
-        let (mut rounding, mut factorial) = (Vec::with_capacity(degree), 1.0);
-        for power in 1..=degree {
-            factorial *= power as f64;
-            rounding.push(rounding_of_words(power, path) / factorial);
+        let residuals: Vec<Wide> = squares.into_iter().map(Wide::sqrt).collect();
+        if tableau.word().is_some() {
+            // Of a word these coefficients are sums of those of its words, without their factorial; its weights are rounded, not its tableau.
+            let (path, mut factorial) = (path_of(&tableau), 1.0);
+            for (i, (excess, residual)) in excess.iter_mut().zip(&residuals).enumerate() {
+                factorial *= (i + 1) as f64;
+                *excess = residual.to_f64() / (rounding_of_words(i + 1, path) / factorial);
+            }
         }
-        Some(NystromCertificate { residuals, rounding })
+        Some(NystromCertificate { residuals, excess })
     }
 
-    /// The order: the number of leading powers without a residual, up to the rounding of weights.
+    /// The order: the number of leading powers whose residuals are rounding.
     pub fn order(&self) -> usize {
-        let pairs = self.residuals.iter().zip(&self.rounding);
-        pairs.take_while(|(residual, rounding)| residual.to_f64() <= **rounding).count()
+        self.excess.iter().take_while(|excess| **excess <= 1.0).count()
     }
 
     /// The norm of the leading error: the residual behind those of the [order](NystromCertificate::order); none if it was not computed.
@@ -156,9 +172,16 @@ fn children(
     }
 }
 
+fn dot_of_sizes(a: &[f64], b: &[f64]) -> f64 {
+    // A sum of nothing is −0.
+    a.iter().zip(b).fold(0.0, |sum, (a, b)| sum + a * b)
+}
+
 #[cfg(test)]
 mod tests {
     use libration_core::Method;
+    use libration_core::integrator::RungeKuttaCoefficients::{General, Nystrom};
+    use libration_core::integrator::RungeKuttaTable;
 
     use super::*;
 
@@ -187,5 +210,52 @@ mod tests {
         // On an oscillator the only tall tree of order five is q⁗: 1/120 is missing from the velocities.
         let certificate = NystromCertificate::new(Method::Rk4, 5).unwrap();
         assert!(certificate.error_constant().unwrap() > 1.0 / 120.0);
+    }
+
+    fn runge_kutta() -> impl Iterator<Item = &'static RungeKuttaTable> {
+        RungeKuttaTable::ALL.into_iter().flatten()
+    }
+
+    #[test]
+    fn every_published_runge_kutta_method_has_the_order_and_the_summary_of_its_table() {
+        for table in runge_kutta() {
+            let order = table.order as usize;
+            let own = NystromCertificate::new(table, order + 1).expect(table.name);
+            assert_eq!(own.order(), order, "{}: {:?}", table.name, own.residuals);
+            let scope = match table.coefficients {
+                General { .. } => "",
+                Nystrom { .. } => "; forces of positions",
+            };
+            let stages = table.coefficients.stages();
+            let wanted = format!("order {order}; not symplectic; {stages} evaluations{scope}");
+            assert_eq!(table.summary, wanted, "{}", table.name);
+        }
+    }
+
+    #[test]
+    fn a_wrong_digit_in_any_coefficient_of_a_nystrom_method_is_found() {
+        // Far above the rounding of a weight.
+        const WRONG: f64 = 1e-10;
+        for table in runge_kutta() {
+            let Nystrom { c, a, b_position, b } = table.coefficients else { continue };
+            let rows = a.iter().copied().chain([c, b_position, b]);
+            let rows: Vec<Vec<f64>> = rows.map(<[f64]>::to_vec).collect();
+            for row in 0..rows.len() {
+                for column in (0..rows[row].len()).filter(|&column| rows[row][column] != 0.0) {
+                    let mut wrong = rows.clone();
+                    wrong[row][column] += WRONG;
+                    let mut wrong: Vec<&'static [f64]> =
+                        wrong.into_iter().map(|row| &*row.leak()).collect();
+                    let [c, b_position, b] = wrong.split_off(a.len()).try_into().unwrap();
+                    let coefficients = Nystrom { c, a: wrong.leak(), b_position, b };
+                    let RungeKuttaTable { name, title, summary, source, order, .. } = *table;
+                    let changed =
+                        RungeKuttaTable { name, title, summary, source, order, coefficients };
+                    let changed: &'static RungeKuttaTable = Box::leak(Box::new(changed));
+                    let found = NystromCertificate::new(changed, order as usize).unwrap();
+                    assert!(found.order() < order as usize, "{name}: row {row}, column {column}");
+                }
+            }
+        }
     }
 }

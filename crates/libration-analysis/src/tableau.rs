@@ -19,12 +19,22 @@ pub struct Tableau {
     pub c: Vec<Ratio>,
     /// `aᵢⱼ` with `j < i`.
     pub a: Vec<Vec<Ratio>>,
+    /// The weights of forces in the velocity at which a force is evaluated, with `j < i`.
+    pub a_velocity: Vec<Vec<Ratio>>,
     /// `b̄ᵢ`.
     pub b_position: Vec<Ratio>,
     /// `bᵢ`.
     pub b: Vec<Ratio>,
     /// `c`, one up to the rounding of weights.
     pub time: Ratio,
+}
+
+/// A [`Tableau`] of the sizes of coefficients.
+pub(crate) struct SizesOfTableau {
+    pub(crate) c: Vec<f64>,
+    pub(crate) a: Vec<Vec<f64>>,
+    pub(crate) b_position: Vec<f64>,
+    pub(crate) b: Vec<f64>,
 }
 
 /// A factor of a splitting method, in the order of time.
@@ -47,13 +57,13 @@ const FIRST_FORCE: usize = 3;
 
 /// A system whose force is a new symbol at each evaluation.
 struct Symbols {
-    arguments: RefCell<Vec<Symbol>>,
+    arguments: RefCell<Vec<State<Symbol, 1>>>,
 }
 
 impl System<Symbol, 1> for Symbols {
     fn acceleration(&self, state: &State<Symbol, 1>) -> [Symbol; 1] {
         let mut arguments = self.arguments.borrow_mut();
-        arguments.push(state.q[0]);
+        arguments.push(*state);
         [symbol(FIRST_FORCE + arguments.len() - 1)]
     }
 }
@@ -74,12 +84,59 @@ impl Tableau {
         };
         let n = arguments.len();
         (q.is_valid() && v.is_valid()).then(|| Tableau {
-            c: arguments.iter().map(|p| p.coefficient(VELOCITY)).collect(),
-            a: arguments.iter().enumerate().map(|(i, p)| forces(p, i)).collect(),
+            c: arguments.iter().map(|at| at.q[0].coefficient(VELOCITY)).collect(),
+            a: arguments.iter().enumerate().map(|(i, at)| forces(&at.q[0], i)).collect(),
+            a_velocity: arguments.iter().enumerate().map(|(i, at)| forces(&at.v[0], i)).collect(),
             b_position: forces(&q, n),
             b: forces(&v, n),
             time: q.coefficient(VELOCITY),
         })
+    }
+
+    /// The tableau with the sizes of the rounded coefficients that it is made of: for a Runge–Kutta method those of its velocities, else its
+    /// own.
+    pub(crate) fn of_sizes(&self) -> SizesOfTableau {
+        let sizes = |all: &[Ratio]| all.iter().map(|x| x.to_f64().abs()).collect::<Vec<_>>();
+        let rows = |all: &[Vec<Ratio>]| all.iter().map(|row| sizes(row)).collect::<Vec<_>>();
+        let b = sizes(&self.b);
+        if !self.is_runge_kutta() {
+            let (c, a, b_position) = (sizes(&self.c), rows(&self.a), sizes(&self.b_position));
+            return SizesOfTableau { c, a, b_position, b };
+        }
+        let velocities = rows(&self.a_velocity);
+        let moved = |weights: &[f64]| -> Vec<f64> {
+            let mut all = vec![0.0; b.len()];
+            for (weight, row) in weights.iter().zip(&velocities) {
+                all.iter_mut().zip(row).for_each(|(sum, x)| *sum += weight * x);
+            }
+            all
+        };
+        SizesOfTableau {
+            c: velocities.iter().map(|row| row.iter().sum()).collect(),
+            a: velocities.iter().map(|row| moved(row)).collect(),
+            b_position: moved(&b),
+            b,
+        }
+    }
+
+    /// Whether it is a Runge–Kutta method: positions move by the velocities of its stages as velocities move by their forces, up to the
+    /// rounding of both to `f64`.
+    pub fn is_runge_kutta(&self) -> bool {
+        let moves_alike = |weights: &[Ratio], c: Ratio, a: &[Ratio]| {
+            let sum: f64 = weights.iter().map(|w| w.to_f64()).sum();
+            let mut moved = vec![0.0; self.b.len()];
+            for (weight, row) in weights.iter().zip(&self.a_velocity) {
+                let products = row.iter().map(|a| weight.to_f64() * a.to_f64());
+                moved.iter_mut().zip(products).for_each(|(sum, x)| *sum += x);
+            }
+            let size = 1.0 + weights.iter().map(|w| w.to_f64().abs()).sum::<f64>();
+            let near = |x: f64, y: f64| (x - y).abs() <= 64.0 * f64::EPSILON * size * size;
+            let a = |j: usize| a.get(j).map_or(0.0, |a| a.to_f64());
+            near(sum, c.to_f64()) && moved.iter().enumerate().all(|(j, &x)| near(x, a(j)))
+        };
+        let mut stages = self.a_velocity.iter().zip(self.c.iter().zip(&self.a));
+        stages.all(|(weights, (&c, a))| moves_alike(weights, c, a))
+            && moves_alike(&self.b, self.time, &self.b_position)
     }
 
     /// The word of kicks and drifts that the step is, if it is one: where each force acts for `bᵢ`

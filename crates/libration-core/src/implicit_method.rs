@@ -135,7 +135,7 @@ impl AnyMethod {
         explicit.chain(ImplicitMethod::ALL.into_iter().map(AnyMethod::Implicit))
     }
 
-    /// The [published splitting methods](crate::integrator::SplittingTable::ALL).
+    /// The [published methods](Method::tables) whose coefficients are tables.
     pub fn tables() -> impl Iterator<Item = AnyMethod> {
         Method::tables().map(AnyMethod::Explicit)
     }
@@ -164,10 +164,11 @@ impl AnyMethod {
         }
     }
 
-    /// Authors, year and place of the coefficients of a published splitting method; none for others.
+    /// Authors, year and place of the coefficients of a table; none for others.
     pub const fn source(self) -> Option<&'static str> {
         match self {
             AnyMethod::Explicit(Method::Splitting(table)) => Some(table.source),
+            AnyMethod::Explicit(Method::RungeKutta(table)) => Some(table.source),
             AnyMethod::Explicit(_) | AnyMethod::Implicit(_) => None,
         }
     }

@@ -1,6 +1,6 @@
 //! The integrators as a value, for callers that choose one at run time.
 
-use crate::integrator::SplittingTable;
+use crate::integrator::{RungeKuttaCoefficients, RungeKuttaTable, SplittingTable};
 
 /// Every built-in integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -25,6 +25,8 @@ pub enum Method {
     Suzuki4,
     /// One of the [published splitting methods](SplittingTable::ALL).
     Splitting(&'static SplittingTable),
+    /// One of the [published Runge–Kutta methods](RungeKuttaTable::ALL).
+    RungeKutta(&'static RungeKuttaTable),
 }
 
 /// Names `$m` the integrator behind a [`Method`] and evaluates `$body` once for its type.
@@ -72,7 +74,11 @@ macro_rules! with_method {
                 $body
             }
             Method::Splitting(table) => {
-                let $m = table;
+                let $m = integrator::MethodTable::Splitting(table);
+                $body
+            }
+            Method::RungeKutta(table) => {
+                let $m = integrator::MethodTable::RungeKutta(table);
                 $body
             }
         }
@@ -106,6 +112,7 @@ impl Method {
             Method::Yoshida4 => "yoshida4",
             Method::Suzuki4 => "suzuki4",
             Method::Splitting(table) => table.name,
+            Method::RungeKutta(table) => table.name,
         }
     }
 
@@ -122,6 +129,7 @@ impl Method {
             Method::Yoshida4 => "Yoshida 4",
             Method::Suzuki4 => "Suzuki 4",
             Method::Splitting(table) => table.title,
+            Method::RungeKutta(table) => table.title,
         }
     }
 
@@ -140,6 +148,7 @@ impl Method {
             Method::Yoshida4 => "order 4; symplectic, time-reversible; three Verlet substeps",
             Method::Suzuki4 => "order 4; symplectic, time-reversible; five Verlet substeps",
             Method::Splitting(table) => table.summary,
+            Method::RungeKutta(table) => table.summary,
         }
     }
 
@@ -152,12 +161,14 @@ impl Method {
             Method::VelocityVerlet | Method::TextbookVerlet | Method::Leapfrog => 2,
             Method::Rk4 | Method::Yoshida4 | Method::Suzuki4 => 4,
             Method::Splitting(table) => table.order,
+            Method::RungeKutta(table) => table.order,
         }
     }
 
-    /// The published splitting methods.
+    /// The published methods whose coefficients are tables: splitting methods, then Runge–Kutta methods.
     pub fn tables() -> impl Iterator<Item = Method> {
-        SplittingTable::ALL.into_iter().flatten().map(Method::Splitting)
+        let splitting = SplittingTable::ALL.into_iter().flatten().map(Method::Splitting);
+        splitting.chain(RungeKuttaTable::ALL.into_iter().flatten().map(Method::RungeKutta))
     }
 
     /// The [most efficient](SplittingTable::most_efficient) published splitting methods.
@@ -165,7 +176,31 @@ impl Method {
         SplittingTable::most_efficient().map(Method::Splitting)
     }
 
-    /// All of them: those with code of their own, then the published splitting methods.
+    /// Whether it is a table whose order supposes that forces depend on positions alone.
+    pub const fn supposes_positional_forces(self) -> bool {
+        match self {
+            Method::Splitting(_) => true,
+            Method::RungeKutta(table) => {
+                matches!(table.coefficients, RungeKuttaCoefficients::Nystrom { .. })
+            }
+            _ => false,
+        }
+    }
+
+    /// The order of a table where forces depend on positions alone, or anywhere: a fact about its coefficients. None for other methods, and
+    /// for tables that suppose other forces.
+    pub const fn certified_order(self, is_positional: bool) -> Option<u32> {
+        match self {
+            Method::Splitting(_) | Method::RungeKutta(_)
+                if is_positional || !self.supposes_positional_forces() =>
+            {
+                Some(self.order())
+            }
+            _ => None,
+        }
+    }
+
+    /// All of them: those with code of their own, then the tables.
     pub fn all() -> impl Iterator<Item = Method> {
         Method::ALL.into_iter().chain(Method::tables())
     }

@@ -1,7 +1,7 @@
 //! Systems, integrators and studies for Python.
 
 use libration::catalog::ENTRIES;
-use libration::integrator::SplittingTable;
+use libration::integrator::{RungeKuttaTable, SplittingTable};
 use libration::{ImplicitMethod, Method};
 use libration_analyze::Stepping;
 use libration_lab::STUDIES;
@@ -39,6 +39,13 @@ pub(crate) fn _integrators() -> Vec<(&'static str, &'static str)> {
 #[pyfunction]
 pub(crate) fn _splitting_methods() -> Vec<(&'static str, &'static str, &'static str)> {
     let tables = SplittingTable::ALL.into_iter().flatten();
+    tables.map(|table| (table.name, table.summary, table.source)).collect()
+}
+
+/// Returns all published Runge–Kutta methods: name, description, source.
+#[pyfunction]
+pub(crate) fn _runge_kutta_methods() -> Vec<(&'static str, &'static str, &'static str)> {
+    let tables = RungeKuttaTable::ALL.into_iter().flatten();
     tables.map(|table| (table.name, table.summary, table.source)).collect()
 }
 

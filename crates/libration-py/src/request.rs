@@ -73,7 +73,7 @@ fn unknown_integrator(name: &str, with_exact: bool) -> PyErr {
     let short = short.chain(with_exact.then_some(Stepping::EXACT)).map(|name| format!("`{name}`"));
     let short = short.collect::<Vec<_>>().join(", ");
     value_error(format!(
-        "unknown integrator `{name}`: {near}the integrators are {short} and libration.SPLITTING_METHODS"
+        "unknown integrator `{name}`: {near}the integrators are {short}, and those of libration.SPLITTING_METHODS and libration.RUNGE_KUTTA_METHODS"
     ))
 }
 
@@ -84,7 +84,7 @@ pub(crate) fn method(name: &str) -> PyResult<Method> {
         AnyMethod::Implicit(_) => {
             let known = Method::ALL.map(Method::name).join(", ");
             Err(value_error(format!(
-                "integrator is `{name}`, but implicit ones are those of simulate and analyze only; expected one of {known}, or a name of libration.SPLITTING_METHODS"
+                "integrator is `{name}`, but implicit ones are those of simulate and analyze only; expected one of {known}, or a name of libration.SPLITTING_METHODS or libration.RUNGE_KUTTA_METHODS"
             )))
         }
     }

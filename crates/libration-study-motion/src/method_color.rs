@@ -15,6 +15,6 @@ pub(crate) fn method_color(method: Method) -> Role {
         Method::Rk4 => Role::Rk4,
         Method::Yoshida4 => Role::Yoshida4,
         Method::Suzuki4 => Role::Accent(2),
-        Method::Splitting(_) => Role::Accent(3),
+        Method::Splitting(_) | Method::RungeKutta(_) => Role::Accent(3),
     }
 }

@@ -92,10 +92,8 @@ pub fn compare(
     error::check(request)?;
     let is_positional = request.dynamics.is_positional();
     let motion = work.part("reference", || Motion::new(request))?;
-    let methods: Vec<Method> = match is_positional {
-        true => Method::all().collect(),
-        false => Method::ALL.to_vec(),
-    };
+    let is_compared = |method: &Method| is_positional || !method.supposes_positional_forces();
+    let methods: Vec<Method> = Method::all().filter(is_compared).collect();
     let search = Search::new(work, &motion, is_positional)?;
     let mut integrators = work.sweep("integrators", &methods, |&method| search.of(work, method))?;
     Yardsticks::new(&integrators).predict(&mut integrators);

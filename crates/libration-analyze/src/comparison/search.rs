@@ -37,7 +37,7 @@ impl<'m> Search<'m> {
     ) -> Result<Self, Interrupted> {
         let mut search = Search { motion, is_positional, most: MOST_EVALUATIONS };
         let known = FIRST.iter().filter_map(|name| Method::from_name(name));
-        for method in known.filter(|method| is_positional || Method::ALL.contains(method)) {
+        for method in known.filter(|method| is_positional || !method.supposes_positional_forces()) {
             if let Some(evaluations) = search.of(work, method)?.evaluations {
                 search.most = search.most.min(MOST_OF_BEST * evaluations);
             }
@@ -53,7 +53,11 @@ impl<'m> Search<'m> {
     ) -> Result<ComparedIntegrator, Interrupted> {
         let step = self.motion.step_of(method);
         let stages = if self.is_positional { stages(method) } else { step.evaluations() };
-        let order = if self.is_positional { method.order() } else { self.motion.order(&step) };
+        let certified = method.certified_order(false);
+        let order = match certified.or(self.is_positional.then(|| method.order())) {
+            Some(order) => order,
+            None => self.motion.order(&step),
+        };
         let certificate = match self.is_positional {
             true => NystromCertificate::new(method, order as usize + 1),
             false => None,

@@ -19,8 +19,10 @@ pub struct EquationMotion {
     pub dt: f64,
     /// The order of the integrator if forces depend on positions alone.
     pub classical_order: u32,
-    /// The order on this system, by 1024-bit arithmetic; none if a step is exact or a derivative does not exist.
+    /// The order on this system; none if a step is exact or a derivative does not exist.
     pub order: Option<u32>,
+    /// Whether the order is that of the certificate of a table. Others are those of a step of this system in 1024-bit arithmetic.
+    pub order_is_certified: bool,
     /// The operations of a step.
     pub operations_per_step: usize,
     /// The largest size of an eigenvalue of the derivative of a step at the equilibrium; none without one.
@@ -104,7 +106,13 @@ impl EquationMotion {
         let steps = steps.min(most);
         let error_steps = steps.min(ERROR_STEPS);
         let places: Vec<usize> = system.states.iter().map(|state| state.place).collect();
-        let order = step_order(&step, &system.start(), &places, dt);
+        let certified_order = match method {
+            AnyMethod::Explicit(method) => {
+                method.certified_order(system.equations.dynamics().is_positional())
+            }
+            AnyMethod::Implicit(_) => None,
+        };
+        let order = certified_order.or_else(|| step_order(&step, &system.start(), &places, dt));
         let predicted_reduction = order.map(|order| 2_f64.powi(order as i32));
         let runs = [0, 1, 2].map(|halvings| Run {
             system,
@@ -145,6 +153,7 @@ impl EquationMotion {
             dt,
             classical_order: method.order(),
             order,
+            order_is_certified: certified_order.is_some(),
             operations_per_step: operations,
             spectral_radius: equilibrium.and_then(|at| spectral_radius(&step, system, at, dt)),
             error_steps,

@@ -58,6 +58,7 @@ fn describe(analysis: &EquationAnalysis) -> String {
 fn describe_motion(motion: &EquationMotion, is_smooth: bool, text: &mut String) {
     let classical = motion.classical_order;
     let order = match motion.order {
+        Some(order) if motion.order_is_certified => format!("{order}, by its certificate"),
         Some(order) if order == classical => format!("{order}, derived with 1024 bits"),
         Some(order) if order < classical => format!(
             "{order}, derived with 1024 bits; {classical} where forces depend on positions alone"

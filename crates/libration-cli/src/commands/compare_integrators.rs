@@ -115,7 +115,7 @@ fn describe(comparison: &Comparison) -> String {
         text += "The forces have kinks or jumps: what acts for less than the horizon over 2048 may be missed.\n";
     }
     if !is_positional {
-        text += "Splitting methods by tables are left out: a force of this system depends on a velocity.\n";
+        text += "Splitting and Nyström methods by tables are left out: a force of this system depends on a velocity.\n";
     }
     let _ = writeln!(
         text,

@@ -102,7 +102,7 @@ fn as_text() -> String {
     let systems: String = ENTRIES.iter().map(|entry| system_text(entry)).collect();
     let (studies, integrators, tables) = (lines(&studies), lines(&integrators), lines(&tables));
     format!(
-        "Studies\n{studies}\nSystems\n{systems}\nIntegrators\n{integrators}\nPublished splitting methods (sources with --json)\n{tables}"
+        "Studies\n{studies}\nSystems\n{systems}\nIntegrators\n{integrators}\nPublished methods (sources with --json)\n{tables}"
     )
 }
 

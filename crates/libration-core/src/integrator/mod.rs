@@ -10,7 +10,10 @@ mod euler;
 mod exact;
 mod implicit;
 mod leapfrog;
+mod method_table;
 mod runge_kutta;
+mod runge_kutta_table;
+mod runge_kutta_tables;
 mod splitting;
 mod splitting_table;
 mod splitting_tables;
@@ -28,7 +31,9 @@ pub use implicit::{
     NEWTON_STEPS, StablePd, Trapezoid,
 };
 pub use leapfrog::Leapfrog;
+pub use method_table::MethodTable;
 pub use runge_kutta::Rk4;
+pub use runge_kutta_table::{RungeKuttaCoefficients, RungeKuttaTable};
 pub use splitting::Splitting;
 pub use splitting_table::{SplittingCoefficients, SplittingScope, SplittingTable};
 pub use substeps::Substeps;

@@ -1,10 +1,7 @@
 //! Published splitting methods: their coefficients as data.
 
-use core::cmp::Ordering;
-use core::fmt;
-use core::hash::{Hash, Hasher};
-
 use super::Integrator;
+use super::method_table::compared_by_name;
 use crate::{Scalar, State, System};
 
 /// A published splitting method: a word of kicks and drifts, with its source.
@@ -179,35 +176,4 @@ fn leapfrogs<S: Scalar, const D: usize>(
     state.drift((dt * S::from_f64(before)).ratio(1, 2))
 }
 
-impl fmt::Debug for SplittingTable {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name)
-    }
-}
-
-/// Names are unique.
-impl PartialEq for SplittingTable {
-    fn eq(&self, other: &Self) -> bool {
-        self.name == other.name
-    }
-}
-
-impl Eq for SplittingTable {}
-
-impl Hash for SplittingTable {
-    fn hash<H: Hasher>(&self, state: &mut H) {
-        self.name.hash(state);
-    }
-}
-
-impl PartialOrd for SplittingTable {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for SplittingTable {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.order.cmp(&other.order).then(self.name.cmp(other.name))
-    }
-}
+compared_by_name!(SplittingTable);

@@ -7,7 +7,7 @@ use libration_study::{Settings, schema};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
-/// The most force evaluations of a step of a splitting method: the exact polynomials of longer ones take minutes.
+/// The most force evaluations of a step of a published method: the exact polynomials of longer ones take minutes.
 const MOST_EVALUATIONS: usize = 14;
 
 /// Settings of the study `efficiency`.
@@ -17,8 +17,8 @@ pub struct EfficiencySettings {
     pub tolerances: Vec<f64>,
     /// Horizons in periods of the oscillator, ascending.
     pub periods: Vec<u64>,
-    /// Published splitting methods that are studied besides the integrators.
-    pub splitting_methods: Vec<Method>,
+    /// Published methods that are studied besides the integrators.
+    pub published_methods: Vec<Method>,
 }
 
 impl Default for EfficiencySettings {
@@ -26,17 +26,17 @@ impl Default for EfficiencySettings {
         EfficiencySettings {
             tolerances: vec![1e-6, 1e-4, 1e-2],
             periods: vec![10, 1_000, 1_000_000],
-            splitting_methods: offered()
-                .filter(|method| DEFAULT_SPLITTING_METHODS.contains(&method.name()))
+            published_methods: offered()
+                .filter(|method| DEFAULT_PUBLISHED_METHODS.contains(&method.name()))
                 .collect(),
         }
     }
 }
 
 /// Those of the orders 4 and 6 with the smallest and the second smallest error per evaluation.
-const DEFAULT_SPLITTING_METHODS: [&str; 2] = ["blanes-moan-srkn-6-4", "blanes-moan-srkn-11-6"];
+const DEFAULT_PUBLISHED_METHODS: [&str; 2] = ["blanes-moan-srkn-6-4", "blanes-moan-srkn-11-6"];
 
-/// The splitting methods that can be studied.
+/// The published methods that can be studied.
 fn offered() -> impl Iterator<Item = Method> {
     Method::tables().filter(|method| method.evaluations() <= MOST_EVALUATIONS)
 }
@@ -51,12 +51,12 @@ pub struct Table {
     /// Horizons in periods of the oscillator, each once.
     #[schemars(schema_with = "schema::horizons")]
     periods: Vec<Count>,
-    /// Published splitting methods that are studied besides the integrators, each once.
-    #[schemars(schema_with = "splitting_methods")]
-    splitting_methods: Vec<String>,
+    /// Published methods that are studied besides the integrators, each once.
+    #[schemars(schema_with = "published_methods")]
+    published_methods: Vec<String>,
 }
 
-fn splitting_methods(_: &mut SchemaGenerator) -> Schema {
+fn published_methods(_: &mut SchemaGenerator) -> Schema {
     let names: Vec<&str> = offered().map(Method::name).collect();
     json_schema!({ "type": "array", "uniqueItems": true, "items": schema::one_of(&names) })
 }
@@ -76,7 +76,7 @@ impl Settings for EfficiencySettings {
         Table {
             tolerances: self.tolerances.iter().copied().map(Number).collect(),
             periods: self.periods.iter().map(|&n| Count(n.into())).collect(),
-            splitting_methods: self.splitting_methods.iter().map(|m| m.name().into()).collect(),
+            published_methods: self.published_methods.iter().map(|m| m.name().into()).collect(),
         }
     }
 
@@ -84,10 +84,10 @@ impl Settings for EfficiencySettings {
         Ok(EfficiencySettings {
             tolerances: numbers(table.tolerances),
             periods: parse_counts("efficiency.periods", table.periods)?,
-            splitting_methods: parse_names(
-                "efficiency.splitting_methods",
-                ("splitting method", "splitting methods"),
-                &table.splitting_methods,
+            published_methods: parse_names(
+                "efficiency.published_methods",
+                ("published method", "published methods"),
+                &table.published_methods,
                 &offered().map(Method::name).collect::<Vec<_>>(),
                 |name| offered().find(|method| method.name() == name),
             )?,
@@ -97,10 +97,10 @@ impl Settings for EfficiencySettings {
     fn check(&self) -> Result<(), Fault> {
         check_list("efficiency.tolerances", "tolerance", limits::TOLERANCE, &self.tolerances)?;
         check_counts("efficiency.periods", &self.periods)?;
-        for (i, method) in self.splitting_methods.iter().enumerate() {
-            if self.splitting_methods[..i].contains(method) {
-                let message = format!("the splitting method `{}` is named twice", method.name());
-                return Err(Fault::at("efficiency.splitting_methods", i, message));
+        for (i, method) in self.published_methods.iter().enumerate() {
+            if self.published_methods[..i].contains(method) {
+                let message = format!("the published method `{}` is named twice", method.name());
+                return Err(Fault::at("efficiency.published_methods", i, message));
             }
         }
         Ok(())
