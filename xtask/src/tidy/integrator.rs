@@ -37,6 +37,7 @@ pub(super) fn check(sources: &[Source]) -> Vec<Finding> {
 fn implementations(code: &str) -> impl Iterator<Item = (usize, &str)> {
     words(code, "Integrator").filter_map(|at| {
         let target = code[at + "Integrator".len()..].trim_start().strip_prefix("for ")?;
+        let target = target.strip_prefix("&'static ").unwrap_or(target);
         let path = target.split(['<', '{', ' ', '\n']).next()?;
         Some((line_of(code, at), path.rsplit("::").next()?))
     })

@@ -1,4 +1,4 @@
-//! Tests of published splitting methods and of `libration analyze --compare`.
+//! Tests of published methods and of `libration analyze --compare`.
 
 use assert_cmd::Command;
 use predicates::prelude::*;
@@ -12,7 +12,7 @@ fn libration(words: &str) -> assert_cmd::assert::Assert {
 #[test]
 fn the_cheapest_integrator_of_a_motion_comes_first() {
     let words = "analyze --system kepler --compare --tolerance 1e-5 --horizon 20";
-    libration(words).success().stdout(contains("the cheapest of 89 integrators"));
+    libration(words).success().stdout(contains("the cheapest of 95 integrators"));
     let output = libration(&format!("{words} --json")).success().get_output().stdout.clone();
     let found: Value = serde_json::from_slice(&output).unwrap();
     assert_eq!(found["schema"], "libration.integrator-comparison/1");
@@ -50,7 +50,7 @@ fn published_methods_are_listed_with_sources_and_run() {
     let all: Value = serde_json::from_slice(&output).unwrap();
     let sources =
         all["integrators"].as_array().unwrap().iter().filter(|one| one["source"].is_string());
-    assert_eq!(sources.count(), 80);
+    assert_eq!(sources.count(), 86);
     let step = "--system oscillator --integrator blanes-moan-srkn-11-6 --dt 0.1";
     libration(&format!("analyze {step}"))
         .success()
@@ -61,4 +61,22 @@ fn published_methods_are_listed_with_sources_and_run() {
         .failure()
         .code(2)
         .stderr(contains("did you mean `blanes-moan-srkn-").and(contains("kahan-li").not()));
+}
+
+#[test]
+fn a_table_has_the_order_of_its_certificate_where_it_applies_and_a_derived_one_elsewhere() {
+    for (system, table, order) in [
+        ("chain", "mclachlan-ss17-8", 8),
+        ("chain", "dormand-prince-rkn-12", 12),
+        ("dc_motor", "dormand-prince-8", 8),
+        ("dc_motor", "dormand-prince-rkn-12", 1),
+    ] {
+        let file = format!("../../examples/systems/{system}.toml");
+        let words =
+            ["analyze", "--system", &file, "--integrator", table, "--dt", "0.001", "--json"];
+        let done = super::advise::libration(&words).success();
+        let found: serde_json::Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
+        assert_eq!(found["motion"]["order"], order, "{table} on {system}");
+        assert_eq!(found["motion"]["order_is_certified"], order > 1, "{table} on {system}");
+    }
 }

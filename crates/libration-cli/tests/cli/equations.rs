@@ -183,17 +183,6 @@ fn an_analysis_of_equations_derives_the_order_and_measures_it() {
         let reduction = error["reduction"].as_f64().unwrap();
         assert!((reduction / 16.0 - 1.0).abs() < 1e-3, "{error}");
     }
-    // Tables have the order of their certificates, here and around velocities.
-    for (system, table, order) in [
-        ("chain.toml", "mclachlan-ss17-8", 8),
-        ("chain.toml", "dormand-prince-rkn-12", 12),
-        ("dc_motor.toml", "dormand-prince-8", 8),
-        ("dc_motor.toml", "dormand-prince-rkn-12", 1),
-    ] {
-        let motion = &analysis(system, table, "0.001")["motion"];
-        assert_eq!(motion["order"], order, "{table} on {system}");
-        assert_eq!(motion["order_is_certified"], order > 1, "{table} on {system}");
-    }
     // A current and friction: integrators that kick and drift fall to order one.
     let motor = analysis("dc_motor.toml", "velocity-verlet", "0.001");
     assert_eq!(motor["motion"]["order"], 1);

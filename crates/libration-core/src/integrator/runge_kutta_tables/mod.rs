@@ -11,8 +11,10 @@ use super::RungeKuttaTable;
 
 mod general;
 mod nystrom;
+mod nystrom_12;
 
 impl RungeKuttaTable {
     /// All of them by kind, then by rising order.
-    pub const ALL: [&'static [RungeKuttaTable]; 2] = [general::TABLES, nystrom::TABLES];
+    pub const ALL: [&'static [RungeKuttaTable]; 3] =
+        [general::TABLES, nystrom::TABLES, nystrom_12::TABLES];
 }
