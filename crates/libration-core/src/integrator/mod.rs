@@ -18,6 +18,7 @@ mod splitting;
 mod splitting_table;
 mod splitting_tables;
 mod substeps;
+mod table_comparison;
 mod textbook_verlet;
 mod velocity_verlet;
 

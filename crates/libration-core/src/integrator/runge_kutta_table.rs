@@ -1,7 +1,7 @@
 //! Published Runge–Kutta methods: their coefficients as data.
 
 use super::Integrator;
-use super::method_table::compared_by_name;
+use super::table_comparison::compared_by_name;
 use crate::array::each;
 use crate::{Scalar, State, System};
 

@@ -1,7 +1,7 @@
 //! Published splitting methods: their coefficients as data.
 
 use super::Integrator;
-use super::method_table::compared_by_name;
+use super::table_comparison::compared_by_name;
 use crate::{Scalar, State, System};
 
 /// A published splitting method: a word of kicks and drifts, with its source.
