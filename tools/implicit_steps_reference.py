@@ -38,6 +38,20 @@ def velocity_step(explicit):
         return np.concatenate([q + h * v, v])
     return step
 
+def gauss_legendre(stages):
+    """Collocation at the roots of the Legendre polynomial, from NumPy; weights are integrals of Lagrange polynomials."""
+    nodes = (np.polynomial.legendre.leggauss(stages)[0] + 1) / 2
+    powers = np.vander(nodes, stages, increasing=True)
+    exponents = np.arange(1, stages + 1)
+    A = (nodes[:, None] ** exponents / exponents) @ np.linalg.inv(powers)
+    b = (1 / exponents) @ np.linalg.inv(powers)
+    def step(y, h):
+        def equation(k):
+            K = k.reshape(stages, -1)
+            return (np.array([rate(y + h * row @ K) for row in A]) - K).ravel()
+        return y + h * b @ solved(equation, np.tile(rate(y), stages)).reshape(stages, -1)
+    return step
+
 one = np.eye(2)
 STEPS = {
     "DampingImplicit": velocity_step(lambda Aq, Av, a, v, h: (one - h * Av, a)),
@@ -47,6 +61,8 @@ STEPS = {
     "BackwardEuler": lambda y, h: solved(lambda z: z - y - h * rate(z), y + h * rate(y)),
     "ImplicitMidpoint": lambda y, h: solved(lambda z: z - y - h * rate((y + z) / 2), y + h * rate(y)),
     "Trapezoid": lambda y, h: solved(lambda z: z - y - h / 2 * (rate(y) + rate(z)), y + h * rate(y)),
+    "GaussLegendre4": gauss_legendre(2),
+    "GaussLegendre6": gauss_legendre(3),
 }
 
 for name, step in STEPS.items():

@@ -57,9 +57,13 @@ def implicit(A):
     one = np.eye(len(A))
     backward = lambda h: np.linalg.solve(one - h * A, one)
     cayley = lambda h: np.linalg.solve(one - h / 2 * A, one + h / 2 * A)
+    def pade(*coefficients):
+        sum_of = lambda h: sum(c * np.linalg.matrix_power(h * A, k) for k, c in enumerate(coefficients))
+        return lambda h: np.linalg.solve(sum_of(-h), sum_of(h))
     return {
         "damping-stiffness-implicit": backward, "backward-euler": backward,
         "implicit-midpoint": cayley, "trapezoid": cayley,
+        "gauss-legendre-4": pade(1, 1 / 2, 1 / 12), "gauss-legendre-6": pade(1, 1 / 2, 1 / 10, 1 / 120),
     }
 
 def implicit_dampers(A):

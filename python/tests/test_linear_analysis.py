@@ -59,7 +59,7 @@ def test_a_loop_of_a_plant_has_the_eigenvalues_of_numpy():
     "asked, error, message",
     [
         ({"dt": 0.0}, ValueError, "`dt` is 0.0"),
-        ({"integrator": "leapfrog"}, ValueError, "integrator leapfrog requires positions and velocities.*explicit-euler, rk4, .*implicit-midpoint, trapezoid, exact"),
+        ({"integrator": "leapfrog"}, ValueError, "integrator leapfrog requires positions and velocities.*explicit-euler, rk4, .*implicit-midpoint, trapezoid, gauss-legendre-4, gauss-legendre-6, exact"),
         ({"integrator": "midpoint"}, ValueError, "unknown integrator `midpoint`"),
         ({"steps": 10}, TypeError, "steps cannot be combined"),
         ({"max_drift": 0.1}, TypeError, "max_drift cannot be combined"),

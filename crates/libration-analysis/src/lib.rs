@@ -4,6 +4,7 @@
 //! time step, or with 1024 bits, and the results follow from its output.
 
 mod complex;
+mod cramers_rule;
 mod data_flow;
 mod drift_forecast;
 mod eigenvalues;

@@ -2,10 +2,10 @@
 
 use libration_core::integrator::ImplicitIntegrator;
 use libration_core::number::{Dual, Poly, RationalFunction};
-use libration_core::system::{DampedOscillator, Differentiated};
+use libration_core::system::{DampedOscillator, Differentiated, ImplicitSystem, StageCoefficients};
 use libration_core::{Scalar, State, System};
 
-use super::{StabilityWindow, UpdateMatrix, stability_window};
+use super::{StabilityWindow, UpdateMatrix, cramers_rule, stability_window};
 
 /// Quotients of polynomials in the unknown `z = ωΔt`. Eight coefficients hold the products of a step that solves the equations of one
 /// degree of freedom twice.
@@ -30,17 +30,8 @@ impl RationalStep {
     pub fn damped(integrator: impl ImplicitIntegrator, omega2: f64, gamma: f64) -> Option<Self> {
         let number = Dual::<UnknownImplicitStep>::from_f64;
         let system = DampedOscillator { omega2: number(omega2), gamma: number(gamma) };
-        RationalStep::of(integrator, &system)
-    }
-
-    /// One step of `integrator` on a linear system, in powers of `Δt`; none if the system is not linear, or the quotients outgrow their
-    /// exact arithmetic.
-    pub fn of(
-        integrator: impl ImplicitIntegrator,
-        system: &impl System<Dual<UnknownImplicitStep>, 1>,
-    ) -> Option<Self> {
+        let system = ExactOscillator(Differentiated(system));
         let dt = UnknownImplicitStep::unknown();
-        let system = Differentiated(Borrowed(system));
         let matrix = UpdateMatrix::from_map(|e| integrator.step(&system, e, dt));
         let matrix = matrix.map(UnknownImplicitStep::in_lowest_terms);
         let valid = matrix.rows().iter().flatten().all(UnknownImplicitStep::is_valid);
@@ -55,7 +46,12 @@ impl RationalStep {
 
     /// `λ₁ · λ₂`, in lowest terms.
     pub fn determinant(&self) -> UnknownImplicitStep {
-        self.matrix.determinant().in_lowest_terms()
+        // Before common factors cancel, it has twice the degree of an entry.
+        let with_room = |x: UnknownImplicitStep| -> RationalFunction<16> {
+            RationalFunction::new(x.numerator().with_room(), x.denominator().with_room())
+        };
+        let found = self.matrix.map(with_room).determinant().in_lowest_terms();
+        RationalFunction::new(found.numerator().with_room(), found.denominator().with_room())
     }
 
     /// Whether the determinant is one for every time step.
@@ -94,12 +90,60 @@ impl RationalStep {
     }
 }
 
-/// A system behind a reference.
-struct Borrowed<'a, T>(&'a T);
+/// The damped oscillator on quotients of polynomials.
+struct ExactOscillator(Differentiated<DampedOscillator<Dual<UnknownImplicitStep>>>);
 
-impl<S: Scalar, const D: usize, T: System<S, D>> System<S, D> for Borrowed<'_, T> {
-    fn acceleration(&self, state: &State<S, D>) -> [S; D] {
+type Quotients = State<UnknownImplicitStep, 1>;
+type Accelerations = [UnknownImplicitStep; 1];
+
+impl System<UnknownImplicitStep, 1> for ExactOscillator {
+    fn acceleration(&self, state: &Quotients) -> Accelerations {
         self.0.acceleration(state)
+    }
+}
+
+impl ImplicitSystem<UnknownImplicitStep, 1> for ExactOscillator {
+    const IS_EXACTLY_LINEAR: bool = true;
+
+    fn acceleration_derivative(&self, at: &Quotients, direction: &Quotients) -> Accelerations {
+        self.0.acceleration_derivative(at, direction)
+    }
+
+    fn solve_damping(
+        &self,
+        at: &Quotients,
+        h: UnknownImplicitStep,
+        right: Accelerations,
+    ) -> Accelerations {
+        self.0.solve_damping(at, h, right)
+    }
+
+    fn solve_damping_and_stiffness(
+        &self,
+        at: &Quotients,
+        h: UnknownImplicitStep,
+        right: Accelerations,
+    ) -> Accelerations {
+        self.0.solve_damping_and_stiffness(at, h, right)
+    }
+
+    fn solve_stage_accelerations<const N: usize>(
+        &self,
+        at: &[Quotients; N],
+        of: StageCoefficients<'_, UnknownImplicitStep, N>,
+        right: [Accelerations; N],
+    ) -> [Accelerations; N] {
+        let [zero, one] = [UnknownImplicitStep::zero(), UnknownImplicitStep::one()];
+        let mut matrix = [[zero; N]; N];
+        for (i, row) in matrix.iter_mut().enumerate() {
+            let derivative = |q, v| self.acceleration_derivative(&at[i], &State { q: [q], v: [v] });
+            let ([by_q], [by_v]) = (derivative(one, zero), derivative(zero, one));
+            for (k, entry) in row.iter_mut().enumerate() {
+                let unit = if i == k { one } else { zero };
+                *entry = unit - (of.of_q[i][k] * by_q + of.of_v[i][k] * by_v);
+            }
+        }
+        cramers_rule::solve(&matrix, &right.map(|[x]| x)).map(|x| [x])
     }
 }
 
@@ -119,16 +163,31 @@ mod tests {
     fn update_matrices_and_determinants_of_the_oscillator_are_those_of_the_textbooks() {
         let cayley =
             ["(1 − z²/4)/(1 + z²/4)", "z/(1 + z²/4)", "−z/(1 + z²/4)", "(1 − z²/4)/(1 + z²/4)"];
+        // The real and the imaginary part of N²/|N|², where N = 1 + iz/2 − z²/12 and 1 + iz/2 − z²/10 − iz³/120.
+        let (real, imaginary) = ("(1 − 5z²/12 + z⁴/144)", "(z − z³/12)");
+        let denominator = "(1 + z²/12 + z⁴/144)";
+        let entries = |real: &str, imaginary: &str, opposite: &str, denominator: &str| {
+            [real, imaginary, opposite, real].map(|numerator| format!("{numerator}/{denominator}"))
+        };
+        let gauss_legendre_4 = entries(real, imaginary, "(−z + z³/12)", denominator);
+        let (real, imaginary) = ("(1 − 9z²/20 + 11z⁴/600 − z⁶/14400)", "(z − 7z³/60 + z⁵/600)");
+        let denominator = "(1 + z²/20 + z⁴/600 + z⁶/14400)";
+        let gauss_legendre_6 = entries(real, imaginary, "(−z + 7z³/60 − z⁵/600)", denominator);
         let backward = ["1/(1 + z²)", "z/(1 + z²)", "−z/(1 + z²)", "1/(1 + z²)"];
+        let owned = |texts: [&str; 4]| texts.map(str::to_owned);
         for method in ImplicitMethod::ALL {
             let (matrix, determinant) = match method {
                 // Without damping it is symplectic Euler.
-                ImplicitMethod::DampingImplicit => (["1 − z²", "z", "−z", "1"], "1"),
-                ImplicitMethod::StablePd => (["1 − z²", "z − z³", "−z", "1 − z²"], "1 − z²"),
+                ImplicitMethod::DampingImplicit => (owned(["1 − z²", "z", "−z", "1"]), "1"),
+                ImplicitMethod::StablePd => (owned(["1 − z²", "z − z³", "−z", "1 − z²"]), "1 − z²"),
                 ImplicitMethod::DampingStiffnessImplicit | ImplicitMethod::BackwardEuler => {
-                    (backward, "1/(1 + z²)")
+                    (owned(backward), "1/(1 + z²)")
                 }
-                ImplicitMethod::ImplicitMidpoint | ImplicitMethod::Trapezoid => (cayley, "1"),
+                ImplicitMethod::ImplicitMidpoint | ImplicitMethod::Trapezoid => {
+                    (owned(cayley), "1")
+                }
+                ImplicitMethod::GaussLegendre4 => (gauss_legendre_4.clone(), "1"),
+                ImplicitMethod::GaussLegendre6 => (gauss_legendre_6.clone(), "1"),
             };
             assert_eq!(shown(method), matrix, "{method:?}");
             let step = RationalStep::new(method).unwrap();

@@ -4,12 +4,12 @@ use core::fmt;
 
 use libration_core::integrator::ImplicitIntegrator;
 use libration_core::number::RationalFunction;
-use libration_core::system::ImplicitSystem;
+use libration_core::system::{ImplicitSystem, StageCoefficients};
 use libration_core::{AnyMethod, Elementary, Integrator, Scalar, State, System};
 use libration_linear::{Matrix, eigenvalues};
 use num_complex::Complex64;
 
-use super::{StepWindow, UnknownImplicitStep, UnknownStep};
+use super::{StepWindow, UnknownImplicitStep, UnknownStep, cramers_rule};
 
 /// The stability function `R(hλ)` of a step that uses nothing but rates: one step of `h` seconds on `ẏ = λy` multiplies `y` by it.
 ///
@@ -49,6 +49,8 @@ impl System<UnknownImplicitStep, 1> for ImplicitTestEquation {
 }
 
 impl ImplicitSystem<UnknownImplicitStep, 1> for ImplicitTestEquation {
+    const IS_EXACTLY_LINEAR: bool = true;
+
     fn acceleration_derivative(&self, _: &Quotients, _: &Quotients) -> [UnknownImplicitStep; 1] {
         [UnknownImplicitStep::UNDEFINED]
     }
@@ -74,6 +76,28 @@ impl ImplicitSystem<UnknownImplicitStep, 1> for ImplicitTestEquation {
     fn solve_rate(&self, _: &Quotients, h: UnknownImplicitStep, right: Quotients) -> Quotients {
         let one = UnknownImplicitStep::one();
         State { q: [right.q[0].quotient(one - h)], v: right.v }
+    }
+
+    fn solve_stage_accelerations<const N: usize>(
+        &self,
+        _: &[Quotients; N],
+        _: StageCoefficients<'_, UnknownImplicitStep, N>,
+        _: [[UnknownImplicitStep; 1]; N],
+    ) -> [[UnknownImplicitStep; 1]; N] {
+        [[UnknownImplicitStep::UNDEFINED]; N]
+    }
+
+    fn solve_stages<const N: usize>(
+        &self,
+        _: &[Quotients; N],
+        h: &[[UnknownImplicitStep; N]; N],
+        mut right: [Quotients; N],
+    ) -> [Quotients; N] {
+        let mut matrix = h.map(|row| row.map(|h| -h));
+        (0..N).for_each(|i| matrix[i][i] = matrix[i][i] + UnknownImplicitStep::one());
+        let solution = cramers_rule::solve(&matrix, &right.map(|stage| stage.q[0]));
+        right.iter_mut().zip(solution).for_each(|(stage, y)| stage.q = [y]);
+        right
     }
 }
 
@@ -238,6 +262,10 @@ mod tests {
                 }
                 ImplicitMethod::ImplicitMidpoint | ImplicitMethod::Trapezoid => {
                     Some("(1 + z/2)/(1 − z/2)")
+                }
+                ImplicitMethod::GaussLegendre4 => Some("(1 + z/2 + z²/12)/(1 − z/2 + z²/12)"),
+                ImplicitMethod::GaussLegendre6 => {
+                    Some("(1 + z/2 + z²/10 + z³/120)/(1 − z/2 + z²/10 − z³/120)")
                 }
                 ImplicitMethod::DampingImplicit | ImplicitMethod::StablePd => None,
             };

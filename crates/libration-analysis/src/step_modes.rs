@@ -227,7 +227,9 @@ mod tests {
                 AnyMethod::Implicit(method) => f64::from(method.order()),
                 _ => 1.0,
             };
-            for (coarse, fine) in errors(0.02).iter().zip(errors(0.01)) {
+            // With shorter steps the errors of order 6 are roundings.
+            let dt = if order == 6.0 { 0.16 } else { 0.02 };
+            for (coarse, fine) in errors(dt).iter().zip(errors(0.5 * dt)) {
                 assert!((coarse / fine).log2() > order - 0.2, "{method:?} {coarse} {fine}");
                 assert!(*coarse < 0.3, "{method:?} {coarse}");
             }

@@ -207,7 +207,9 @@ fn fused(step: &VectorStep) -> Vec<Fused> {
             | VectorOperation::Number(_)
             | VectorOperation::Noise(_)
             | VectorOperation::AccelerationDerivative(_)
-            | VectorOperation::Solution(..) => Fused::None,
+            | VectorOperation::Solution(..)
+            | VectorOperation::StageSolutions(_)
+            | VectorOperation::StageSolution(..) => Fused::None,
         };
         fused.push(next);
     }

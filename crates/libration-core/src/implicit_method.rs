@@ -1,8 +1,8 @@
 //! The implicit integrators as a value, and all integrators as one value.
 
 use crate::integrator::{
-    BackwardEuler, DampingImplicit, DampingStiffnessImplicit, ImplicitIntegrator, ImplicitMidpoint,
-    Integrator, StablePd, Trapezoid,
+    BackwardEuler, DampingImplicit, DampingStiffnessImplicit, GaussLegendre4, GaussLegendre6,
+    ImplicitIntegrator, ImplicitMidpoint, Integrator, StablePd, Trapezoid,
 };
 use crate::system::ImplicitSystem;
 use crate::{Method, Scalar, State};
@@ -24,17 +24,23 @@ pub enum ImplicitMethod {
     ImplicitMidpoint,
     /// [`Trapezoid`].
     Trapezoid,
+    /// [`GaussLegendre4`].
+    GaussLegendre4,
+    /// [`GaussLegendre6`].
+    GaussLegendre6,
 }
 
 impl ImplicitMethod {
     /// All of them, by rising order.
-    pub const ALL: [ImplicitMethod; 6] = [
+    pub const ALL: [ImplicitMethod; 8] = [
         ImplicitMethod::DampingImplicit,
         ImplicitMethod::DampingStiffnessImplicit,
         ImplicitMethod::StablePd,
         ImplicitMethod::BackwardEuler,
         ImplicitMethod::ImplicitMidpoint,
         ImplicitMethod::Trapezoid,
+        ImplicitMethod::GaussLegendre4,
+        ImplicitMethod::GaussLegendre6,
     ];
 
     /// Name on the command line and in configurations.
@@ -46,6 +52,8 @@ impl ImplicitMethod {
             ImplicitMethod::BackwardEuler => "backward-euler",
             ImplicitMethod::ImplicitMidpoint => "implicit-midpoint",
             ImplicitMethod::Trapezoid => "trapezoid",
+            ImplicitMethod::GaussLegendre4 => "gauss-legendre-4",
+            ImplicitMethod::GaussLegendre6 => "gauss-legendre-6",
         }
     }
 
@@ -58,6 +66,8 @@ impl ImplicitMethod {
             ImplicitMethod::BackwardEuler => "backward Euler",
             ImplicitMethod::ImplicitMidpoint => "implicit midpoint",
             ImplicitMethod::Trapezoid => "trapezoid",
+            ImplicitMethod::GaussLegendre4 => "Gauss-Legendre 4",
+            ImplicitMethod::GaussLegendre6 => "Gauss-Legendre 6",
         }
     }
 
@@ -82,6 +92,12 @@ impl ImplicitMethod {
             ImplicitMethod::Trapezoid => {
                 "order 2; implicit-midpoint on linear systems, conjugate to it on others; 5 Newton steps"
             }
+            ImplicitMethod::GaussLegendre4 => {
+                "order 4; 2 coupled stages; symplectic, time-reversible, without a limit of the step; 5 Newton steps"
+            }
+            ImplicitMethod::GaussLegendre6 => {
+                "order 6; 3 coupled stages; symplectic, time-reversible, without a limit of the step; 5 Newton steps"
+            }
         }
     }
 
@@ -89,6 +105,17 @@ impl ImplicitMethod {
     pub const fn order(self) -> u32 {
         match self {
             ImplicitMethod::ImplicitMidpoint | ImplicitMethod::Trapezoid => 2,
+            ImplicitMethod::GaussLegendre4 => 4,
+            ImplicitMethod::GaussLegendre6 => 6,
+            _ => 1,
+        }
+    }
+
+    /// The number of coupled stages whose equations a step solves together.
+    pub const fn coupled_stages(self) -> usize {
+        match self {
+            ImplicitMethod::GaussLegendre4 => 2,
+            ImplicitMethod::GaussLegendre6 => 3,
             _ => 1,
         }
     }
@@ -115,6 +142,8 @@ impl ImplicitIntegrator for ImplicitMethod {
             ImplicitMethod::BackwardEuler => BackwardEuler.step(system, state, dt),
             ImplicitMethod::ImplicitMidpoint => ImplicitMidpoint.step(system, state, dt),
             ImplicitMethod::Trapezoid => Trapezoid.step(system, state, dt),
+            ImplicitMethod::GaussLegendre4 => GaussLegendre4.step(system, state, dt),
+            ImplicitMethod::GaussLegendre6 => GaussLegendre6.step(system, state, dt),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Programs of the derivatives of accelerations, and of linear equations with them.
 
 use std::cell::OnceCell;
+use std::collections::BTreeMap;
 
 use libration_core::Scalar;
 use libration_core::elimination::solve;
@@ -16,6 +17,7 @@ pub(crate) struct DerivativePrograms<'d> {
     dynamics: &'d Dynamics,
     along: OnceCell<Program>,
     solutions: [OnceCell<Program>; 2],
+    of_stages: BTreeMap<usize, Program>,
 }
 
 impl<'d> DerivativePrograms<'d> {
@@ -24,6 +26,7 @@ impl<'d> DerivativePrograms<'d> {
             dynamics,
             along: OnceCell::new(),
             solutions: [OnceCell::new(), OnceCell::new()],
+            of_stages: BTreeMap::new(),
         }
     }
 
@@ -53,6 +56,43 @@ impl<'d> DerivativePrograms<'d> {
                     for (i, &change) in column.iter().enumerate() {
                         let unit = if i == j { Recorded::one() } else { Recorded::zero() };
                         matrix[i * d + j] = unit - change;
+                    }
+                }
+                solve(&mut matrix, &mut right);
+                right
+            })
+        })
+    }
+
+    /// From the positions and velocities of each of `stages` stages, inputs, both sets of coefficients and the right sides to the solutions.
+    pub(crate) fn stage_solutions(&mut self, stages: usize) -> &Program {
+        let dynamics = self.dynamics;
+        self.of_stages.entry(stages).or_insert_with(|| {
+            let (d, n, squares) = (dynamics.degrees(), stages, stages * stages);
+            let moving = 2 * d * n;
+            let count = moving + dynamics.inputs() + 2 * squares + n * d;
+            Program::record(count, |x| {
+                let (states, rest) = x.split_at(moving);
+                let (inputs, rest) = rest.split_at(dynamics.inputs());
+                let (of_q, rest) = rest.split_at(squares);
+                let (of_v, right) = rest.split_at(squares);
+                let mut right = right.to_vec();
+                let mut matrix = vec![Recorded::zero(); right.len() * right.len()];
+                for (i, state) in states.chunks_exact(2 * d).enumerate() {
+                    let state = [state, inputs].concat();
+                    let along = |place: usize| {
+                        let mut direction = vec![Recorded::zero(); 2 * d];
+                        direction[place] = Recorded::one();
+                        derivative(dynamics, &state, &direction)
+                    };
+                    for j in 0..d {
+                        let (by_q, by_v) = (along(j), along(d + j));
+                        for (row, k) in (0..d).flat_map(|row| (0..n).map(move |k| (row, k))) {
+                            let is_unit = i == k && row == j;
+                            let unit = if is_unit { Recorded::one() } else { Recorded::zero() };
+                            let change = of_q[i * n + k] * by_q[row] + of_v[i * n + k] * by_v[row];
+                            matrix[(i * d + row) * n * d + k * d + j] = unit - change;
+                        }
                     }
                 }
                 solve(&mut matrix, &mut right);

@@ -37,7 +37,7 @@ pub use parser_input::MAX_LENGTH;
 pub use program::{Evaluation, Operation, Program, ValueId};
 pub use recording::Recorded;
 pub use step_program::StepProgram;
-pub use step_trace::{Implicit, VectorId, VectorOperation};
+pub use step_trace::{Implicit, StageOperands, VectorId, VectorOperation};
 pub use task::TaskPrograms;
 pub use task_definitions::TaskDefinitions;
 pub use vector_step::{Flow, VectorStep};

@@ -8,7 +8,7 @@ use super::Dynamics;
 use super::derivative_programs::DerivativePrograms;
 use super::program::{Operation, Program, ValueId};
 use super::program_builder::ProgramBuilder;
-use super::step_trace::{VectorId, VectorOperation};
+use super::step_trace::{StageOperands, VectorId, VectorOperation};
 use super::vector_step::VectorStep;
 
 /// One step of an integrator on a system.
@@ -19,9 +19,14 @@ pub struct StepProgram {
 }
 
 impl StepProgram {
-    /// Most degrees of freedom for which an [implicit](StepProgram::implicit) step is a program of moderate size: less than a million
-    /// operations.
-    pub const MOST_IMPLICIT_DEGREES: usize = 32;
+    /// The most degrees of freedom for which a step is a program of moderate size, less than a million operations: 32 for
+    /// [implicit](StepProgram::implicit) steps, divided by the stages whose equations they solve together. Explicit steps have no limit.
+    pub fn most_degrees(method: impl Into<AnyMethod>) -> usize {
+        match method.into() {
+            AnyMethod::Explicit(_) => usize::MAX,
+            AnyMethod::Implicit(method) => 32 / method.coupled_stages(),
+        }
+    }
 
     /// A step of `integrator` on a system, whose inputs are constant during the step: from positions, velocities, inputs and the
     /// time step to positions and velocities.
@@ -72,6 +77,8 @@ impl StepProgram {
         let evaluations = step.operations().iter().map(|operation| match operation {
             VectorOperation::AccelerationsAt(..) | VectorOperation::AccelerationDerivative(_) => 1,
             VectorOperation::Solution(..) => dynamics.degrees(),
+            // Along each position and each velocity of each stage.
+            VectorOperation::StageSolutions(operands) => 2 * dynamics.degrees() * operands.at.len(),
             _ => 0,
         });
         StepProgram { evaluations: evaluations.sum(), program: program(step, shape, dynamics) }
@@ -113,7 +120,7 @@ fn program(
     let dt = builder.input();
     let numbers = builder.inputs(numbers);
     let noises = builder.inputs(noises * degrees);
-    let derivatives = DerivativePrograms::new(dynamics);
+    let mut derivatives = DerivativePrograms::new(dynamics);
     let mut vectors: Vec<Vec<ValueId>> = Vec::with_capacity(step.operations().len());
     for operation in step.operations() {
         let of_two = |builder: &mut ProgramBuilder,
@@ -157,6 +164,21 @@ fn program(
                 let inputs = [q, v, &commands, &h[..1], right];
                 let inputs: Vec<ValueId> = inputs.into_iter().flatten().copied().collect();
                 builder.inline(derivatives.solution(implicit), &inputs)
+            }
+            VectorOperation::StageSolutions(ref operands) => {
+                let StageOperands { at, of_q, of_v, right } = operands;
+                let whole = |ids: &[VectorId]| -> Vec<ValueId> {
+                    ids.iter().flat_map(|&id| &vectors[id]).copied().collect()
+                };
+                let coefficients = of_q.iter().chain(of_v).map(|&id| vectors[id][0]);
+                let mut inputs = whole(at.as_flattened());
+                inputs.extend(&commands);
+                inputs.extend(coefficients);
+                inputs.extend(whole(right));
+                builder.inline(derivatives.stage_solutions(at.len()), &inputs)
+            }
+            VectorOperation::StageSolution(all, i) => {
+                vectors[all][i * degrees..(i + 1) * degrees].to_vec()
             }
         };
         vectors.push(vector);

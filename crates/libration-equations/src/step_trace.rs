@@ -3,7 +3,7 @@
 use core::cell::RefCell;
 use core::ops::{Add, Mul, Neg, Sub};
 
-use libration_core::system::ImplicitSystem;
+use libration_core::system::{ImplicitSystem, StageCoefficients};
 use libration_core::{Scalar, State, System};
 
 /// The operations of a step on whole vectors: positions, velocities and accelerations of a system of any size.
@@ -18,7 +18,7 @@ pub(crate) struct StepTrace {
 pub type VectorId = usize;
 
 /// The origin of a vector.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum VectorOperation {
     /// The positions at the start of the step.
     Positions,
@@ -50,6 +50,23 @@ pub enum VectorOperation {
     AccelerationDerivative([VectorId; 4]),
     /// The solution of linear equations with the derivatives at these positions and velocities, for this time step and right side.
     Solution(Implicit, [VectorId; 4]),
+    /// The solutions of the coupled linear equations of several stages, one after the other.
+    StageSolutions(StageOperands),
+    /// The solution of the stage of this index among them.
+    StageSolution(VectorId, usize),
+}
+
+/// The operands of the coupled linear equations of several stages.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StageOperands {
+    /// Positions and velocities of each stage, where derivatives are taken.
+    pub at: Vec<[VectorId; 2]>,
+    /// The coefficients of the derivatives by positions, stages × stages. Each is the same in all entries.
+    pub of_q: Vec<VectorId>,
+    /// Those of the derivatives by velocities.
+    pub of_v: Vec<VectorId>,
+    /// The right side of each stage.
+    pub right: Vec<VectorId>,
 }
 
 /// The forces that linear equations treat implicitly.
@@ -210,5 +227,23 @@ impl<'t> ImplicitSystem<TracedVector<'t>, 1> for TracedSystem<'t> {
         let solution =
             |operands| VectorOperation::Solution(Implicit::DampingAndStiffness, operands);
         self.record(at, [h, right], solution)
+    }
+
+    fn solve_stage_accelerations<const N: usize>(
+        &self,
+        at: &[State<TracedVector<'t>, 1>; N],
+        of: StageCoefficients<'_, TracedVector<'t>, N>,
+        right: [[TracedVector<'t>; 1]; N],
+    ) -> [[TracedVector<'t>; 1]; N] {
+        let TracedSystem(trace) = self;
+        let id = |&vector: &TracedVector<'t>| trace.id(vector);
+        let operands = StageOperands {
+            at: at.iter().map(|state| [id(&state.q[0]), id(&state.v[0])]).collect(),
+            of_q: of.of_q.iter().flatten().map(id).collect(),
+            of_v: of.of_v.iter().flatten().map(id).collect(),
+            right: right.iter().flatten().map(id).collect(),
+        };
+        let all = trace.id(trace.record(VectorOperation::StageSolutions(operands)));
+        core::array::from_fn(|i| [trace.record(VectorOperation::StageSolution(all, i))])
     }
 }

@@ -100,6 +100,14 @@ fn steps_of_a_nonlinear_system_are_those_of_scipy() {
             ImplicitMethod::Trapezoid,
             [-0.4511575579361625, 1.6863538275282697, -2.1995952381337, -2.6700514488616087],
         ),
+        (
+            ImplicitMethod::GaussLegendre4,
+            [-0.4509177910215971, 1.6823917227320548, -2.2040251646793294, -2.681088163588333],
+        ),
+        (
+            ImplicitMethod::GaussLegendre6,
+            [-0.4509174775589304, 1.6823980182101381, -2.2040305097923305, -2.6810880686549083],
+        ),
     ];
     let pairs = |all: [(&str, &str); 2]| all.map(|(a, b)| (a.to_owned(), b.to_owned())).to_vec();
     let definitions = Definitions {

@@ -3,7 +3,7 @@
 use core::cell::RefCell;
 
 use libration::linear::{MOST_STATES, Matrix, solve_matrix};
-use libration::system::ImplicitSystem;
+use libration::system::{ImplicitSystem, StageCoefficients};
 use libration::{State, System};
 
 use crate::BlackBoxError;
@@ -143,17 +143,33 @@ impl<'p, 'b> NumericalSystem<'p, 'b> {
         right: Vec<f64>,
         entry: impl Fn(&Matrix, usize, usize) -> f64,
     ) -> Vec<f64> {
+        self.solve_coupled(&[*at], right, |of, _, i, j| entry(of, i, j))
+    }
+
+    /// The same for coupled stages, the derivatives of a row taken at its stage. `entry` takes a row's stage and a column's.
+    fn solve_coupled(
+        &self,
+        at: &[Point],
+        right: Vec<f64>,
+        entry: impl Fn(&Matrix, [usize; 2], usize, usize) -> f64,
+    ) -> Vec<f64> {
         let size = right.len();
-        let Some(found) = self.derivatives(at) else { return vec![f64::NAN; size] };
+        let found: Option<Vec<Jacobian>> = at.iter().map(|at| self.derivatives(at)).collect();
+        let Some(found) = found else { return vec![f64::NAN; size] };
+        let block = size / at.len();
+        let entry = |of: fn(&Jacobian) -> &Matrix, i: usize, j: usize| {
+            let stages = [i / block, j / block];
+            entry(of(&found[i / block]), stages, i % block, j % block)
+        };
         let matrix = Matrix::from_fn(size, size, |i, j| {
-            f64::from(u8::from(i == j)) - entry(&found.values, i, j)
+            f64::from(u8::from(i == j)) - entry(|of| &of.values, i, j)
         });
         let column = Matrix::from_fn(size, 1, |i, _| right[i]);
         let Some(solution) = solve_matrix(&matrix, &column) else { return vec![f64::NAN; size] };
         let solution = solution.entries().to_vec();
         // What errors of the derivatives do to the right side.
         let error = |i: usize| {
-            (0..size).map(|j| (entry(&found.errors, i, j) * solution[j]).abs()).sum::<f64>()
+            (0..size).map(|j| (entry(|of| &of.errors, i, j) * solution[j]).abs()).sum::<f64>()
         };
         self.note((0..size).map(error).fold(0.0, f64::max));
         solution
@@ -214,6 +230,39 @@ impl ImplicitSystem<f64, HALF> for NumericalSystem<'_, '_> {
         }
         let x = self.values(&right, self.count());
         self.point(&self.solve(at, x, |of, i, j| h * of[(i, j)]))
+    }
+
+    fn solve_stage_accelerations<const N: usize>(
+        &self,
+        at: &[Point; N],
+        coefficients: StageCoefficients<'_, f64, N>,
+        right: [[f64; HALF]; N],
+    ) -> [[f64; HALF]; N] {
+        let d = self.degrees();
+        let places = self.places(self.count());
+        let v = |i: usize| places[i].1.unwrap_or(0);
+        let right = right.iter().flat_map(|stage| &stage[..d]).copied().collect();
+        let found = self.solve_coupled(at, right, |of, [row, column], i, j| {
+            coefficients.of_q[row][column] * of[(v(i), places[j].0)]
+                + coefficients.of_v[row][column] * of[(v(i), v(j))]
+        });
+        core::array::from_fn(|stage| padded(&found[stage * d..(stage + 1) * d]))
+    }
+
+    fn solve_stages<const N: usize>(
+        &self,
+        at: &[Point; N],
+        h: &[[f64; N]; N],
+        right: [Point; N],
+    ) -> [Point; N] {
+        if self.pairs.is_some() {
+            return libration::system::solve_stage_motion(self, at, h, right);
+        }
+        let n = self.count();
+        let right = right.iter().flat_map(|stage| self.values(stage, n)).collect();
+        let found =
+            self.solve_coupled(at, right, |of, [row, column], i, j| h[row][column] * of[(i, j)]);
+        core::array::from_fn(|stage| self.point(&found[stage * n..(stage + 1) * n]))
     }
 }
 

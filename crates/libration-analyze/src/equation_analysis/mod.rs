@@ -57,8 +57,9 @@ pub fn analyze(
         return Err(SimulationError::TimeStep { dt, float: f64::NAME }.into());
     }
     let (method, degrees) = (method.into(), system.equations.degrees().len());
-    if matches!(method, AnyMethod::Implicit(_)) && degrees > StepProgram::MOST_IMPLICIT_DEGREES {
-        return Err(AnalyzeError::ImplicitDegrees { integrator: method.name(), degrees });
+    let most = StepProgram::most_degrees(method);
+    if degrees > most {
+        return Err(AnalyzeError::ImplicitDegrees { integrator: method.name(), most, degrees });
     }
     let (operating_point, linear, no_modes) = match linearised_equations(system) {
         Ok((plant, point)) => {

@@ -60,8 +60,8 @@ impl EquationRequest {
             return value("steps", self.steps.to_string(), limits::trajectory_steps_allowed());
         }
         let degrees = self.system.equations.degrees().len();
-        let most = StepProgram::MOST_IMPLICIT_DEGREES;
-        if matches!(self.method, AnyMethod::Implicit(_)) && degrees > most {
+        let most = StepProgram::most_degrees(self.method);
+        if degrees > most {
             let given = format!("{} for {degrees} degrees of freedom", self.method.name());
             return value(
                 "integrator",

@@ -2,7 +2,6 @@
 
 use libration::CatalogError;
 use libration::control::Latency;
-use libration::equations::StepProgram;
 use libration::simulation::SimulationError;
 use libration_settings::limits;
 use thiserror::Error;
@@ -52,13 +51,14 @@ pub enum AnalyzeError {
     },
     /// Implicit steps of a system with too many degrees of freedom.
     #[error(
-        "the implicit integrator `{integrator}` (--integrator) has steps for at most {} degrees of freedom, and the system has {degrees}",
-        StepProgram::MOST_IMPLICIT_DEGREES
+        "the implicit integrator `{integrator}` (--integrator) has steps for at most {most} degrees of freedom, and the system has {degrees}"
     )]
     ImplicitDegrees {
         /// The integrator.
         integrator: &'static str,
-        /// Its degrees of freedom.
+        /// The most degrees of freedom of its steps.
+        most: usize,
+        /// Those of the system.
         degrees: usize,
     },
     /// Exact steps of a nonlinear system.
@@ -74,7 +74,7 @@ pub enum AnalyzeError {
         flag: &'static str,
         /// The system.
         system: &'static str,
-        /// Its degrees of freedom.
+        /// Those of the system.
         dimension: usize,
     },
     /// The fastest motion turns by a too large angle per step.

@@ -36,6 +36,15 @@ fn by_hand(method: ImplicitMethod, omega2: f64, h: f64) -> [[f64; 2]; 2] {
             let d = 1.0 - z2 / 4.0;
             over(1.0 + z2 / 4.0, [[d, h], [-omega2 * h, d]])
         }
+        // N²/|N|² at the imaginary z, for the numerator N of the diagonal Padé approximant.
+        ImplicitMethod::GaussLegendre4 | ImplicitMethod::GaussLegendre6 => {
+            let (re, im) = match method {
+                ImplicitMethod::GaussLegendre4 => (1.0 - z2 / 12.0, h / 2.0),
+                _ => (1.0 - z2 / 10.0, h / 2.0 - h * z2 / 120.0),
+            };
+            let (turned, q) = (re * re - omega2 * im * im, 2.0 * re * im);
+            over(re * re + omega2 * im * im, [[turned, q], [-omega2 * q, turned]])
+        }
     }
 }
 
@@ -54,7 +63,9 @@ fn matrices_of_oscillators_and_of_pendulums_at_rest_are_those_derived_by_hand() 
             let excess = match method {
                 ImplicitMethod::DampingImplicit
                 | ImplicitMethod::ImplicitMidpoint
-                | ImplicitMethod::Trapezoid => 0.0,
+                | ImplicitMethod::Trapezoid
+                | ImplicitMethod::GaussLegendre4
+                | ImplicitMethod::GaussLegendre6 => 0.0,
                 ImplicitMethod::StablePd => -omega2 * h * h,
                 _ => (1.0 + omega2 * h * h).recip() - 1.0,
             };

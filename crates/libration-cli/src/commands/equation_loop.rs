@@ -67,8 +67,8 @@ fn of_file(
     let places: Vec<usize> = system.states.iter().map(|state| state.place).collect();
     let start = system.start();
     request.start = places.iter().map(|&place| start[place] - at[place]).collect();
-    let (degrees, most) = (dynamics.degrees(), StepProgram::MOST_IMPLICIT_DEGREES);
-    if matches!(method, AnyMethod::Implicit(_)) && degrees > most {
+    let (degrees, most) = (dynamics.degrees(), StepProgram::most_degrees(method));
+    if degrees > most {
         return Err(Failure::usage(format!(
             "--integrator {}: the system has {degrees} degrees of freedom; expected an explicit integrator for more than {most}",
             method.name()

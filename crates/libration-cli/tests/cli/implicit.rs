@@ -5,13 +5,15 @@ use predicates::prelude::*;
 use predicates::str::contains;
 use tempfile::TempDir;
 
-const NAMES: [&str; 6] = [
+const NAMES: [&str; 8] = [
     "damping-implicit",
     "damping-stiffness-implicit",
     "stable-pd",
     "backward-euler",
     "implicit-midpoint",
     "trapezoid",
+    "gauss-legendre-4",
+    "gauss-legendre-6",
 ];
 
 fn libration(words: &str) -> assert_cmd::assert::Assert {

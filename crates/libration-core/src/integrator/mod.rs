@@ -28,8 +28,8 @@ pub use composition::{Composition, SUZUKI4, Suzuki4, YOSHIDA4, Yoshida4};
 pub use euler::{ExplicitEuler, SymplecticEuler, SymplecticEulerDriftFirst};
 pub use exact::Exact;
 pub use implicit::{
-    BackwardEuler, DampingImplicit, DampingStiffnessImplicit, ImplicitIntegrator, ImplicitMidpoint,
-    NEWTON_STEPS, StablePd, Trapezoid,
+    BackwardEuler, DampingImplicit, DampingStiffnessImplicit, GaussLegendre4, GaussLegendre6,
+    ImplicitIntegrator, ImplicitMidpoint, NEWTON_STEPS, StablePd, Trapezoid,
 };
 pub use leapfrog::Leapfrog;
 pub use method_table::MethodTable;

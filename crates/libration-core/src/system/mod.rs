@@ -22,7 +22,9 @@ pub use driven_oscillator::DrivenOscillator;
 pub use duffing::Duffing;
 pub use dyn_system::DynSystem;
 pub use henon_heiles::HenonHeiles;
-pub use implicit_system::{Differentiated, ImplicitSystem, solve_motion};
+pub use implicit_system::{
+    Differentiated, ImplicitSystem, StageCoefficients, solve_motion, solve_stage_motion,
+};
 pub use kepler::Kepler;
 pub use mixed_precision::MixedPrecision;
 pub use oscillator::Oscillator;

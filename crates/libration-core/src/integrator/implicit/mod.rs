@@ -4,6 +4,9 @@
 //! [`Scalar`](crate::Scalar): on floats it simulates, on recorded numbers it becomes a program, on quotients of polynomials it yields its
 //! own update matrix. `h` is the time step, `a(q, v)` the acceleration.
 
+mod gauss_legendre;
+#[cfg(test)]
+mod gauss_legendre_tests;
 mod linearly_implicit;
 mod newton;
 #[cfg(test)]
@@ -12,6 +15,7 @@ mod tests;
 use crate::system::ImplicitSystem;
 use crate::{Scalar, State};
 
+pub use gauss_legendre::{GaussLegendre4, GaussLegendre6};
 pub use linearly_implicit::{DampingImplicit, DampingStiffnessImplicit, StablePd};
 pub use newton::{BackwardEuler, ImplicitMidpoint, NEWTON_STEPS, Trapezoid};
 

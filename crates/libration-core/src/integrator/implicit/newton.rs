@@ -5,7 +5,7 @@ use crate::array::each;
 use crate::system::ImplicitSystem;
 use crate::{Scalar, State};
 
-/// Newton steps of [`BackwardEuler`], [`ImplicitMidpoint`] and [`Trapezoid`], whatever the residual: a step has the same operations for
+/// Newton steps of [`BackwardEuler`], [`ImplicitMidpoint`], [`Trapezoid`] and the Gauss–Legendre methods, whatever the residual: a step has the same operations for
 /// all numbers.
 ///
 /// One is exact on linear systems. The iteration starts from the state (the trapezoid: from its explicit half) and squares its error: on
