@@ -170,7 +170,7 @@ fn what_does_not_apply_is_refused_with_what_is_allowed() {
     }
     let verlet = Stepping::from_name("velocity-verlet");
     let text = error(LinearRequest { integrator: verlet, ..open(lag.clone(), None) }).to_string();
-    let allowed = "explicit-euler, rk4, damping-stiffness-implicit, backward-euler, implicit-midpoint, trapezoid, exact";
+    let allowed = "explicit-euler, rk4, damping-stiffness-implicit, backward-euler, implicit-midpoint, trapezoid, gauss-legendre-4, gauss-legendre-6, exact";
     assert!(text.ends_with(&format!("expected {allowed}")), "{text}");
     let sampled = lag.sampled(0.1).unwrap();
     let text = error(open(sampled.clone(), Some(0.1))).to_string();

@@ -62,3 +62,22 @@ fn what_takes_no_implicit_integrator_refuses_it_by_name() {
             .stderr(contains("trapezoid").and(contains(why)).and(contains("expected an explicit")));
     }
 }
+
+#[test]
+fn coupled_stages_divide_the_most_degrees_of_freedom_of_equations() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("springs.toml");
+    let names: Vec<String> = (0..11).map(|i| format!("x{i}")).collect();
+    let forces: String = names.iter().map(|x| format!("acceleration.{x} = \"-{x}\"\n")).collect();
+    let text = format!("[system]\nname = \"springs\"\ncoordinates = {names:?}\n{forces}");
+    std::fs::write(&file, text).unwrap();
+    for command in ["analyze", "simulate"] {
+        let step = |name: &str| {
+            format!("{command} --system {} --integrator {name} --dt 0.1 --steps 2", file.display())
+        };
+        libration(&step("gauss-legendre-4")).success();
+        libration(&step("gauss-legendre-6"))
+            .code(2)
+            .stderr(contains("gauss-legendre-6").and(contains("10")).and(contains("11")));
+    }
+}
