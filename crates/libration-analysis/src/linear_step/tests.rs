@@ -118,6 +118,12 @@ fn first_order_plants_have_the_multipliers_of_the_stability_function() {
     let mut off = &half(-1.0) * &found;
     off.add_scaled(-1.0, &half(1.0));
     assert!(off.largest() < 2e-15, "{off:?}");
+    // 1 ± z/2 + z²/12.
+    let step = stepper.with_step::<f64>(ImplicitMethod::GaussLegendre4, h).unwrap();
+    let twelfth = (&a * &a).scaled(h * h / 12.0);
+    let mut off = &half(-1.0).plus(&twelfth) * &step.update_matrix();
+    off.add_scaled(-1.0, &half(1.0).plus(&twelfth));
+    assert!(off.largest() < 2e-15, "{off:?}");
     let radius =
         |m: &Matrix| eigenvalues(m).unwrap().iter().map(|value| value.norm()).fold(0.0, f64::max);
     assert!(radius(&found) < 1.0);

@@ -116,7 +116,7 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
     if let Some(symbolic) = &analysis.update_matrix_in_z {
         for (i, row) in symbolic.iter().enumerate() {
             let name = if i == 0 { "at omega = 1, z = dt" } else { "" };
-            line(name, row.iter().map(|entry| format!("{entry:>24}")).collect());
+            line(name, row.iter().map(|entry| format!(" {entry:>23}")).collect());
         }
     }
     line(
