@@ -1,6 +1,9 @@
 //! Tests of analyses and trajectories with implicit integrators.
 
+use libration::ensemble::dynamics_of;
+use libration::equations::StepProgram;
 use libration::{AnySystem, ImplicitMethod, Method};
+use libration_analyze::equation_analysis::step_order;
 use libration_analyze::export::Values;
 use libration_analyze::trajectory::{EnsembleOptions, FloatType, Request, simulate};
 use libration_analyze::{Criteria, Stepping, Timing, analyze};
@@ -148,5 +151,17 @@ fn trajectories_have_the_same_bits_alone_and_as_one_of_many() {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn orders_derived_with_1024_bits_are_those_of_the_methods() {
+    let system = AnySystem::build("henon-heiles", &[] as &[(&str, f64)]).unwrap();
+    let dynamics = dynamics_of(system, 2).unwrap();
+    for method in ImplicitMethod::ALL {
+        let step = StepProgram::implicit(method, &dynamics);
+        // Small steps, in which the rounding of a root to 53 bits would be the largest error.
+        let order = step_order(&step, &[0.3, -0.2, 0.3, 0.15], &[0, 1, 2, 3], 0.05);
+        assert_eq!(order, Some(method.order()), "{method:?}");
     }
 }

@@ -13,8 +13,8 @@ use crate::{Scalar, State};
 /// root, so that its rounding affects neither. Sums of rates multiply rates by ratios, and not by rounded weights: those rounded alike in
 /// each step would change the energy of an oscillator in proportion to time.
 pub(super) trait Collocation<const N: usize>: Copy {
-    /// The root.
-    const ROOT: f64;
+    /// The root, and what its rounding to `f64` leaves: with one part alone the order would be 2 in wider types.
+    const ROOT: [f64; 2];
 
     /// `h` times the integrals of the shifted Legendre polynomials, in these polynomials: column `k` is that of `Pₖ`.
     fn integrals<S: Scalar>(h: S) -> [[S; N]; N];
@@ -64,7 +64,8 @@ pub(super) fn step<
     if T::IS_EXACTLY_LINEAR {
         return start.plus(h, polynomial[0]);
     }
-    let h_root = h * S::from_f64(M::ROOT);
+    let [root, rest] = M::ROOT.map(|part| h * S::from_f64(part));
+    let h_root = root + rest;
     let coefficients = M::coefficients(h, h_root);
     let mut rates = [start; N];
     for (i, rate) in rates.iter_mut().enumerate() {
@@ -94,7 +95,7 @@ pub struct GaussLegendre4;
 
 impl Collocation<2> for GaussLegendre4 {
     /// √3.
-    const ROOT: f64 = 1.732_050_807_568_877_2;
+    const ROOT: [f64; 2] = [1.732_050_807_568_877_2, 1.0035084221806903e-16];
 
     fn integrals<S: Scalar>(h: S) -> [[S; 2]; 2] {
         let half = h.ratio(1, 2);
@@ -108,7 +109,7 @@ impl Collocation<2> for GaussLegendre4 {
 
     fn at_nodes<S: Scalar>([constant, linear]: [S; 2]) -> [S; 2] {
         // P₁(cᵢ) = ∓√3/3.
-        let part = (S::from_f64(Self::ROOT) * linear).ratio(1, 3);
+        let part = (S::from_f64(Self::ROOT[0]) * linear).ratio(1, 3);
         [constant - part, constant + part]
     }
 
@@ -138,7 +139,7 @@ pub struct GaussLegendre6;
 
 impl Collocation<3> for GaussLegendre6 {
     /// √15.
-    const ROOT: f64 = 3.872_983_346_207_417;
+    const ROOT: [f64; 2] = [3.872_983_346_207_417, -1.362103086746368e-16];
 
     fn integrals<S: Scalar>(h: S) -> [[S; 3]; 3] {
         let (half, sixth, tenth, zero) = (h.ratio(1, 2), h.ratio(1, 6), h.ratio(1, 10), S::zero());
@@ -157,7 +158,7 @@ impl Collocation<3> for GaussLegendre6 {
 
     fn at_nodes<S: Scalar>([constant, linear, quadratic]: [S; 3]) -> [S; 3] {
         // P₁(cᵢ) = ∓√15/5 or 0; P₂(cᵢ) = 2/5 or −1/2.
-        let part = (S::from_f64(Self::ROOT) * linear).ratio(1, 5);
+        let part = (S::from_f64(Self::ROOT[0]) * linear).ratio(1, 5);
         let outer = constant + quadratic.ratio(2, 5);
         [outer - part, constant - quadratic.ratio(1, 2), outer + part]
     }
