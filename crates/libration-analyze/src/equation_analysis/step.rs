@@ -6,12 +6,9 @@ use libration::number::{Dual, Wide};
 use libration::{Elementary, Scalar};
 use libration_settings::equations::EquationSystem;
 
-/// The powers of two by which the time step is multiplied to find the order, from the least on: the first at which the error is seen beside
-/// the rounding of the weights of a method to `f64` is taken, since the next term of the error is smallest there.
-const POWERS: core::ops::RangeInclusive<i64> = -11..=11;
-
-/// The part of a change of the state above which a difference is no rounding of weights: a few dozens of roundings.
-const SEEN: f64 = 64.0 * f64::EPSILON;
+/// The powers of two by which the time step is multiplied to find the order. The next term of the error is about 2⁻¹⁰ of the first; in
+/// steps that were much smaller, the rounding of weights of a method to `f64` would be its largest error.
+const SMALL: [i64; 2] = [-10, -11];
 
 /// Distances of the places at which the order is computed from the start. At the nearer one, functions are defined where they are at
 /// the start.
@@ -50,28 +47,17 @@ fn order_at(
             run.run(&all).collect()
         })
     };
-    // The change of each state in a step, and its difference from that in two steps of half the length.
-    let mut differences = |power: i64| -> Vec<[Wide; 2]> {
+    let [larger, smaller] = SMALL.map(|power| -> Vec<Wide> {
         let (one, two) = (after(&state, power, 1), after(&state, power - 1, 2));
-        let each = state.iter().zip(one.iter().zip(&two));
-        each.map(|(&start, (&one, &two))| [one - start, one - two]).collect()
-    };
-    let mut found: Vec<Option<f64>> = vec![None; states];
-    for power in POWERS.step_by(2) {
-        if places.iter().all(|&place| found[place].is_some()) {
-            break;
-        }
-        let (larger, smaller) = (differences(power), differences(power - 1));
-        for &place in places {
-            let ([_, larger], [change, smaller]) = (larger[place], smaller[place]);
-            let part = (smaller * change.recip()).abs().to_f64();
-            let ratio = (larger * smaller.recip()).abs().to_f64();
-            if found[place].is_none() && part > SEEN && ratio.is_finite() {
-                found[place] = Some(ratio.log2().round() - 1.0);
-            }
-        }
-    }
-    let orders = places.iter().filter_map(|&place| found[place]);
+        one.iter().zip(&two).map(|(&one, &two)| one - two).collect()
+    });
+    let orders = places.iter().filter_map(|&place| {
+        let [larger, smaller] = [larger[place], smaller[place]];
+        // Errors below 2⁻⁹⁰⁰ are rounding: the step has no other.
+        let is_error = larger.exponent().is_some_and(|exponent| exponent > -900);
+        let ratio = (larger * smaller.recip()).abs().to_f64();
+        (is_error && ratio.is_finite()).then(|| ratio.log2().round() - 1.0)
+    });
     let least = orders.reduce(f64::min)?;
     // Without an order, halved steps promise nothing.
     (least >= 1.0).then_some(least as u32)

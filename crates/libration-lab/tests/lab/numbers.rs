@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use libration_lab::claims_without_study::CLAIMS_WITHOUT_STUDY;
+use libration_report::record::{Cell, Quantity};
 
 use crate::default_run::{measured, predicted, records};
 
@@ -48,16 +49,15 @@ fn stable_steps_are_those_of_an_independent_search() {
 fn the_cheapest_method_is_the_one_that_a_hand_calculation_finds() {
     let record = records().iter().find(|r| r.name == "efficiency").unwrap();
     let rows = &record.table("answers").unwrap().rows;
-    let answer = |kind: &str, tolerance: f64, periods: u64| {
-        let row = rows
-            .iter()
-            .find(|r| r[0] == kind.into() && r[1] == tolerance.into() && r[2] == periods.into());
-        row.unwrap()[3].clone()
-    };
-    // Verlet: 2·2π/0.02 = 628 evaluations a period; RK4 at z = 0.0163: 1543, at z = 0.0649: 388.
-    assert_eq!(answer("energy", 1e-4, 1_000_000), "velocity Verlet".into());
-    assert_eq!(answer("energy", 1e-4, 1000), "RK4".into());
-    assert_eq!(answer("state", 1e-4, 1_000_000), "RK4".into());
+    // SRKN6b: 7·2π/1.44028 = 30.5, the first root
+    // of `|c/b + 1| = 10⁻⁴` for its product of shears with the rows `(a, b)` and `(c, a)`, in ten lines of NumPy.
+    for periods in [1000_u64, 1_000_000] {
+        let asked = ["energy".into(), 1e-4.into(), periods.into()];
+        let row = rows.iter().find(|row| row[..3] == asked).unwrap();
+        assert_eq!(row[3], "Blanes-Moan SRKN6b, order 4".into());
+        let Cell::Number(Quantity::Real(z, _)) = row[4] else { panic!("{row:?}") };
+        assert!((z - 1.440_280_964_6).abs() < 1e-9, "{z}");
+    }
 }
 
 #[test]

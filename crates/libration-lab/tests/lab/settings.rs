@@ -7,7 +7,7 @@ use libration_lab::STUDIES;
 use libration_report::Record;
 use libration_report::record::{Finding, Verdict};
 use libration_study::{Config, Effort, Lab, Silent, Spring, Study};
-use libration_study_motion::{DriftSettings, SpectrumSettings};
+use libration_study_motion::{DriftSettings, Efficiency, EfficiencySettings, SpectrumSettings};
 
 use crate::default_run::records;
 
@@ -198,11 +198,27 @@ fn a_search_that_slips_past_its_limit_by_visiting_few_phases_is_expected_to() {
 fn an_orbit_that_does_not_turn_is_no_test_of_a_drift() {
     // At z = 2 the start (1, 0) is an eigenvector of Verlet: its energy never changes.
     for tolerance in [1.0, 2.0] {
-        let efficiency = libration_study_motion::EfficiencySettings {
+        let efficiency = EfficiencySettings {
             periods: vec![10],
             tolerances: vec![tolerance],
+            ..Default::default()
         };
         let config = STUDIES.config().with(efficiency);
-        agrees(&libration_study_motion::Efficiency, &config, &format!("{tolerance}"));
+        agrees(&Efficiency, &config, &format!("{tolerance}"));
     }
+}
+
+#[test]
+fn the_cheapest_of_the_source_s_methods_is_the_one_that_a_hand_calculation_finds() {
+    let settings = EfficiencySettings { published_methods: Vec::new(), ..Default::default() };
+    let record = run(&Efficiency, &STUDIES.config().with(settings));
+    let rows = &record.table("answers").unwrap().rows;
+    let answer = |kind: &str, periods: u64| {
+        let asked = [kind.into(), 1e-4.into(), periods.into()];
+        rows.iter().find(|row| row[..3] == asked).unwrap()[3].clone()
+    };
+    // Verlet: 2·2π/0.02 = 628 evaluations a period; RK4 at z = 0.0163: 1543, at z = 0.0649: 388.
+    assert_eq!(answer("energy", 1_000_000), "velocity Verlet".into());
+    assert_eq!(answer("energy", 1000), "RK4".into());
+    assert_eq!(answer("state", 1_000_000), "RK4".into());
 }

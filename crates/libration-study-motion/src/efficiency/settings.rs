@@ -1,14 +1,14 @@
 //! Settings of the study `efficiency`.
 
-use libration::{Integrator, Method};
+use std::sync::LazyLock;
+
+use libration::Method;
+use libration::analysis::SymbolicStep;
 use libration_settings::validation::{check_counts, check_list, parse_counts, parse_names};
 use libration_settings::{Count, Fault, Number, limits, numbers};
 use libration_study::{Settings, schema};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
-
-/// The most force evaluations of a step of a published method: the exact polynomials of longer ones take minutes.
-const MOST_EVALUATIONS: usize = 14;
 
 /// Settings of the study `efficiency`.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,12 +33,15 @@ impl Default for EfficiencySettings {
     }
 }
 
-/// Those of the orders 4 and 6 with the smallest and the second smallest error per evaluation.
-const DEFAULT_PUBLISHED_METHODS: [&str; 2] = ["blanes-moan-srkn-6-4", "blanes-moan-srkn-11-6"];
+/// Of the orders 4 and 6 those with the smallest error per evaluation that can be studied.
+const DEFAULT_PUBLISHED_METHODS: [&str; 2] = ["blanes-moan-srkn-6-4", "okunbor-skeel-6-13"];
 
-/// The published methods that can be studied.
+/// The published methods that can be studied: those whose update matrix has an exact polynomial.
 fn offered() -> impl Iterator<Item = Method> {
-    Method::tables().filter(|method| method.evaluations() <= MOST_EVALUATIONS)
+    static OFFERED: LazyLock<Vec<Method>> = LazyLock::new(|| {
+        Method::tables().filter(|&method| SymbolicStep::new(method).is_some()).collect()
+    });
+    OFFERED.iter().copied()
 }
 
 /// Settings of the study `efficiency`.

@@ -24,7 +24,7 @@ pub(super) const TABLES: &[SplittingTable] = &[
     },
     SplittingTable {
         name: "okunbor-skeel-6-13",
-        title: "Okunbor-Skeel order 6, method 13 (digits of McLachlan 1995)",
+        title: "Okunbor-Skeel order 6, method 13",
         summary: "order 6; symplectic, time-reversible; 7 evaluations; forces of positions",
         source: "D.I. Okunbor, R.D. Skeel (1994), Canonical Runge-Kutta-Nystrom methods of orders five and six, J. Comput. Appl. Math. 51, 375-382; digits as in R.I. McLachlan (1995), On the numerical integration of ODEs by symmetric composition methods, SIAM J. Sci. Comput. 16, 151-168",
         order: 6,
