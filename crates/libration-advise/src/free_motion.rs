@@ -8,7 +8,7 @@ use libration_work::Work;
 use super::AdviseError;
 use super::integrator_choice::StepTrial;
 use super::motion_rates::{EnergyKind, MotionRates};
-use super::request::{Measure, Request};
+use super::request::{Measure, Request, steps_over};
 use super::simulated_system::{SimulatedSystem, Steps};
 
 /// The motion of a system from its start over a horizon.
@@ -28,12 +28,16 @@ const RESOLVED: f64 = 0.1;
 /// Reference steps of order four per step of a method of order four. Their error is 1/4096 of its.
 const FINER: u32 = 8;
 
-/// The references of methods of high orders, where forces depend on positions alone and where they do not.
-///
-/// At a turn of 1 rad in a step, the leading error of two and of three steps of the first in it is 1.5·10⁻¹⁰ and 2.6·10⁻¹² by its error
-/// constant; those of the advised tables of the orders 4, 6 and 8 are 2.8·10⁻⁵, 1.1·10⁻⁷ and 2.3·10⁻⁶. The second is compared with itself: a
-/// third of the step has 1/6561 of the error.
+/// The references of methods of high orders, where forces depend on positions alone and where they do not, in at least two steps per step
+/// of a method of order four, and three per step of others.
 const PRECISE: [&str; 2] = ["sofroniou-spaletta-10-35", "dormand-prince-8"];
+
+/// The largest turn of the fastest motion in such a reference step, in rad: the leading error of a step of the first is 4·10⁻¹² there, by its
+/// error constant. Tables take steps of several radians, in which those of as long references would be as large.
+const PRECISE_TURN: f64 = 0.35;
+
+/// The most reference steps per step.
+const MOST_FINER: f64 = 64.0;
 
 /// Reference steps per step of a method of some order in which the fastest motion turns by `angle`, so that their error is 1/4096 of its.
 ///
@@ -136,8 +140,9 @@ impl<'a> FreeMotion<'a> {
         let is_splitting = matches!(method, Method::Splitting(_));
         if method.order() > 4 || (is_splitting && method.order() == 4) {
             let name = PRECISE[usize::from(!self.system.is_positional())];
-            let times = if method.order() == 4 { 2 } else { 3 };
-            return (Method::from_name(name).unwrap_or(Method::Suzuki4), times);
+            let least = if method.order() == 4 { 2.0 } else { 3.0 };
+            let times = (self.turn(dt) / PRECISE_TURN).ceil().clamp(least, MOST_FINER);
+            return (Method::from_name(name).unwrap_or(Method::Suzuki4), times as u32);
         }
         let finer = finer(method.order(), self.turn(dt));
         // The error of the splitting method of order 2 is a fifth of that of leapfrog.
@@ -152,7 +157,7 @@ impl<'a> FreeMotion<'a> {
         dt: f64,
         most: f64,
     ) -> Result<f64, AdviseError> {
-        let steps = (self.horizon / dt).round().max(1.0) as u64;
+        let steps = steps_over(self.horizon, dt);
         let is_narrow = S::NAME == f32::NAME;
         let trajectory = (self.system.steps(is_narrow, method, dt, &self.start), steps);
         if let (Measure::Energy, Some(mut energy)) = (self.of, self.system.energy()) {

@@ -100,15 +100,50 @@ pub(super) fn largest_step(
     tolerance: f64,
     [least, most]: [f64; 2],
 ) -> Result<IntegratorChoice, AdviseError> {
-    let lost = |dt: f64| trial.lost(work, method, dt, tolerance);
     let mut choice = IntegratorChoice::none(method);
-    let (mut above, mut low) = (most, most);
+    let mut longest = most;
+    while let Some(found) = next_step(work, trial, method, tolerance, [least, longest], most)? {
+        let [dt, lost, beyond] = found;
+        (choice.dt, choice.lost, choice.lost_beyond) = (Some(dt), lost, Some(beyond));
+        // An error that rises faster than that of its order may have passed through zero: shorter steps may exceed the tolerance.
+        let is_steep = beyond > 4.0 * BEYOND.powi(method.order() as i32) * lost;
+        let mut shorter = None;
+        if is_steep {
+            for part in 1..=NEIGHBOURS {
+                let near = dt * BEYOND.powf(-1.5 * f64::from(part) / f64::from(NEIGHBOURS));
+                if near > least && trial.lost(work, method, near, tolerance)? > tolerance {
+                    shorter = Some(near);
+                }
+            }
+        }
+        match shorter {
+            Some(near) => longest = near,
+            None => return Ok(choice),
+        }
+    }
+    Ok(IntegratorChoice::none(method))
+}
+
+/// Shorter steps that are tried where an error may have passed through zero.
+const NEIGHBOURS: u32 = 8;
+
+/// A largest step of at most `longest` within the tolerance, with its error and that of a step [beyond](BEYOND) it.
+fn next_step(
+    work: &Work<'_>,
+    trial: &impl StepTrial,
+    method: Method,
+    tolerance: f64,
+    [least, longest]: [f64; 2],
+    most: f64,
+) -> Result<Option<[f64; 3]>, AdviseError> {
+    let lost = |dt: f64| trial.lost(work, method, dt, tolerance);
+    let (mut above, mut low) = (longest, longest);
     let mut at = lost(low)?;
     while at > tolerance {
         let ratio = if low < trial.resolving_step() { COARSE } else { RATIO };
         (above, low) = (low, low / ratio);
         if low < least {
-            return Ok(choice);
+            return Ok(None);
         }
         at = lost(low)?;
     }
@@ -117,16 +152,15 @@ pub(super) fn largest_step(
         let here = lost(middle)?;
         if here <= tolerance { (low, at) = (middle, here) } else { above = middle }
     }
-    // The error may decrease again beyond.
+    // The error may decrease again beyond; not where a longer step has been left.
     let mut beyond = lost(BEYOND * low)?;
-    while beyond <= tolerance && BEYOND * low < most {
+    while longest == most && beyond <= tolerance && BEYOND * low < most {
         (low, at) = (BEYOND * low, beyond);
         beyond = lost(BEYOND * low)?;
     }
     // The exact error beyond the tolerance.
     beyond = trial.lost(work, method, BEYOND * low, f64::INFINITY)?;
-    (choice.dt, choice.lost, choice.lost_beyond) = (Some(low), at, Some(beyond));
-    Ok(choice)
+    Ok(Some([low, at, beyond]))
 }
 
 /// The smallest error with steps between `least` and `most`, halved until rounding increases it.

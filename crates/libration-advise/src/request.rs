@@ -79,6 +79,11 @@ impl Measure {
     }
 }
 
+/// The fewest steps of `dt` seconds that cover `horizon`, of which rounding may take a part of a step.
+pub(super) fn steps_over(horizon: f64, dt: f64) -> u64 {
+    ((horizon / dt) * (1.0 - 1e-12)).ceil().max(1.0) as u64
+}
+
 impl Request {
     /// A request about a simulation of a system by equations from its start; `options` stand for it in command lines.
     pub fn of_equations(
@@ -118,7 +123,7 @@ impl Request {
         match &self.control {
             Some(_) => format!("{} --json", self.invocation),
             None => {
-                let every = (self.horizon / dt).round().max(1.0);
+                let every = self.steps_of(dt);
                 let steps = self.steps(integrator, dt);
                 format!("libration simulate {steps} --every {every} --float {float}")
             }
@@ -129,8 +134,13 @@ impl Request {
         format!(
             "{} --integrator {integrator} --dt {dt} --steps {}",
             self.system.options(&self.q, &self.v),
-            (self.horizon / dt).round().max(1.0)
+            self.steps_of(dt)
         )
+    }
+
+    /// The steps of `dt` seconds that cover the horizon.
+    fn steps_of(&self, dt: f64) -> u64 {
+        steps_over(self.horizon, dt)
     }
 
     /// Checks all numbers.

@@ -2,7 +2,7 @@
 
 use libration::analysis::NystromCertificate;
 use libration::equations::StepProgram;
-use libration::integrator::{SUZUKI4, YOSHIDA4};
+use libration::integrator::{RungeKuttaCoefficients, SUZUKI4, YOSHIDA4};
 use libration::{Integrator, Method};
 use libration_work::{Interrupted, Work};
 
@@ -127,6 +127,15 @@ impl<'m> Search<'m> {
 fn stages(method: Method) -> usize {
     match method {
         Method::Splitting(table) => table.coefficients.stages(),
+        Method::RungeKutta(table) => match table.coefficients {
+            // The last force is that of the end of the step.
+            RungeKuttaCoefficients::Nystrom { c: [.., 1.0], a: [.., last], b_position, .. }
+                if b_position.split_last() == Some((&0.0, last)) =>
+            {
+                table.coefficients.stages() - 1
+            }
+            coefficients => coefficients.stages(),
+        },
         Method::VelocityVerlet | Method::TextbookVerlet => 1,
         Method::Yoshida4 => YOSHIDA4.weights.len(),
         Method::Suzuki4 => SUZUKI4.weights.len(),

@@ -7,7 +7,7 @@ use libration::{AnyMethod, Float};
 use libration_settings::equations::EquationSystem;
 use serde::Serialize;
 
-use super::step::{spectral_radius, step_order};
+use super::step::{lost_order, spectral_radius, step_order};
 use crate::AnalyzeError;
 
 /// The motion from the start of a system.
@@ -112,7 +112,15 @@ impl EquationMotion {
             }
             AnyMethod::Implicit(_) => None,
         };
-        let order = certified_order.or_else(|| step_order(&step, &system.start(), &places, dt));
+        let start = system.start();
+        let supposes_positional_forces = matches!(
+            method,
+            AnyMethod::Explicit(method) if method.supposes_positional_forces()
+        );
+        let order = certified_order.or_else(|| match supposes_positional_forces {
+            true => Some(lost_order(&step, &start, &places, dt).unwrap_or(method.order())),
+            false => step_order(&step, &start, &places, dt),
+        });
         let predicted_reduction = order.map(|order| 2_f64.powi(order as i32));
         let runs = [0, 1, 2].map(|halvings| Run {
             system,

@@ -19,8 +19,22 @@ const SHIFTS: [f64; 2] = [1.0, 0.01];
 ///
 /// `start` has positions, velocities and inputs, and `places` those of the states that count.
 pub fn step_order(step: &StepProgram, start: &[f64], places: &[usize], dt: f64) -> Option<u32> {
-    SHIFTS.into_iter().filter_map(|shift| order_at(step, start, places, dt, shift)).min()
+    SHIFTS.into_iter().filter_map(|shift| order_at(step, start, places, dt, shift, 0.0)).min()
 }
+
+/// The order of a table whose certificate is for other forces: that of the errors that are seen beside the rounding of its coefficients
+/// to `f64`, or none of them if it has not lost its order.
+pub(super) fn lost_order(
+    step: &StepProgram,
+    start: &[f64],
+    places: &[usize],
+    dt: f64,
+) -> Option<u32> {
+    SHIFTS.into_iter().filter_map(|shift| order_at(step, start, places, dt, shift, SEEN)).min()
+}
+
+/// The part of the change of a state in a step above which a difference is no rounding of coefficients: some hundreds of roundings.
+const SEEN: f64 = 256.0 * f64::EPSILON;
 
 /// The order at a state that is the start but for parts of the golden ratio, `shift` times as large as a coordinate or as 1.
 fn order_at(
@@ -29,6 +43,7 @@ fn order_at(
     places: &[usize],
     dt: f64,
     shift: f64,
+    least_part: f64,
 ) -> Option<u32> {
     let states = step.program().outputs().len();
     let mut run = step.program().on::<Wide>();
@@ -47,14 +62,18 @@ fn order_at(
             run.run(&all).collect()
         })
     };
+    let mut changes = Vec::new();
     let [larger, smaller] = SMALL.map(|power| -> Vec<Wide> {
         let (one, two) = (after(&state, power, 1), after(&state, power - 1, 2));
+        changes = one.iter().zip(&state).map(|(&one, &start)| one - start).collect();
         one.iter().zip(&two).map(|(&one, &two)| one - two).collect()
     });
     let orders = places.iter().filter_map(|&place| {
         let [larger, smaller] = [larger[place], smaller[place]];
         // Errors below 2⁻⁹⁰⁰ are rounding: the step has no other.
         let is_error = larger.exponent().is_some_and(|exponent| exponent > -900);
+        let part = || (smaller * changes[place].recip()).abs().to_f64();
+        let is_error = is_error && (least_part == 0.0 || part() >= least_part);
         let ratio = (larger * smaller.recip()).abs().to_f64();
         (is_error && ratio.is_finite()).then(|| ratio.log2().round() - 1.0)
     });

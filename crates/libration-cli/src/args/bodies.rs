@@ -88,7 +88,7 @@ fn integrator(name: &str) -> Result<BodyIntegrator, String> {
         let near = suggestions::nearest(name, known);
         let near = near.map_or_else(String::new, |near| format!("did you mean `{near}`? "));
         format!(
-            "{near}expected one of wisdom-holman, {few}, or a published splitting method of `libration list`"
+            "{near}expected one of wisdom-holman, {few}, or a published method of `libration list`"
         )
     })
 }

@@ -228,7 +228,7 @@ impl TypedValueParser for IntegratorParser {
             let listed = AnyMethod::all().map(AnyMethod::name);
             let listed: Vec<&str> = listed.chain([Stepping::EXACT]).collect();
             let text = format!(
-                "invalid value '{name}' for '--integrator <NAME>': {near}expected one of {}, or a published splitting method of `libration list`\n",
+                "invalid value '{name}' for '--integrator <NAME>': {near}expected one of {}, or a published method of `libration list`\n",
                 listed.join(", ")
             );
             clap::Error::raw(ErrorKind::InvalidValue, text).with_cmd(command)

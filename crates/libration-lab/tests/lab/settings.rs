@@ -210,7 +210,7 @@ fn an_orbit_that_does_not_turn_is_no_test_of_a_drift() {
 
 #[test]
 fn the_cheapest_of_the_source_s_methods_is_the_one_that_a_hand_calculation_finds() {
-    let settings = EfficiencySettings { published_methods: Vec::new(), ..Default::default() };
+    let settings = EfficiencySettings { splitting_methods: Vec::new(), ..Default::default() };
     let record = run(&Efficiency, &STUDIES.config().with(settings));
     let rows = &record.table("answers").unwrap().rows;
     let answer = |kind: &str, periods: u64| {

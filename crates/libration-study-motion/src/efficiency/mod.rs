@@ -54,9 +54,9 @@ impl Study for Efficiency {
     }
 }
 
-/// The integrators, then the published methods.
+/// The integrators, then the splitting methods.
 fn methods(config: &Config) -> Vec<Method> {
-    let more = config.get::<EfficiencySettings>().published_methods;
+    let more = config.get::<EfficiencySettings>().splitting_methods;
     config.integrators.iter().copied().chain(more).collect()
 }
 

@@ -4,6 +4,7 @@ use std::sync::LazyLock;
 
 use libration::Method;
 use libration::analysis::SymbolicStep;
+use libration::integrator::SplittingTable;
 use libration_settings::validation::{check_counts, check_list, parse_counts, parse_names};
 use libration_settings::{Count, Fault, Number, limits, numbers};
 use libration_study::{Settings, schema};
@@ -17,8 +18,8 @@ pub struct EfficiencySettings {
     pub tolerances: Vec<f64>,
     /// Horizons in periods of the oscillator, ascending.
     pub periods: Vec<u64>,
-    /// Published methods that are studied besides the integrators.
-    pub published_methods: Vec<Method>,
+    /// Published splitting methods that are studied besides the integrators.
+    pub splitting_methods: Vec<Method>,
 }
 
 impl Default for EfficiencySettings {
@@ -26,20 +27,21 @@ impl Default for EfficiencySettings {
         EfficiencySettings {
             tolerances: vec![1e-6, 1e-4, 1e-2],
             periods: vec![10, 1_000, 1_000_000],
-            published_methods: offered()
-                .filter(|method| DEFAULT_PUBLISHED_METHODS.contains(&method.name()))
+            splitting_methods: offered()
+                .filter(|method| DEFAULT_SPLITTING_METHODS.contains(&method.name()))
                 .collect(),
         }
     }
 }
 
 /// Of the orders 4 and 6 those with the smallest error per evaluation that can be studied.
-const DEFAULT_PUBLISHED_METHODS: [&str; 2] = ["blanes-moan-srkn-6-4", "okunbor-skeel-6-13"];
+const DEFAULT_SPLITTING_METHODS: [&str; 2] = ["blanes-moan-srkn-6-4", "okunbor-skeel-6-13"];
 
-/// The published methods that can be studied: those whose update matrix has an exact polynomial.
+/// The published splitting methods that can be studied: those whose update matrix has an exact polynomial.
 fn offered() -> impl Iterator<Item = Method> {
     static OFFERED: LazyLock<Vec<Method>> = LazyLock::new(|| {
-        Method::tables().filter(|&method| SymbolicStep::new(method).is_some()).collect()
+        let splitting = SplittingTable::ALL.into_iter().flatten().map(Method::Splitting);
+        splitting.filter(|&method| SymbolicStep::new(method).is_some()).collect()
     });
     OFFERED.iter().copied()
 }
@@ -54,12 +56,12 @@ pub struct Table {
     /// Horizons in periods of the oscillator, each once.
     #[schemars(schema_with = "schema::horizons")]
     periods: Vec<Count>,
-    /// Published methods that are studied besides the integrators, each once.
-    #[schemars(schema_with = "published_methods")]
-    published_methods: Vec<String>,
+    /// Published splitting methods that are studied besides the integrators, each once.
+    #[schemars(schema_with = "splitting_methods")]
+    splitting_methods: Vec<String>,
 }
 
-fn published_methods(_: &mut SchemaGenerator) -> Schema {
+fn splitting_methods(_: &mut SchemaGenerator) -> Schema {
     let names: Vec<&str> = offered().map(Method::name).collect();
     json_schema!({ "type": "array", "uniqueItems": true, "items": schema::one_of(&names) })
 }
@@ -79,7 +81,7 @@ impl Settings for EfficiencySettings {
         Table {
             tolerances: self.tolerances.iter().copied().map(Number).collect(),
             periods: self.periods.iter().map(|&n| Count(n.into())).collect(),
-            published_methods: self.published_methods.iter().map(|m| m.name().into()).collect(),
+            splitting_methods: self.splitting_methods.iter().map(|m| m.name().into()).collect(),
         }
     }
 
@@ -87,10 +89,10 @@ impl Settings for EfficiencySettings {
         Ok(EfficiencySettings {
             tolerances: numbers(table.tolerances),
             periods: parse_counts("efficiency.periods", table.periods)?,
-            published_methods: parse_names(
-                "efficiency.published_methods",
-                ("published method", "published methods"),
-                &table.published_methods,
+            splitting_methods: parse_names(
+                "efficiency.splitting_methods",
+                ("splitting method", "splitting methods"),
+                &table.splitting_methods,
                 &offered().map(Method::name).collect::<Vec<_>>(),
                 |name| offered().find(|method| method.name() == name),
             )?,
@@ -100,10 +102,10 @@ impl Settings for EfficiencySettings {
     fn check(&self) -> Result<(), Fault> {
         check_list("efficiency.tolerances", "tolerance", limits::TOLERANCE, &self.tolerances)?;
         check_counts("efficiency.periods", &self.periods)?;
-        for (i, method) in self.published_methods.iter().enumerate() {
-            if self.published_methods[..i].contains(method) {
-                let message = format!("the published method `{}` is named twice", method.name());
-                return Err(Fault::at("efficiency.published_methods", i, message));
+        for (i, method) in self.splitting_methods.iter().enumerate() {
+            if self.splitting_methods[..i].contains(method) {
+                let message = format!("the splitting method `{}` is named twice", method.name());
+                return Err(Fault::at("efficiency.splitting_methods", i, message));
             }
         }
         Ok(())
