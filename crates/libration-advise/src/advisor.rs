@@ -24,7 +24,8 @@ pub(super) fn advise_simulation(
     let free = FreeMotion::new(work, system, request)?;
     let mut advice = Advice::new(request);
     let most = request.tolerance.most;
-    let methods: Vec<Method> = offered_methods(system.is_positional()).collect();
+    let is_short = |method: &Method| free.steps_of(*method).is_sorted();
+    let methods: Vec<Method> = offered_methods(system.is_positional()).filter(is_short).collect();
     let mut choices = work.sweep("the largest step of each integrator", &methods, |&method| {
         largest_step(work, &free, method, most, free.steps_of(method))
     })?;

@@ -128,11 +128,12 @@ impl<'a> FreeMotion<'a> {
         [self.horizon / most, longest]
     }
 
-    /// The shortest and the longest tried step of a method; a step with many evaluations is tried as long as many steps with few.
+    /// The shortest and the longest tried step of a method; a step with many evaluations is tried as long as many steps with few. The shortest
+    /// is longer than the longest if the horizon is too long for the method.
     pub(super) fn steps_of(&self, method: Method) -> [f64; 2] {
         let [shortest, longest] = self.steps();
         let share = (method.evaluations() / Method::Rk4.evaluations()).max(1);
-        [(share as f64 * shortest).min(longest), longest]
+        [share as f64 * shortest, longest]
     }
 
     /// The method of reference steps, and how many are one step of `method`.

@@ -252,8 +252,12 @@ mod tests {
                     let changed =
                         RungeKuttaTable { name, title, summary, source, order, coefficients };
                     let changed: &'static RungeKuttaTable = Box::leak(Box::new(changed));
-                    let found = NystromCertificate::new(changed, order as usize).unwrap();
-                    assert!(found.order() < order as usize, "{name}: row {row}, column {column}");
+                    // Most digits are in conditions of low orders, which are computed sooner.
+                    let is_found = [5.min(order), 8.min(order), order].into_iter().any(|most| {
+                        let found = NystromCertificate::new(changed, most as usize).unwrap();
+                        found.order() < most as usize
+                    });
+                    assert!(is_found, "{name}: row {row}, column {column}");
                 }
             }
         }
