@@ -106,11 +106,12 @@ pub(super) fn largest_step(
         let [dt, lost, beyond] = found;
         (choice.dt, choice.lost, choice.lost_beyond) = (Some(dt), lost, Some(beyond));
         // An error that rises faster than that of its order may have passed through zero: shorter steps may exceed the tolerance.
-        let is_steep = beyond > 4.0 * BEYOND.powi(method.order() as i32) * lost;
+        let is_steep = beyond > STEEP * BEYOND.powi(method.order() as i32) * lost;
         let mut shorter = None;
         if is_steep {
             for part in 1..=NEIGHBOURS {
-                let near = dt * BEYOND.powf(-1.5 * f64::from(part) / f64::from(NEIGHBOURS));
+                let near =
+                    dt * BEYOND.powf(NEIGHBOURHOOD * f64::from(part) / f64::from(NEIGHBOURS));
                 if near > least && trial.lost(work, method, near, tolerance)? > tolerance {
                     shorter = Some(near);
                 }
@@ -124,8 +125,15 @@ pub(super) fn largest_step(
     Ok(IntegratorChoice::none(method))
 }
 
-/// Shorter steps that are tried where an error may have passed through zero.
+/// Shorter steps that are tried where an error may have passed through zero, evenly on a scale of logarithms.
 const NEIGHBOURS: u32 = 8;
+
+/// The shortest of them, as a power of the step [beyond](BEYOND): 0.76 of the step. The phase of a pendulum had a zero between steps that
+/// exceeded the tolerance down to 0.79 of it.
+const NEIGHBOURHOOD: f64 = -1.5;
+
+/// How many times faster than with its order an error rises where it may have passed through zero.
+const STEEP: f64 = 4.0;
 
 /// A largest step of at most `longest` within the tolerance, with its error and that of a step [beyond](BEYOND) it.
 fn next_step(

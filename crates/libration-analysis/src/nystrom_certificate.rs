@@ -105,7 +105,7 @@ fn path_of(tableau: &Tableau) -> f64 {
     way + tableau.b.iter().map(|b| b.to_f64().abs()).sum::<f64>()
 }
 
-fn dot(a: &[Wide], b: &[Wide]) -> Wide {
+pub(super) fn dot(a: &[Wide], b: &[Wide]) -> Wide {
     a.iter().zip(b).fold(Wide::ZERO, |sum, (&a, &b)| sum + a * b)
 }
 
@@ -172,7 +172,7 @@ fn children(
     }
 }
 
-fn dot_of_sizes(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot_of_sizes(a: &[f64], b: &[f64]) -> f64 {
     // A sum of nothing is −0.
     a.iter().zip(b).fold(0.0, |sum, (a, b)| sum + a * b)
 }

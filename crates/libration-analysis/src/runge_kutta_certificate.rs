@@ -4,6 +4,7 @@ use libration_core::number::{Ratio, Wide};
 use libration_core::{Elementary, Integrator, Scalar};
 
 use super::Tableau;
+use super::nystrom_certificate::{dot, dot_of_sizes};
 
 /// The order of a method on `ẏ = f(y)`, read off the step that simulates.
 ///
@@ -57,15 +58,6 @@ impl RungeKuttaCertificate {
     pub fn order(&self) -> usize {
         self.excess.iter().take_while(|excess| **excess <= 1.0).count()
     }
-}
-
-fn dot(a: &[Wide], b: &[Wide]) -> Wide {
-    a.iter().zip(b).fold(Wide::ZERO, |sum, (&a, &b)| sum + a * b)
-}
-
-fn dot_of_sizes(a: &[f64], b: &[f64]) -> f64 {
-    // A sum of nothing is −0.
-    a.iter().zip(b).fold(0.0, |sum, (a, b)| sum + a * b)
 }
 
 /// A rooted tree.

@@ -74,7 +74,7 @@ pub enum AnalyzeError {
         flag: &'static str,
         /// The system.
         system: &'static str,
-        /// Those of the system.
+        /// Its degrees of freedom.
         dimension: usize,
     },
     /// The fastest motion turns by a too large angle per step.

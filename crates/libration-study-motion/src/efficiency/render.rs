@@ -136,9 +136,7 @@ fn precision(record: &Record) -> Result<Figure, RecordError> {
         let mut accents = (3..).map(Role::Accent);
         for (method, series) in series(record) {
             let role = match method {
-                Method::Splitting(_) | Method::RungeKutta(_) => {
-                    accents.next().unwrap_or(Role::Neutral)
-                }
+                Method::Splitting(_) => accents.next().unwrap_or(Role::Neutral),
                 _ => method_color(method),
             };
             let x = series.column(x)?;

@@ -34,7 +34,7 @@ impl Default for EfficiencySettings {
     }
 }
 
-/// Of the orders 4 and 6 those with the smallest error per evaluation that can be studied.
+/// One of order 4, with the smallest error per evaluation of all of this order, and one of order 6.
 const DEFAULT_SPLITTING_METHODS: [&str; 2] = ["blanes-moan-srkn-6-4", "okunbor-skeel-6-13"];
 
 /// The published splitting methods that can be studied: those whose update matrix has an exact polynomial.
