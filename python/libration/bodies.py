@@ -1,10 +1,10 @@
-"""Bodies under their gravity: motions with an audit of what they conserve."""
+"""Bodies under gravity and other forces between pairs: motions with an audit of what they conserve."""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from os import PathLike, fspath
 from typing import Any
 
@@ -31,9 +31,16 @@ class Bodies:
     names
         A name for each body [default: its number].
     gravitational_constant
-        In the units of the masses, positions and velocities.
+        In the units of the masses, positions and velocities [default: 1, or 0 with a pair potential].
     softening
         The length ``L`` of the potential ``-G m / sqrt(r**2 + L**2)``.
+    pair_potential
+        The potential energy of two bodies: an expression of their distance ``r``, masses ``m1``, ``m2`` and charges ``q1``, ``q2``, such as
+        ``"4*epsilon*((sigma/r)^12 - (sigma/r)^6)"``. Body 1 is that which comes first. All masses must be positive.
+    parameters
+        Other names in the potential, with their values.
+    charges
+        Shape ``(n,)`` [default: zero].
 
     Raises
     ------
@@ -49,8 +56,11 @@ class Bodies:
         *,
         radii: Any = None,
         names: Sequence[str] | None = None,
-        gravitational_constant: float = 1.0,
+        gravitational_constant: float | None = None,
         softening: float = 0.0,
+        pair_potential: str | None = None,
+        parameters: Mapping[str, float] | None = None,
+        charges: Any = None,
         name: str = "bodies",
     ) -> None:
         self.masses = np.array(masses, dtype=np.float64)
@@ -65,14 +75,23 @@ class Bodies:
             raise ValueError(f"names has {len(self.names)} names; expected {count}")
         if len(set(self.names)) != count:
             raise ValueError("two bodies have the same name; expected a name for each")
-        self.gravitational_constant = positive("gravitational_constant", gravitational_constant)
+        self.charges = np.zeros(count) if charges is None else _of_shape("charges", charges, (count,))
+        self.pair_potential = pair_potential
+        self.parameters = dict(parameters or {})
+        if self.parameters and pair_potential is None:
+            raise ValueError(f"parameters has {sorted(self.parameters)} without a pair_potential")
+        if gravitational_constant is None:
+            gravitational_constant = 1.0 if pair_potential is None else 0.0
+        self.gravitational_constant = number(
+            "gravitational_constant", gravitational_constant, "a finite number of at least 0", lambda x: 0 <= x < math.inf
+        )
         self.softening = number("softening", softening, "a length of at least 0", lambda x: 0 <= x < math.inf)
         self.name = name
         _native._check_bodies(self._table())
 
     @classmethod
     def published(cls, name: str, *, count: int | None = None, seed: int = 0, softening: float = 0.0) -> Bodies:
-        """Published initial conditions: ``figure-eight``, ``pythagorean``, ``outer-solar-system``, ``kozai``, or ``plummer`` with a ``count``
+        """Published initial conditions: ``figure-eight``, ``pythagorean``, ``outer-solar-system``, ``kozai``, ``frozen-argon``, or ``plummer`` with a ``count``
         of bodies and a ``seed``."""
         if name != "plummer" and count is not None:
             raise ValueError(f"count applies to 'plummer' only; {name!r} has fixed bodies")
@@ -107,6 +126,9 @@ class Bodies:
             "names": self.names,
             "masses": self.masses.tolist(),
             "radii": self.radii.tolist(),
+            "charges": self.charges.tolist(),
+            "pair_potential": self.pair_potential,
+            "parameters": [(name, float(value)) for name, value in self.parameters.items()],
             "positions": self.positions.ravel().tolist(),
             "velocities": self.velocities.ravel().tolist(),
             "gravitational_constant": self.gravitational_constant,
@@ -169,7 +191,7 @@ def simulate_bodies(
     predict: bool = True,
     threads: int = 0,
 ) -> BodyMotion:
-    """Simulate bodies under their gravity and audit what they conserve.
+    """Simulate bodies and audit what they conserve.
 
     Parameters
     ----------

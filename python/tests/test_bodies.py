@@ -1,4 +1,4 @@
-"""Tests of bodies under their gravity."""
+"""Tests of bodies."""
 
 from pathlib import Path
 from typing import Any
@@ -108,3 +108,43 @@ def test_wrong_options_are_refused() -> None:
         Bodies.published("plummer")
     with pytest.raises(ValueError, match="did you mean `figure-eight`"):
         Bodies.published("figure-eigth")
+
+
+def test_ions_move_as_ten_lines_of_numpy_move_them() -> None:
+    rng = np.random.default_rng(2)
+    q = np.stack(np.meshgrid(*[[0.0, 1.2]] * 3), -1).reshape(8, 3) + rng.uniform(-0.05, 0.05, (8, 3))
+    v, masses, charges = rng.uniform(-0.1, 0.1, (8, 3)), rng.uniform(1, 2, 8), np.tile([1.0, -1.0], 4)
+    ions = Bodies(masses, q, v, charges=charges, pair_potential="q1*q2/r + hard/r^9", parameters={"hard": 0.1})
+    assert ions.gravitational_constant == 0 and Bodies(masses, q, v).gravitational_constant == 1
+    motion = libration.simulate_bodies(ions, integrator="leapfrog", dt=0.01, steps=100)
+    for _ in range(100):
+        q += 0.005 * v
+        offset = q[None, :, :] - q[:, None, :]
+        r = np.sqrt((offset**2).sum(-1)) + np.eye(8)
+        slope = -np.outer(charges, charges) / r**2 - 0.9 / r**10
+        np.fill_diagonal(slope, 0)
+        v += 0.01 * ((slope / r)[..., None] * offset).sum(1) / masses[:, None]
+        q += 0.005 * v
+    # Some hundred roundings of numbers of about 1.
+    assert np.abs(motion.positions[-1] - q).max() < 1e-13
+    assert motion.results["pair_potential"] == "q1*q2/r + hard/r^9"
+    energy = motion.conserved["energy"]
+    assert 0.5 < energy["predicted_by_order"] / energy["largest_change"] < 2
+
+
+def test_wrong_pair_potentials_name_what_is_wrong() -> None:
+    places = np.eye(3)
+    cases: list[tuple[dict[str, Any], str]] = [
+        ({"pair_potential": "q1*q2/d"}, "pair_potential: unknown name `d`"),
+        ({"pair_potential": "1/"}, "pair_potential: found the end"),
+        ({"parameters": {"k": 1.0}}, "without a pair_potential"),
+        ({"pair_potential": "r", "parameters": {"r": 1.0}}, "`r` is given twice"),
+        ({"pair_potential": "r", "charges": [1.0]}, "charges has shape"),
+        ({"pair_potential": "r", "charges": [1.0, np.nan, 0.0]}, "charge = NaN"),
+        ({"gravitational_constant": -1.0}, "gravitational_constant"),
+    ]
+    for keywords, message in cases:
+        with pytest.raises(ValueError, match=message.replace("(", r"\(")):
+            Bodies([1.0, 1.0, 1.0], places, places, **keywords)
+    with pytest.raises(ValueError, match="mass = 0; expected a mass above 0 with a pair potential"):
+        Bodies([1.0, 0.0, 1.0], places, places, pair_potential="r")

@@ -1,6 +1,7 @@
 //! Lints of code and documentation while the tests are compiled and run.
 
 use std::ffi::OsString;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -38,7 +39,7 @@ pub(crate) fn switch_on(command: &mut Command) -> Result<&mut Command, String> {
         .env(RUSTDOC, rustdoc))
 }
 
-/// Runs as cargo's `rustdoc`, if this program stands for it: what has examples is documented before they are run.
+/// Runs as cargo's `rustdoc`, if this program stands for it: a crate is documented before its examples are run, if it has any.
 pub(crate) fn documented(arguments: &[OsString]) -> Option<Outcome> {
     let rustdoc = std::env::var_os(RUSTDOC)?;
     // No name of a task begins like an argument of cargo to rustdoc.
@@ -48,7 +49,23 @@ pub(crate) fn documented(arguments: &[OsString]) -> Option<Outcome> {
         command.args(pages).args(["-D", "warnings", "--out-dir"]);
         command::run(command.arg(folder()))
     });
+    let is_source =
+        |argument: &&OsString| Path::new(argument).extension().is_some_and(|e| e == "rs");
+    let source = arguments.iter().find(is_source).and_then(|file| Path::new(file).parent());
+    if source.is_some_and(|folder| !may_have_examples(folder)) {
+        return Some(outcome);
+    }
     Some(outcome.and_then(|()| command::run(Command::new(&rustdoc).args(arguments))))
+}
+
+/// Whether a source in the folder has a fence, or documentation from another file. To look for examples, the compiler would read the crate once more.
+fn may_have_examples(folder: &Path) -> bool {
+    let Ok(entries) = fs::read_dir(folder) else { return true };
+    entries.flatten().map(|entry| entry.path()).any(|path| match path.is_dir() {
+        true => may_have_examples(&path),
+        false => fs::read_to_string(&path)
+            .map_or(true, |text| text.contains("```") || text.contains("doc = include_str!")),
+    })
 }
 
 /// Where `cargo doc` would put them: beside the folder of this program.
@@ -78,6 +95,19 @@ fn pages(arguments: &[OsString]) -> Option<Vec<&OsString>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn crates_without_fences_have_no_examples() {
+        let scratch = crate::scratch::Scratch::new("fences").unwrap();
+        let folder = scratch.path();
+        let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
+        fs::create_dir_all(folder.join("inner")).unwrap();
+        write("lib.rs", "//! Text.");
+        assert!(!may_have_examples(folder));
+        write("inner/one.rs", "/// ```\n/// let one = 1;");
+        assert!(may_have_examples(folder));
+        assert!(may_have_examples(&folder.join("missing")));
+    }
 
     #[test]
     fn pages_are_made_of_what_the_examples_are_made_of() {

@@ -8,8 +8,12 @@ pub mod checkpoint;
 pub mod ensemble;
 // No unit test needs it.
 #[cfg(not(test))]
+mod column_program;
+#[cfg(not(test))]
 mod machine;
 pub mod replay;
 pub mod rl;
 
+#[cfg(not(test))]
+pub use column_program::{ColumnProgram, Columns};
 pub use ensemble::Ensemble;

@@ -3,6 +3,8 @@
 use super::BodiesError;
 use super::closest_pair::ClosestPair;
 use super::direct_sum::{Attraction, axes};
+use super::forces::{Forces, PairForces};
+use super::pair_potential::PairPotential;
 
 /// Most bodies of a direct sum.
 pub const MOST_BODIES: usize = 1 << 16;
@@ -12,6 +14,8 @@ pub const MOST_BODIES: usize = 1 << 16;
 pub struct Bodies {
     masses: Vec<f64>,
     radii: Vec<f64>,
+    charges: Vec<f64>,
+    pair_potential: Option<PairPotential>,
     gravitational_constant: f64,
     softening: f64,
     /// `G·m`.
@@ -22,7 +26,7 @@ pub struct Bodies {
 }
 
 /// One body.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Body {
     /// At least zero; a body without mass feels the others, which do not feel it.
     pub mass: f64,
@@ -32,6 +36,8 @@ pub struct Body {
     pub velocity: [f64; 3],
     /// At least zero. Two bodies whose distance is below the sum of their radii collide.
     pub radius: f64,
+    /// A number of its own for a pair potential, of any sign.
+    pub charge: f64,
 }
 
 impl Bodies {
@@ -45,7 +51,8 @@ impl Bodies {
         }
         for (body, properties) in bodies.iter().enumerate() {
             let coordinates = properties.position.iter().chain(&properties.velocity);
-            let names = ["x", "y", "z", "vx", "vy", "vz"];
+            let coordinates = coordinates.chain([&properties.charge]);
+            let names = ["x", "y", "z", "vx", "vy", "vz", "charge"];
             if let Some((&value, field)) =
                 coordinates.zip(names).find(|(value, _)| !value.is_finite())
             {
@@ -63,6 +70,8 @@ impl Bodies {
         let masses: Vec<f64> = bodies.iter().map(|body| body.mass).collect();
         Ok(Bodies {
             radii: bodies.iter().map(|body| body.radius).collect(),
+            charges: bodies.iter().map(|body| body.charge).collect(),
+            pair_potential: None,
             gravitational_constant: 1.0,
             softening: 0.0,
             strengths: masses.clone(),
@@ -75,10 +84,10 @@ impl Bodies {
     /// Sets the constant of gravitation, in the units of the masses, positions and velocities.
     ///
     /// # Errors
-    /// [`BodiesError::Constant`] unless it is positive and finite, and so are all products with masses.
+    /// [`BodiesError::Constant`] unless it is at least zero and finite, and so are all products with masses.
     pub fn gravitational_constant(mut self, value: f64) -> Result<Self, BodiesError> {
         let strengths: Vec<f64> = self.masses.iter().map(|mass| value * mass).collect();
-        let is_allowed = value > 0.0 && value.is_finite();
+        let is_allowed = value >= 0.0 && value.is_finite();
         if !is_allowed || strengths.iter().any(|strength| !strength.is_finite()) {
             return Err(BodiesError::Constant { value });
         }
@@ -98,6 +107,18 @@ impl Bodies {
         Ok(self)
     }
 
+    /// Adds the forces of a potential between all pairs. Gravity stays unless its constant is zero.
+    ///
+    /// # Errors
+    /// [`BodiesError::Massless`] if a body has no mass.
+    pub fn pair_potential(mut self, potential: PairPotential) -> Result<Self, BodiesError> {
+        if let Some(body) = self.masses.iter().position(|&mass| mass == 0.0) {
+            return Err(BodiesError::Massless { body });
+        }
+        self.pair_potential = Some(potential);
+        Ok(self)
+    }
+
     /// The number of bodies.
     pub fn count(&self) -> usize {
         self.masses.len()
@@ -111,6 +132,16 @@ impl Bodies {
     /// The radii.
     pub fn radii(&self) -> &[f64] {
         &self.radii
+    }
+
+    /// The charges.
+    pub fn charges(&self) -> &[f64] {
+        &self.charges
+    }
+
+    /// The potential between all pairs besides gravity, if there is one.
+    pub fn pairs(&self) -> Option<&PairPotential> {
+        self.pair_potential.as_ref()
     }
 
     /// The softening length.
@@ -130,6 +161,7 @@ impl Bodies {
             position: axes(&self.positions).map(|plane| plane[i]),
             velocity: axes(&self.velocities).map(|plane| plane[i]),
             radius: self.radii[i],
+            charge: self.charges[i],
         }
     }
 
@@ -156,6 +188,13 @@ impl Bodies {
     /// Positions and velocities, to be moved.
     pub(crate) fn state_mut(&mut self) -> (&mut Vec<f64>, &mut Vec<f64>) {
         (&mut self.positions, &mut self.velocities)
+    }
+
+    pub(crate) fn forces(&self) -> Forces<'_> {
+        let (masses, charges) = (&self.masses, &self.charges);
+        let pairs = self.pair_potential.as_ref();
+        let pairs = pairs.map(|potential| PairForces { potential, masses, charges });
+        Forces { gravity: self.attraction(), pairs }
     }
 
     pub(crate) fn attraction(&self) -> Attraction<'_> {

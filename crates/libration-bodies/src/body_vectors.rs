@@ -2,7 +2,7 @@
 
 use libration_batch::ensemble::Execution;
 
-use super::direct_sum::Attraction;
+use super::forces::Forces;
 use super::step_plan::{Action, Register, StepPlan};
 
 /// A vector and, with compensated sums, what its sums lost (see `number::Compensated` of `libration-core`).
@@ -25,7 +25,7 @@ pub(crate) fn run(
     plan: &StepPlan,
     scale: f64,
     vectors: &mut [BodyVector],
-    attraction: &Attraction<'_>,
+    forces: &Forces<'_>,
     on: &Execution,
     should_stop: &dyn Fn() -> bool,
 ) -> bool {
@@ -40,7 +40,7 @@ pub(crate) fn run(
             action => action,
         };
         let mut out = core::mem::take(&mut vectors[register]);
-        write(action, vectors, &mut out, attraction, on);
+        write(action, vectors, &mut out, forces, on);
         vectors[register] = out;
     }
     for &(a, b) in &plan.exchanges {
@@ -53,7 +53,7 @@ fn write(
     action: Action,
     vectors: &[BodyVector],
     out: &mut BodyVector,
-    attraction: &Attraction<'_>,
+    forces: &Forces<'_>,
     on: &Execution,
 ) {
     let values = |register: Register| vectors[register].values.as_slice();
@@ -70,7 +70,7 @@ fn write(
             Action::Sum(a, b) => of_two(out, a, b, |a, b, _| a + b, 1.0),
             Action::Difference(a, b) => of_two(out, a, b, |a, b, _| a - b, 1.0),
             Action::Multiple(..) | Action::Ratio(..) => multiply(action, vectors, out),
-            Action::Accelerations(at) => attraction.accelerations(values(at), out, on),
+            Action::Accelerations(at) => forces.accelerations(values(at), out, on),
         }
         return;
     }
@@ -91,7 +91,7 @@ fn write(
             out.lost.fill(0.0);
         }
         Action::Accelerations(at) => {
-            attraction.accelerations(values(at), &mut out.values, on);
+            forces.accelerations(values(at), &mut out.values, on);
             out.lost.fill(0.0);
         }
     }

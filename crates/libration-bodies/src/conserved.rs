@@ -27,14 +27,16 @@ impl Conserved {
         let zero = TwoFloat::from_f64(0.0);
         let (mut kinetic, mut potential) = (zero, zero);
         let (mut momentum, mut angular_momentum) = ([zero; 3], [zero; 3]);
-        let potentials = bodies.attraction().potentials(bodies.positions(), on);
-        for (body, own) in bodies.iter().zip(potentials) {
+        let forces = bodies.forces();
+        let potentials = forces.gravity.potentials(bodies.positions(), on);
+        let energies = forces.pair_energies(bodies.positions(), on);
+        for ((body, own), of_pairs) in bodies.iter().zip(potentials).zip(energies) {
             let wide = TwoFloat::from_f64;
             let (mass, q, v) = (wide(body.mass), body.position.map(wide), body.velocity.map(wide));
             let [x, y, z] = q;
             let [vx, vy, vz] = v;
             kinetic = kinetic + mass * (vx * vx + vy * vy + vz * vz);
-            potential = potential + mass * wide(own);
+            potential = potential + mass * wide(own) + wide(of_pairs);
             let turns = [y * vz - z * vy, z * vx - x * vz, x * vy - y * vx];
             for axis in 0..3 {
                 momentum[axis] = momentum[axis] + mass * v[axis];

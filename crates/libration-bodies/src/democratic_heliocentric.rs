@@ -33,13 +33,17 @@ pub(crate) struct DemocraticHeliocentric {
 
 impl DemocraticHeliocentric {
     /// # Errors
-    /// [`BodiesError::CentralBody`] if the first body has no mass, is not the heaviest, or forces are softened.
+    /// [`BodiesError::CentralBody`] if the first body has no mass, is not the heaviest, or forces are not gravity or softened.
     pub(crate) fn new(bodies: &Bodies, on: &Execution) -> Result<Self, BodiesError> {
         let [central, ref others @ ..] = *bodies.masses() else {
             return Err(BodiesError::CentralBody { reason: "there is no body" });
         };
         let heaviest = others.iter().copied().fold(0.0, f64::max);
-        let reason = if bodies.softening_length() > 0.0 {
+        let reason = if bodies.pairs().is_some() {
+            Some("orbits are solved for gravity alone; expected no pair potential")
+        } else if bodies.constant() == 0.0 {
+            Some("orbits need gravity; expected a gravitational constant above 0")
+        } else if bodies.softening_length() > 0.0 {
             Some("orbits are solved without softening; expected softening 0")
         } else if others.is_empty() {
             Some("no body besides the first; expected at least 2 bodies")

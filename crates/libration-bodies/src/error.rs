@@ -3,6 +3,8 @@
 use std::error::Error;
 use std::fmt;
 
+use libration_equations::EquationError;
+
 /// Why bodies cannot be simulated. Bodies are counted from 0.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -34,16 +36,25 @@ pub enum BodiesError {
         /// The value.
         value: f64,
     },
+    /// A body without mass where forces do not follow from masses.
+    Massless {
+        /// The body.
+        body: usize,
+    },
     /// A constant of gravitation that is not allowed.
     Constant {
         /// The value.
         value: f64,
     },
+    /// A pair potential that is no expression.
+    PairPotential(EquationError),
     /// A softening length that is not allowed.
     Softening {
         /// The value.
         length: f64,
     },
+    /// A softening length without the gravity that it softens.
+    NothingToSoften,
     /// A time step that is not allowed.
     TimeStep {
         /// The value.
@@ -107,12 +118,17 @@ impl BodiesError {
                 let body = name(*body);
                 format!("{body}: {field} = {value:?}; expected a finite number of at least 0")
             }
+            BodiesError::Massless { body } => {
+                format!("{}: mass = 0; expected a mass above 0 with a pair potential", name(*body))
+            }
             BodiesError::Constant { value } => format!(
-                "gravitational constant {value:?}; expected a positive number whose products with all masses are finite"
+                "gravitational constant {value:?}; expected a number of at least 0 whose products with all masses are finite"
             ),
+            BodiesError::PairPotential(error) => format!("{}: {error}", error.key),
             BodiesError::Softening { length } => {
                 format!("softening {length:?}; expected a length from 0 to 1e154")
             }
+            BodiesError::NothingToSoften => "softening without gravity, which alone is softened; expected softening 0 or a gravitational constant above 0".to_owned(),
             BodiesError::TimeStep { dt } => {
                 format!("dt {dt:?}; expected a finite number other than 0")
             }
@@ -147,3 +163,9 @@ impl fmt::Display for BodiesError {
 }
 
 impl Error for BodiesError {}
+
+impl From<EquationError> for BodiesError {
+    fn from(error: EquationError) -> Self {
+        BodiesError::PairPotential(error)
+    }
+}

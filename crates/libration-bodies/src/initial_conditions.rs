@@ -7,6 +7,7 @@ use libration_core::random::{Address, Purpose};
 
 use super::BodiesError;
 use super::bodies::{Bodies, Body};
+use super::pair_potential::PairPotential;
 
 /// A published system of bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +22,8 @@ pub enum InitialConditions {
     Kozai,
     /// A cluster in equilibrium, drawn from a seed.
     Plummer,
+    /// Seven atoms of argon that vibrate about a hexagon.
+    FrozenArgon,
 }
 
 /// Constants of nature in these tables: the constant of Gauss, squared; lengths in astronomical units, times in days, masses in suns.
@@ -28,12 +31,13 @@ const GAUSS_SQUARED: f64 = 2.959_122_082_86e-4;
 
 impl InitialConditions {
     /// All of them.
-    pub const ALL: [InitialConditions; 5] = [
+    pub const ALL: [InitialConditions; 6] = [
         InitialConditions::FigureEight,
         InitialConditions::Pythagorean,
         InitialConditions::OuterSolarSystem,
         InitialConditions::Kozai,
         InitialConditions::Plummer,
+        InitialConditions::FrozenArgon,
     ];
 
     /// Name on the command line and in Python.
@@ -44,6 +48,7 @@ impl InitialConditions {
             InitialConditions::OuterSolarSystem => "outer-solar-system",
             InitialConditions::Kozai => "kozai",
             InitialConditions::Plummer => "plummer",
+            InitialConditions::FrozenArgon => "frozen-argon",
         }
     }
 
@@ -61,6 +66,9 @@ impl InitialConditions {
             }
             InitialConditions::Kozai => {
                 "a body without mass tilted by 65 degrees to a distant companion; G = 1, inner period 2 pi"
+            }
+            InitialConditions::FrozenArgon => {
+                "seven atoms with the potential of Lennard and Jones; nm, ns, energies over the Boltzmann constant in K"
             }
             InitialConditions::Plummer => {
                 "a cluster of equal masses in equilibrium, from a seed; G = 1, mass 1, energy -1/4"
@@ -81,6 +89,9 @@ impl InitialConditions {
                 "E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed., table I.2.2"
             }
             InitialConditions::Kozai => "Y. Kozai, Astronomical Journal 67, 1962; own numbers",
+            InitialConditions::FrozenArgon => {
+                "E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed., section I.4.2"
+            }
             InitialConditions::Plummer => {
                 "S. J. Aarseth, M. Henon, R. Wielen, Astronomy and Astrophysics 37, 1974, appendix"
             }
@@ -101,7 +112,7 @@ impl InitialConditions {
                 &["sun", "jupiter", "saturn", "uranus", "neptune", "pluto"]
             }
             InitialConditions::Kozai => &["star", "planet", "companion"],
-            InitialConditions::Plummer => &[],
+            InitialConditions::Plummer | InitialConditions::FrozenArgon => &[],
         }
     }
 
@@ -118,13 +129,14 @@ impl InitialConditions {
             }
             InitialConditions::Kozai => Bodies::new(&kozai()),
             InitialConditions::Plummer => return plummer(count, seed),
+            InitialConditions::FrozenArgon => frozen_argon(),
         };
         bodies.map(Bodies::centred)
     }
 }
 
 fn body(mass: f64, position: [f64; 3], velocity: [f64; 3]) -> Body {
-    Body { mass, position, velocity, radius: 0.0 }
+    Body { mass, position, velocity, ..Body::default() }
 }
 
 fn figure_eight() -> [Body; 3] {
@@ -136,6 +148,26 @@ fn figure_eight() -> [Body; 3] {
         body(1.0, [0.0; 3], [vx, vy, 0.0]),
     ]
 }
+
+/// Positions in nm, velocities in nm/ns; masses in kg over the constant of Boltzmann, so that energies are temperatures.
+fn frozen_argon() -> Result<Bodies, BodiesError> {
+    const BOLTZMANN: f64 = 1.380_658e-23;
+    let atom = |x, y, vx, vy| body(66.34e-27 / BOLTZMANN, [x, y, 0.0], [vx, vy, 0.0]);
+    let atoms = [
+        atom(0.0, 0.0, -30.0, -20.0),
+        atom(0.02, 0.39, 50.0, -90.0),
+        atom(0.34, 0.17, -70.0, -60.0),
+        atom(0.36, -0.21, 90.0, 40.0),
+        atom(-0.02, -0.40, 80.0, 90.0),
+        atom(-0.35, -0.16, -40.0, 100.0),
+        atom(-0.31, 0.21, -80.0, -60.0),
+    ];
+    let parameters = [("epsilon".to_owned(), 119.8), ("sigma".to_owned(), 0.341)];
+    let potential = PairPotential::new(LENNARD_JONES, &parameters)?;
+    Bodies::new(&atoms)?.gravitational_constant(0.0)?.pair_potential(potential)
+}
+
+const LENNARD_JONES: &str = "4*epsilon*((sigma/r)^12 - (sigma/r)^6)";
 
 fn pythagorean() -> [Body; 3] {
     let at = |mass, x, y| body(mass, [x, y, 0.0], [0.0; 3]);

@@ -41,7 +41,7 @@ impl BodySimulation {
     /// With `compensated` sums, positions and velocities keep what their sums round off (Kahan 1965).
     ///
     /// # Errors
-    /// [`BodiesError`] if `dt` is zero or not finite, two bodies touch, or the integrator does not apply.
+    /// [`BodiesError`] if `dt` is zero or not finite, two bodies touch, nothing is softened, or the integrator does not apply.
     pub fn new(
         bodies: Bodies,
         integrator: BodyIntegrator,
@@ -51,6 +51,9 @@ impl BodySimulation {
     ) -> Result<Self, BodiesError> {
         if dt == 0.0 || !dt.is_finite() {
             return Err(BodiesError::TimeStep { dt });
+        }
+        if bodies.softening_length() > 0.0 && bodies.constant() == 0.0 {
+            return Err(BodiesError::NothingToSoften);
         }
         let has_radii = bodies.radii().iter().any(|&radius| radius > 0.0);
         let stepper = match integrator {
@@ -93,9 +96,9 @@ impl BodySimulation {
         if let Stepper::Plan { plan, vectors } = &mut self.stepper
             && plan.carries
         {
-            let attraction = self.bodies.attraction();
+            let forces = self.bodies.forces();
             let mut out = core::mem::take(&mut vectors[ACCELERATIONS]);
-            attraction.accelerations(&vectors[POSITIONS].values, &mut out.values, &self.on);
+            forces.accelerations(&vectors[POSITIONS].values, &mut out.values, &self.on);
             vectors[ACCELERATIONS] = out;
         }
     }
@@ -133,8 +136,8 @@ impl BodySimulation {
                 let (positions, velocities) = self.bodies.state_mut();
                 positions.copy_from_slice(&vectors[POSITIONS].values);
                 velocities.copy_from_slice(&vectors[VELOCITIES].values);
-                let attraction = self.bodies.attraction();
-                if !body_vectors::run(plan, scale, vectors, &attraction, &self.on, should_stop) {
+                let forces = self.bodies.forces();
+                if !body_vectors::run(plan, scale, vectors, &forces, &self.on, should_stop) {
                     return Err(BodiesError::Stopped);
                 }
                 is_finite(&vectors[VELOCITIES].values) && is_finite(&vectors[POSITIONS].values)
@@ -205,7 +208,7 @@ impl BodySimulation {
     /// pairs at each step take time of their own.
     ///
     /// # Errors
-    /// [`BodiesError::Adaptive`] unless the integrator is a symmetric sequence of kicks and drifts, and a pair attracts.
+    /// [`BodiesError::Adaptive`] unless the integrator is a symmetric sequence of kicks and drifts, a pair attracts, and gravity is all there is.
     pub fn adaptive(mut self) -> Result<Self, BodiesError> {
         let flows = match self.integrator {
             BodyIntegrator::Method(method) => {
@@ -215,6 +218,10 @@ impl BodySimulation {
         };
         if !flows.is_some_and(|flows| flows.iter().eq(flows.iter().rev())) {
             let reason = "requires a symmetric integrator of kicks and drifts, such as leapfrog";
+            return Err(BodiesError::Adaptive { reason });
+        }
+        if self.bodies.pairs().is_some() {
+            let reason = "steps follow gravity alone; expected no pair potential";
             return Err(BodiesError::Adaptive { reason });
         }
         let density = StepDensity::new(&self.bodies, self.dt);

@@ -56,7 +56,7 @@ fn errors_of_the_energy_fall_with_the_order_of_the_integrator() {
 
 /// A heavy body and two others on eccentric, tilted orbits.
 fn planets(mass: f64) -> Bodies {
-    let body = |mass, position, velocity| Body { mass, position, velocity, radius: 0.0 };
+    let body = |mass, position, velocity| Body { mass, position, velocity, ..Body::default() };
     let bodies = [
         body(1.0, [0.0; 3], [0.0; 3]),
         body(mass, [1.0, 0.0, 0.0], [0.0, 1.05, 0.05]),
@@ -216,6 +216,7 @@ fn collisions_and_bodies_at_one_place_are_named() {
         position: [x, 0.0, 0.0],
         velocity: [v, 0.0, 0.0],
         radius,
+        ..Body::default()
     };
     let leapfrog = BodyIntegrator::Method(Method::Leapfrog);
     let start = |bodies: &[Body], dt| {
@@ -241,7 +242,7 @@ fn collisions_and_bodies_at_one_place_are_named() {
 
 #[test]
 fn numbers_that_are_not_allowed_are_named() {
-    let good = Body { mass: 1.0, position: [0.0; 3], velocity: [0.0; 3], radius: 0.0 };
+    let good = Body { mass: 1.0, position: [0.0; 3], velocity: [0.0; 3], ..Body::default() };
     let message = |body: Body| Bodies::new(&[good, body]).unwrap_err().to_string();
     let bad = message(Body { mass: -1.0, ..good });
     assert_eq!(bad, "body 1: mass = -1.0; expected a finite number of at least 0");

@@ -32,7 +32,7 @@ impl System<f64, 9> for ThreeBodies {
 }
 
 fn three() -> Vec<Body> {
-    let body = |mass, position, velocity| Body { mass, position, velocity, radius: 0.0 };
+    let body = |mass, position, velocity| Body { mass, position, velocity, ..Body::default() };
     vec![
         body(1.0, [0.1, -0.3, 0.2], [0.01, 0.2, -0.1]),
         body(0.3, [1.1, 0.7, -0.4], [-0.3, 0.9, 0.2]),

@@ -19,6 +19,7 @@ mod program_builder;
 mod projection;
 mod recording;
 mod resolver;
+mod scalar_expression;
 mod step_program;
 mod step_trace;
 mod task;

@@ -1,17 +1,20 @@
-//! Bodies under their gravity for Python.
+//! Bodies for Python.
 
 use std::path::Path;
 
 use libration::Method;
-use libration::bodies::{Bodies, BodiesError, Body, BodyIntegrator, InitialConditions};
+use libration::bodies::{
+    Bodies, BodiesError, Body, BodyIntegrator, InitialConditions, PairPotential,
+};
 use libration::ensemble::{Execution, InsufficientMemory};
 use libration_analyze::bodies::{BodiesRequest, simulate};
 use libration_analyze::export::{ExportError, Rows};
 use libration_analyze::trajectory::TrajectoryError;
 use libration_settings::bodies_file::{self, NamedBodies};
+use libration_settings::equations::explanation;
 use numpy::PyArray1;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{IntoPyDict, PyDict};
 use serde_json::json;
 
 use crate::background::run_in_background;
@@ -25,6 +28,9 @@ pub(crate) struct BodyTable {
     names: Vec<String>,
     masses: Vec<f64>,
     radii: Vec<f64>,
+    charges: Vec<f64>,
+    pair_potential: Option<String>,
+    parameters: Vec<(String, f64)>,
     positions: Vec<f64>,
     velocities: Vec<f64>,
     gravitational_constant: f64,
@@ -61,12 +67,20 @@ impl BodyTable {
             position: three(&self.positions, i),
             velocity: three(&self.velocities, i),
             radius: self.radii.get(i).copied().unwrap_or(0.0),
+            charge: self.charges.get(i).copied().unwrap_or(0.0),
         };
         let all: Vec<Body> = (0..self.masses.len()).map(body).collect();
         let bodies = Bodies::new(&all)
             .and_then(|bodies| bodies.gravitational_constant(self.gravitational_constant))
             .and_then(|bodies| bodies.softening(self.softening));
-        let bodies = bodies.map_err(Raised::raised)?;
+        let mut bodies = bodies.map_err(Raised::raised)?;
+        if let Some(text) = &self.pair_potential {
+            let potential = PairPotential::new(text, &self.parameters).map_err(|error| {
+                let text = explanation(&error);
+                value_error(text.replacen(PairPotential::KEY, "pair_potential", 1))
+            })?;
+            bodies = bodies.pair_potential(potential).map_err(Raised::raised)?;
+        }
         Ok(NamedBodies { name: self.name, bodies, names: self.names })
     }
 }
@@ -80,6 +94,10 @@ fn table<'py>(py: Python<'py>, system: &NamedBodies) -> PyResult<Bound<'py, PyDi
     dict.set_item("names", names)?;
     dict.set_item("masses", PyArray1::from_slice(py, bodies.masses()))?;
     dict.set_item("radii", PyArray1::from_slice(py, bodies.radii()))?;
+    dict.set_item("charges", PyArray1::from_slice(py, bodies.charges()))?;
+    dict.set_item("pair_potential", bodies.pairs().map(PairPotential::text))?;
+    let parameters = bodies.pairs().map(PairPotential::parameters).unwrap_or_default();
+    dict.set_item("parameters", parameters.to_vec().into_py_dict(py)?)?;
     dict.set_item("positions", PyArray1::from_vec(py, flat(|body| body.position)))?;
     dict.set_item("velocities", PyArray1::from_vec(py, flat(|body| body.velocity)))?;
     dict.set_item("gravitational_constant", bodies.constant())?;

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::io::Write;
 
+use libration::bodies::PairPotential;
 use serde_json::{Value, json};
 
 use super::{BodiesAudit, BodiesRequest, COLUMNS, SCHEMA, simulate};
@@ -58,6 +59,9 @@ impl Recording<f64> for BodiesRecording<'_> {
             ("masses", json!(system.bodies.masses())),
             ("gravitational_constant", system.bodies.constant().into()),
             ("softening", system.bodies.softening_length().into()),
+            ("charges", json!(system.bodies.charges())),
+            ("pair_potential", json!(system.bodies.pairs().map(PairPotential::text))),
+            ("parameters", json!(system.bodies.pairs().map(PairPotential::parameters))),
             ("integrator", integrator.name().into()),
             ("dt", (*dt).into()),
             ("steps", (*steps).into()),

@@ -1,4 +1,4 @@
-//! Simulations of bodies under their gravity, with an audit of what they conserve: the output of `libration bodies`.
+//! Simulations of bodies, with an audit of what they conserve: the output of `libration bodies`.
 
 mod changes;
 mod encounter;
@@ -48,6 +48,8 @@ pub struct BodiesAudit {
     pub gravitational_constant: f64,
     /// The softening length.
     pub softening: f64,
+    /// The potential between all pairs besides gravity, if there is one.
+    pub pair_potential: Option<String>,
     /// Whether sums were compensated.
     pub is_compensated: bool,
     /// Whether steps followed the encounters.
@@ -137,6 +139,7 @@ pub fn simulate(
         evaluations: request.integrator.evaluations(),
         gravitational_constant: request.system.bodies.constant(),
         softening: request.system.bodies.softening_length(),
+        pair_potential: request.system.bodies.pairs().map(|pairs| pairs.text().to_owned()),
         is_compensated: request.is_compensated,
         is_adaptive: request.is_adaptive,
         samples,

@@ -15,7 +15,7 @@ use super::simulate::{every, formats};
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct BodiesArgs {
-    /// Name of initial conditions (figure-eight, pythagorean, outer-solar-system, kozai, plummer), or a file NAME.toml or NAME.csv
+    /// Name of initial conditions (figure-eight, pythagorean, outer-solar-system, kozai, plummer, frozen-argon), or a file NAME.toml or NAME.csv
     #[arg(value_name = "SYSTEM")]
     pub(crate) system: String,
     /// Integrator: any explicit one of `libration list`, or wisdom-holman for orbits around a heavy first body
@@ -39,9 +39,12 @@ pub(crate) struct BodiesArgs {
     /// Softening length of the potential -G m/sqrt(r^2 + L^2) [default: that of the file, or 0]
     #[arg(long, value_name = "L", allow_hyphen_values = true)]
     pub(crate) softening: Option<f64>,
-    /// Constant of gravitation [default: that of the file or of the initial conditions, or 1]
+    /// Constant of gravitation [default: that of the file or of the initial conditions, or 1; 0 with a pair potential]
     #[arg(long, value_name = "G", allow_hyphen_values = true)]
     pub(crate) gravitational_constant: Option<f64>,
+    /// Potential energy of two bodies, in place of that of the file: an expression of their distance r, masses m1, m2 and charges q1, q2
+    #[arg(long, value_name = "EXPRESSION", allow_hyphen_values = true)]
+    pub(crate) pair_potential: Option<String>,
     /// Keep what the sums of positions and velocities round off
     #[arg(long)]
     pub(crate) compensated: bool,
@@ -65,20 +68,22 @@ pub(crate) struct BodiesArgs {
     pub(crate) output: Option<PathBuf>,
 }
 
-const EXAMPLES: &str = "\
-Examples:
+const EXAMPLES: &str = r#"Examples:
   libration bodies figure-eight --integrator yoshida4 --dt 0.01 --steps 1e4
   libration bodies outer-solar-system --integrator wisdom-holman --dt 100 --steps 3.65e5
   libration bodies pythagorean --integrator kahan-li-6-9a --adaptive --dt 0.02 --steps 2e4
   libration bodies plummer --count 1024 --softening 0.01 --integrator leapfrog --dt 0.001 --steps 1e3
+  libration bodies frozen-argon --integrator leapfrog --dt 4e-5 --steps 5e3
+  libration bodies ions.csv --pair-potential "q1*q2/r + 1/r^9" --integrator leapfrog --dt 0.001 --steps 1e4
   libration bodies mine.csv --integrator blanes-moan-srkn-11-6 --dt 0.01 --steps 1e4 --output orbits.parquet
 
 The audit compares the largest changes of energy, momentum and angular momentum with two predictions: by
 the order of the integrator, from a second run with twice the time step, and by rounding.
 The rows have the columns body, step, t, x, y, z, vx, vy, vz.
-A file NAME.csv has the columns name (optional), mass, x, y, z, vx, vy, vz, radius (optional). Bodies with
-radii end the motion where they collide.
-The bits of a motion do not depend on --threads.";
+A file NAME.csv has the columns name (optional), mass, x, y, z, vx, vy, vz, radius and charge
+(optional). Bodies with radii end the motion where they collide. With a pair potential, gravity acts only if
+its constant is given.
+The bits of a motion do not depend on --threads."#;
 
 /// Parses the name of an integrator.
 fn integrator(name: &str) -> Result<BodyIntegrator, String> {

@@ -4,12 +4,13 @@ use std::fmt::{Display, Write as _};
 use std::io::{self, BufWriter};
 use std::path::Path;
 
-use libration::bodies::InitialConditions;
+use libration::bodies::{InitialConditions, PairPotential};
 use libration::ensemble::Execution;
 use libration_analyze::bodies::{BodiesAudit, BodiesRequest, simulate, write};
 use libration_analyze::export::{ExportError, Rows};
 use libration_analyze::trajectory::TrajectoryError;
 use libration_settings::bodies_file::{self, NamedBodies};
+use libration_settings::equations::explanation;
 use libration_settings::suggestions;
 
 use super::simulate::{Watcher, failure, format_of};
@@ -63,6 +64,20 @@ fn system(args: &BodiesArgs) -> Result<NamedBodies, Failure> {
     let mut bodies = system.bodies;
     let wrong =
         |flag: &'static str| move |error: &dyn Display| Failure::usage(format!("{error} ({flag})"));
+    if let Some(text) = &args.pair_potential {
+        let parameters = bodies.pairs().map(PairPotential::parameters).unwrap_or_default();
+        let potential = PairPotential::new(text, parameters).map_err(|error| {
+            Failure::usage(format!("{} (--pair-potential)", explanation(&error)))
+        })?;
+        let names = &system.names;
+        bodies = bodies
+            .gravitational_constant(0.0)
+            .and_then(|all| all.pair_potential(potential))
+            .map_err(|error| {
+            let named = error.with_names(|body| format!("`{}`", names[body]));
+            Failure::usage(format!("{named} (--pair-potential)"))
+        })?;
+    }
     if let Some(constant) = args.gravitational_constant {
         let wrong = wrong("--gravitational-constant");
         bodies = bodies.gravitational_constant(constant).map_err(|error| wrong(&error))?;

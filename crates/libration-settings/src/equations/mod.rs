@@ -1,12 +1,15 @@
 //! Systems by their equations, in files.
 
+mod expression_error;
 mod table;
 mod task;
 
+pub use expression_error::explanation;
+pub(crate) use expression_error::{help, inside};
 use libration::analysis::rate_derivative;
 use libration::equations::{Definitions, Degree, Equations};
 use libration::linear::Matrix;
-use table::{File, help};
+use table::File;
 pub use task::EquationTask;
 
 use crate::{Document, SettingsError, suggestions};

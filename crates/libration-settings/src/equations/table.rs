@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use libration::equations::{
-    Definitions, Degree, EquationError, EquationErrorKind, Equations, ExpressionErrorKind, Function,
-};
+use libration::equations::{Definitions, Degree, EquationError, Equations};
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::expression_error::inside;
 use super::task::TaskTable;
 use crate::{Number, suggestions};
 
@@ -90,18 +89,13 @@ impl Table {
 
     /// The place in the file of an error within an expression.
     pub(super) fn place(&self, error: &EquationError, text: &str) -> Option<Range<usize>> {
-        let inside = error.span.clone()?;
         let value = match error.key.split_once('.') {
             Some(("let", name)) => find(&self.parts, name),
             Some(("acceleration", name)) => find(&self.acceleration, name),
             Some(("rate", name)) => find(&self.rate, name),
             _ => self.energy.as_ref(),
         }?;
-        let span = value.span();
-        let raw = text.get(span.clone())?;
-        // An escape is longer in the file than in the expression.
-        let quotes = raw.find(value.get_ref().as_str())?;
-        Some(span.start + quotes + inside.start..span.start + quotes + inside.end)
+        inside(value, error, text)
     }
 
     /// The place of a key.
@@ -210,22 +204,4 @@ fn find<'a>(
     name: &str,
 ) -> Option<&'a Spanned<String>> {
     table.iter().find(|(known, _)| known.get_ref() == name).map(|(_, text)| text)
-}
-
-/// A suggestion for a name that does not exist.
-pub(super) fn help(error: &EquationError) -> Option<String> {
-    match &error.kind {
-        EquationErrorKind::UnknownName { name, known } => {
-            Some(suggestions::suggest("names", name, known.iter().map(String::as_str)))
-        }
-        EquationErrorKind::Expression(error) => match &error.kind {
-            ExpressionErrorKind::UnknownFunction { name } => {
-                let functions = Function::ALL.map(Function::name);
-                let near = suggestions::nearest(name, functions)?;
-                Some(format!("did you mean `{near}`?"))
-            }
-            _ => None,
-        },
-        _ => None,
-    }
 }

@@ -9,7 +9,8 @@ use serde::de::IgnoredAny;
 use toml::Spanned;
 
 use super::EquationSystem;
-use super::table::{Wrong, help};
+use super::expression_error::{help, inside};
+use super::table::Wrong;
 use crate::{Document, Number, SettingsError, suggestions};
 
 /// A task on a system by equations: what is observed, the reward, when an episode is over, and where it starts.
@@ -166,6 +167,8 @@ impl TaskTable {
 
     /// The place in the file of an error of an expression.
     fn place(&self, error: &EquationError, text: &str) -> Range<usize> {
+        let place =
+            |value: &Spanned<String>| inside(value, error, text).unwrap_or_else(|| value.span());
         let mut keys = error.key.split('.').skip(1);
         let (key, index) = (keys.next(), keys.next().and_then(|index| index.parse().ok()));
         let tables = [("project", &self.project), ("inner", &self.inner)];
@@ -176,7 +179,7 @@ impl TaskTable {
             let unknown = matches!(error.kind, EquationErrorKind::UnknownName { .. });
             return match entry {
                 Some((key, _)) if unknown && error.span.is_none() => key.span(),
-                Some((_, text_of)) => inside(text_of, error, text),
+                Some((_, text_of)) => place(text_of),
                 None => table.keys().next().map_or(self.reward.span(), Spanned::span),
             };
         }
@@ -188,7 +191,7 @@ impl TaskTable {
             Some("terminated") => &self.terminated[..],
             _ => std::slice::from_ref(&self.reward),
         };
-        texts.get(index.unwrap_or(0)).map_or(self.reward.span(), |value| inside(value, error, text))
+        texts.get(index.unwrap_or(0)).map_or(self.reward.span(), place)
     }
 
     /// The ranges of positions and velocities; those that are not given start where the system does.
@@ -230,14 +233,4 @@ fn pairs(table: &BTreeMap<Spanned<String>, Spanned<String>>) -> Vec<(String, Str
         .into_iter()
         .map(|(name, text)| (name.get_ref().clone(), text.get_ref().clone()))
         .collect()
-}
-
-/// The place in the file of an error within an expression.
-fn inside(value: &Spanned<String>, error: &EquationError, text: &str) -> Range<usize> {
-    let place = error.span.clone().and_then(|inside| {
-        // An escape is longer in the file than in the expression.
-        let begin = value.span().start + text.get(value.span())?.find(value.get_ref().as_str())?;
-        Some(begin + inside.start..begin + inside.end)
-    });
-    place.unwrap_or_else(|| value.span())
 }

@@ -1,16 +1,20 @@
 //! Files of bodies: TOML or CSV.
 
+mod rows;
+
+use std::collections::BTreeMap;
 use std::io;
 use std::ops::Range;
 use std::path::Path;
 
-use csv::{ReaderBuilder, Trim};
-use libration::bodies::{Bodies, BodiesError, Body};
+use libration::bodies::{Bodies, BodiesError, Body, PairPotential};
 use libration_data::read_text_bounded;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::{Document, Number, SettingsError, suggestions};
+use crate::equations::{help, inside};
+use crate::{Document, Number, SettingsError};
+use rows::of_rows;
 
 /// Bodies with their names.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +51,9 @@ struct SystemTable {
     name: Option<String>,
     gravitational_constant: Option<Spanned<Number>>,
     softening: Option<Spanned<Number>>,
+    pair_potential: Option<Spanned<String>>,
+    #[serde(default)]
+    parameters: BTreeMap<String, Number>,
 }
 
 #[derive(Deserialize)]
@@ -57,6 +64,7 @@ struct BodyTable {
     position: Spanned<Vec<Number>>,
     velocity: Spanned<Vec<Number>>,
     radius: Option<Spanned<Number>>,
+    charge: Option<Spanned<Number>>,
 }
 
 impl NamedBodies {
@@ -90,6 +98,26 @@ impl NamedBodies {
             wrong(span.unwrap_or_default(), error.to_string())
         })?;
         let system = system.unwrap_or_default();
+        if let Some(text_of) = &system.pair_potential {
+            let parameters: Vec<_> =
+                system.parameters.iter().map(|(name, value)| (name.clone(), value.0)).collect();
+            let potential =
+                PairPotential::new(text_of.get_ref(), &parameters).map_err(|error| {
+                    let span = inside(text_of, &error, text).unwrap_or_else(|| text_of.span());
+                    SettingsError::new(file, text, span, error.to_string(), help(&error))
+                })?;
+            // Gravity besides must be asked for.
+            all = all
+                .gravitational_constant(0.0)
+                .and_then(|all| all.pair_potential(potential))
+                .map_err(|error| {
+                    let span = body_of(&error).map(|i| body[i].get_ref().place(&error));
+                    wrong(span.unwrap_or_default(), error.to_string())
+                })?;
+        } else if let Some(name) = system.parameters.keys().next() {
+            let message = format!("parameter `{name}`; expected a `pair-potential` that has it");
+            return Err(wrong(0..0, message));
+        }
         if let Some(constant) = &system.gravitational_constant {
             all = all
                 .gravitational_constant(constant.get_ref().0)
@@ -118,6 +146,7 @@ impl BodyTable {
             position: vector("position", &self.position)?,
             velocity: vector("velocity", &self.velocity)?,
             radius: self.radius.as_ref().map_or(0.0, |radius| radius.get_ref().0),
+            charge: self.charge.as_ref().map_or(0.0, |charge| charge.get_ref().0),
         })
     }
 
@@ -127,10 +156,11 @@ impl BodyTable {
         else {
             return self.mass.span();
         };
-        match (*field, &self.radius) {
-            ("mass", _) => self.mass.span(),
-            ("radius", Some(radius)) => radius.span(),
-            ("x" | "y" | "z", _) => self.position.span(),
+        match (*field, &self.radius, &self.charge) {
+            ("mass", ..) => self.mass.span(),
+            ("radius", Some(radius), _) => radius.span(),
+            ("charge", _, Some(charge)) => charge.span(),
+            ("x" | "y" | "z", ..) => self.position.span(),
             _ => self.velocity.span(),
         }
     }
@@ -139,83 +169,11 @@ impl BodyTable {
 /// The body that an error is about.
 fn body_of(error: &BodiesError) -> Option<usize> {
     match error {
-        BodiesError::NotFinite { body, .. } | BodiesError::Negative { body, .. } => Some(*body),
+        BodiesError::NotFinite { body, .. }
+        | BodiesError::Negative { body, .. }
+        | BodiesError::Massless { body } => Some(*body),
         _ => None,
     }
-}
-
-/// Columns that a CSV file must have.
-const COLUMNS: [&str; 7] = ["mass", "x", "y", "z", "vx", "vy", "vz"];
-
-/// Reads rows with the columns `mass, x, y, z, vx, vy, vz`, in any order, and perhaps `name` and `radius`.
-fn of_rows(text: &str, file: &str) -> Result<NamedBodies, SettingsError> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let wrong = |span: Range<usize>, message: String, help: Option<String>| {
-        SettingsError::new(file, text, span, message, help)
-    };
-    let mut reader =
-        ReaderBuilder::new().trim(Trim::All).flexible(true).from_reader(text.as_bytes());
-    let unreadable = |error: csv::Error| {
-        let at = error.position().map_or(0, |position| position.byte() as usize);
-        wrong(at..at, error.to_string(), None)
-    };
-    let heads = reader.headers().map_err(unreadable)?.clone();
-    let head = 0..text.lines().next().map_or(0, str::len);
-    if heads.is_empty() {
-        return Err(wrong(head, "the file is empty; expected a line of names".to_owned(), None));
-    }
-    let known: Vec<&str> = COLUMNS.into_iter().chain(["name", "radius"]).collect();
-    if let Some(other) = heads.iter().find(|head| !known.contains(head)) {
-        let help = suggestions::suggest("columns", other, known.iter().copied());
-        return Err(wrong(head, format!("unknown column `{other}`"), Some(help)));
-    }
-    let names_of_columns: Vec<String> = heads.iter().map(str::to_owned).collect();
-    if let Some(i) = repeated(&names_of_columns) {
-        let message = format!("two columns have the name `{}`", names_of_columns[i]);
-        return Err(wrong(head, message, None));
-    }
-    let column = |name: &str| heads.iter().position(|head| head == name);
-    if let Some(missing) = COLUMNS.into_iter().find(|name| column(name).is_none()) {
-        let message = format!("no column `{missing}`; expected {}", COLUMNS.join(", "));
-        return Err(wrong(head, message, None));
-    }
-    let (mut bodies, mut names, mut places) = (Vec::new(), Vec::new(), Vec::new());
-    for cells in reader.records() {
-        let cells = cells.map_err(unreadable)?;
-        let start = cells.position().map_or(0, |position| position.byte() as usize);
-        // A record starts after the end of the line before it.
-        let blank = text[start..].len() - text[start..].trim_start().len();
-        let start = start + blank;
-        let span = start..start + text[start..].lines().next().map_or(0, str::len);
-        if cells.len() != heads.len() {
-            let message = format!("{} cells; expected {}", cells.len(), heads.len());
-            return Err(wrong(span, message, None));
-        }
-        let number = |name: &str| {
-            let Some(place) = column(name) else { return Ok(0.0) };
-            let message = || format!("{name} = `{}`; expected a number", &cells[place]);
-            cells[place].parse::<f64>().map_err(|_| wrong(span.clone(), message(), None))
-        };
-        let body = Body {
-            mass: number("mass")?,
-            position: [number("x")?, number("y")?, number("z")?],
-            velocity: [number("vx")?, number("vy")?, number("vz")?],
-            radius: number("radius")?,
-        };
-        let name = column("name").map(|place| &cells[place]).filter(|name| !name.is_empty());
-        names.push(name.map_or_else(|| bodies.len().to_string(), str::to_owned));
-        bodies.push(body);
-        places.push(span);
-    }
-    if let Some(i) = repeated(&names) {
-        let message = format!("two bodies have the name `{}`", names[i]);
-        return Err(wrong(places[i].clone(), message, None));
-    }
-    let all = Bodies::new(&bodies).map_err(|error| {
-        let place = body_of(&error).map_or(head, |i| places[i].clone());
-        wrong(place, error.to_string(), None)
-    });
-    Ok(NamedBodies { name: stem(file), bodies: all?, names })
 }
 
 /// The last of the first two equal names.
@@ -245,8 +203,13 @@ mod tests {
         assert_eq!(read.name, "two");
         assert_eq!(read.names, ["sun", "1"]);
         assert_eq!((read.bodies.constant(), read.bodies.softening_length()), (4.0, 0.5));
-        let second =
-            Body { mass: 0.5, position: [1.0, 2.0, 3.0], velocity: [4.0, 5.0, 6.0], radius: 0.1 };
+        let second = Body {
+            mass: 0.5,
+            position: [1.0, 2.0, 3.0],
+            velocity: [4.0, 5.0, 6.0],
+            radius: 0.1,
+            charge: 0.0,
+        };
         assert_eq!(read.bodies.body(1), second);
         let rows =
             "name, mass, x,y,z, vy,vx,vz,radius\nsun,1,0,0,0,0,0,0,0\n\n1,0.5,1,2,3,5,4,6,.1\n";
@@ -268,7 +231,7 @@ mod tests {
         assert_eq!(message, expected);
         assert_eq!(changed("[1, 2, 3]", "[1, 2]"), "line 11: `position` has 2 numbers; expected 3");
         assert!(changed("mass = 1\n", "mas = 1\n").contains("unknown key `mas`"));
-        assert!(changed("= 4\n", "= 0\n").starts_with("line 2: gravitational constant 0"));
+        assert!(changed("= 4\n", "= -4\n").starts_with("line 2: gravitational constant -4"));
         let rows = |text: &str| NamedBodies::parse(text, "two.csv").unwrap_err().sentence();
         assert!(rows("mass,x,y,z,vx,vy\n").contains("no column `vz`"));
         assert!(rows("mass,x,y,z,vx,vy,vz,x\n").contains("two columns have the name `x`"));
@@ -277,5 +240,46 @@ mod tests {
         let message = rows("mass,x,y,z,vx,vy,vz\n1,0,0,0,0,0,0\n1,0,0,0,0,inf,0\n");
         assert_eq!(message, "line 3: body 1: vy = inf; expected a finite number");
         assert!(rows("mass,x,y,z,vx,vy,vz\n").contains("0 bodies"));
+    }
+
+    const IONS: &str = "[system]\npair-potential = \"k*q1*q2/r\"\nparameters = { k = 2 }\n\
+        [[body]]\nmass = 1\ncharge = -1\nposition = [0, 0, 0]\nvelocity = [0, 0, 0]\n\
+        [[body]]\nmass = 2\nposition = [1, 0, 0]\nvelocity = [0, 0, 0]\n";
+
+    #[test]
+    fn a_pair_potential_replaces_gravity_unless_its_constant_is_given() {
+        let read = NamedBodies::parse(IONS, "ions.toml").unwrap().bodies;
+        let pairs = read.pairs().unwrap();
+        assert_eq!((pairs.text(), pairs.parameters()), ("k*q1*q2/r", &[("k".to_owned(), 2.0)][..]));
+        assert_eq!((read.constant(), read.charges()), (0.0, &[-1.0, 0.0][..]));
+        let both = IONS.replace("[system]", "[system]\ngravitational-constant = 3");
+        assert_eq!(NamedBodies::parse(&both, "ions.toml").unwrap().bodies.constant(), 3.0);
+        let rows = NamedBodies::parse("charge,mass,x,y,z,vx,vy,vz\n-3,1,0,0,0,0,0,0\n", "i.csv");
+        assert_eq!(rows.unwrap().bodies.charges(), [-3.0]);
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_pair_potential_is_shown_in_its_text() {
+        let changed = |from: &str, to: &str| {
+            NamedBodies::parse(&IONS.replace(from, to), "ions.toml").unwrap_err()
+        };
+        let unknown = changed("q2/r", "q3/r");
+        assert!(
+            unknown.sentence().starts_with("line 2: unknown name `q3`"),
+            "{}",
+            unknown.sentence()
+        );
+        assert!(
+            changed("{ k = 2 }", "{ m1 = 2, k = 1 }").sentence().contains("`m1` is given twice")
+        );
+        let massless = changed("mass = 2", "mass = 0").sentence();
+        assert_eq!(
+            massless,
+            "line 10: body 1: mass = 0; expected a mass above 0 with a pair potential"
+        );
+        let alone = changed("pair-potential = \"k*q1*q2/r\"\n", "").sentence();
+        assert!(alone.contains("expected a `pair-potential` that has it"), "{alone}");
+        let text = changed("charge = -1", "charge = nan").sentence();
+        assert!(text.contains("charge = NaN; expected a finite number"), "{text}");
     }
 }
