@@ -5,7 +5,7 @@ use libration::control::delay::{Order, Packets};
 use libration::control::{Delay, Jitter, Schedule, WhiteNoise};
 use libration::ensemble::{All, EnsembleError, Loops, MeanCost, Setup};
 use libration::integrator::{Exact, Rk4, Substeps};
-use libration::system::BaselineOnly;
+
 use libration::{Integrator, Model, State};
 use libration_work::Work;
 
@@ -71,7 +71,7 @@ impl<M: PlantModel> Loop<M> {
         delay: impl Delay<f64>,
         method: impl Integrator,
     ) -> Result<EnsembleResult, AdviseError> {
-        let system = BaselineOnly(self.model.on::<f64>());
+        let system = self.model.on::<f64>();
         let even = [1.0];
         let recorded = self.control.record.as_deref().unwrap_or(&even);
         let jitter = match self.control.record {
