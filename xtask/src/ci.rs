@@ -4,23 +4,18 @@ use std::fmt::Write;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::{
-    Outcome, codegen, command, dependencies, examples, lints, processor_time, python, report, test,
-    tidy,
-};
+use crate::{Outcome, codegen, command, dependencies, lints, processor_time, python, test, tidy};
 
 /// Name and function of a step.
 type Step = (&'static str, fn() -> Outcome);
 
-const STEPS: [Step; 8] = [
+const STEPS: [Step; 6] = [
     ("format", || command::run(&mut command::cargo("fmt --all --check"))),
     ("tidy", tidy::run),
     ("dependencies", dependencies::run),
     ("codegen", codegen::unless_read),
     ("lints", || command::run(&mut command::cargo("test --workspace --no-run"))),
-    ("report", report::run),
-    ("tests", || test::all(Some(&report::folder()))),
-    ("examples", examples::run),
+    ("tests", || test::all(true)),
 ];
 
 /// Runs the steps under the lints, in a program of its own.

@@ -77,13 +77,13 @@ const TASKS: [Task; 12] = [
     },
     Task {
         name: "examples",
-        summary: "build every example and run it",
-        action: Action::Plain(examples::run),
+        summary: "builds every example and runs it; with `built` those that are there",
+        action: Action::With(|given| on_built(given, examples::run, examples::run_built)),
     },
     Task {
         name: "report",
-        summary: "a quick `libration lab` and its files checked",
-        action: Action::Plain(report::run),
+        summary: "a quick `libration lab` and its files checked; with `built` of the program that is there",
+        action: Action::With(|given| on_built(given, report::run, report::run_built)),
     },
     Task {
         name: "release",
@@ -123,6 +123,15 @@ fn main() -> ExitCode {
         None => return misuse(&format!("there is no task `{name}`")),
     };
     ended(name, outcome)
+}
+
+/// Runs a task, or with the argument [`test::BUILT`] the part of it that follows the build.
+fn on_built(given: &[String], all: fn() -> Outcome, rest: fn() -> Outcome) -> Outcome {
+    match given {
+        [] => all(),
+        [word] if word == test::BUILT => rest(),
+        _ => Err(format!("unknown arguments `{}`; expected none or `built`", given.join(" "))),
+    }
 }
 
 fn ended(name: &str, outcome: Outcome) -> ExitCode {

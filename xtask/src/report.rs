@@ -17,6 +17,11 @@ pub(crate) fn folder() -> PathBuf {
 /// differs in nothing but its speed.
 pub(crate) fn run() -> Outcome {
     command::run(&mut command::cargo("test --workspace --no-run"))?;
+    run_built()
+}
+
+/// The same with a binary that is known to be there.
+pub(crate) fn run_built() -> Outcome {
     let (scratch, out) = (Scratch::new("report")?, folder());
     // It may not be there.
     let _ = fs::remove_dir_all(&out);

@@ -13,7 +13,24 @@ use serde_json::Value;
 use crate::{Outcome, command};
 
 /// The slowest suites, which are started first; the others follow in the order in which they were built.
-const LONG: [&str; 6] = ["lab", "cli", "browser", "advise", "engine", "replay"];
+const LONG: [&str; 10] = [
+    "cli",
+    "lab",
+    "advise",
+    "browser",
+    EXAMPLES_IN_DOCUMENTATION,
+    "identify",
+    "analyze",
+    "engine",
+    EXAMPLES,
+    "libration_analysis",
+];
+
+/// The name of the suite of the examples in the documentation.
+pub(crate) const EXAMPLES_IN_DOCUMENTATION: &str = "examples in the documentation";
+
+/// The name of the suite of the examples.
+pub(crate) const EXAMPLES: &str = "examples";
 
 /// Something that is run to its end, and what it is called.
 pub(crate) struct Suite {
@@ -29,17 +46,20 @@ impl Suite {
     }
 }
 
-/// Builds all test programs of the workspace, and says how each is run, those that take longest first.
+/// Builds all test programs of the workspace, and says how each is run.
 pub(crate) fn built() -> Result<Vec<Suite>, String> {
     command::run(&mut command::cargo("test --workspace --no-run"))?;
     let said = command::output(&mut command::cargo(
         "test --workspace --no-run --quiet --message-format=json",
     ))?;
-    let mut suites: Vec<Suite> = said.lines().filter_map(program_in).map(Program::suite).collect();
+    Ok(said.lines().filter_map(program_in).map(Program::suite).collect())
+}
+
+/// Brings those that take longest to the front.
+pub(crate) fn sort(suites: &mut [Suite]) {
     suites.sort_by_key(|suite| {
         LONG.iter().position(|name| *name == suite.name).unwrap_or(LONG.len())
     });
-    Ok(suites)
 }
 
 /// What a suite took.
