@@ -198,7 +198,8 @@ def simulate_bodies(
     bodies
         The bodies at time 0.
     integrator
-        The name of an explicit integrator, or ``"wisdom-holman"`` for orbits around a heavy first body.
+        The name of an explicit integrator, or ``"wisdom-holman"`` for orbits around a heavy first body, also by a table for weak kicks as
+        ``"wisdom-holman:aba-10-6-4"``.
     dt, steps
         Time step, in the units of the bodies, and number of steps.
     every

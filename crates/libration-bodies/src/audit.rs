@@ -14,8 +14,10 @@ impl BodySimulation {
                 let evaluations = plan.evaluations as f64;
                 (evaluations, evaluations, !vectors[POSITIONS].lost.is_empty())
             }
-            // Each has two sums besides those of its orbit, whose increments are as large as the state.
-            Stepper::Heliocentric(_) => (4.0, 4.0, false),
+            Stepper::Heliocentric(orbits) => {
+                let [kicks, drifts] = orbits.sums();
+                (kicks, drifts, false)
+            }
         };
         let kick_length = self.dt / kicks;
         let pairs = self.bodies.forces().pairs;

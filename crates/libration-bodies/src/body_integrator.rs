@@ -1,6 +1,8 @@
 //! Integrators of bodies.
 
 use libration_core::Method;
+use libration_core::integrator::{SplittingScope, SplittingTable};
+use libration_equations::{Flow, VectorStep};
 
 use super::step_plan::StepPlan;
 
@@ -10,23 +12,50 @@ pub enum BodyIntegrator {
     /// An integrator in inertial coordinates.
     Method(Method),
     /// Orbits around the first body, which must be the heaviest, and kicks by all other forces: the splitting of Wisdom and Holman in
-    /// democratic heliocentric coordinates. Order 2, with errors in proportion to the masses of the others.
-    WisdomHolman,
+    /// democratic heliocentric coordinates.
+    WisdomHolman(OrbitsAndKicks),
 }
 
+/// The order in which orbits and kicks follow each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OrbitsAndKicks {
+    /// Half a kick, an orbit, half a kick: order 2, with errors in proportion to the masses of the others.
+    Leapfrog,
+    /// A published table for weak kicks: errors that are linear in the masses of the others have a higher order than those that are
+    /// quadratic (J. Laskar, P. Robutel, *Celestial Mechanics and Dynamical Astronomy* 80, 2001).
+    Table(&'static SplittingTable),
+}
+
+/// The name of the splitting, which that of a table may follow.
+const WISDOM_HOLMAN: &str = "wisdom-holman";
+
 impl BodyIntegrator {
-    /// Name on the command line and in Python.
-    pub const fn name(self) -> &'static str {
+    /// All splittings around a heavy first body.
+    pub fn wisdom_holman() -> impl Iterator<Item = BodyIntegrator> {
+        let weak = |table: &&'static SplittingTable| {
+            matches!(table.scope, SplittingScope::NearlyIntegrable { .. })
+        };
+        let tables = SplittingTable::ALL.into_iter().flatten().filter(weak);
+        core::iter::once(OrbitsAndKicks::Leapfrog)
+            .chain(tables.map(OrbitsAndKicks::Table))
+            .map(BodyIntegrator::WisdomHolman)
+    }
+
+    /// Name on the command line and in Python: for a table that of the splitting, a colon, and that of the table.
+    pub fn name(self) -> String {
         match self {
-            BodyIntegrator::Method(method) => method.name(),
-            BodyIntegrator::WisdomHolman => "wisdom-holman",
+            BodyIntegrator::Method(method) => method.name().to_owned(),
+            BodyIntegrator::WisdomHolman(OrbitsAndKicks::Leapfrog) => WISDOM_HOLMAN.to_owned(),
+            BodyIntegrator::WisdomHolman(OrbitsAndKicks::Table(table)) => {
+                format!("{WISDOM_HOLMAN}:{}", table.name)
+            }
         }
     }
 
     /// The integrator of that name, if there is one.
     pub fn from_name(name: &str) -> Option<Self> {
-        if name == BodyIntegrator::WisdomHolman.name() {
-            return Some(BodyIntegrator::WisdomHolman);
+        if name.starts_with(WISDOM_HOLMAN) {
+            return BodyIntegrator::wisdom_holman().find(|known| known.name() == name);
         }
         Method::from_name(name).map(BodyIntegrator::Method)
     }
@@ -35,15 +64,32 @@ impl BodyIntegrator {
     pub fn evaluations(self) -> usize {
         match self {
             BodyIntegrator::Method(method) => StepPlan::new(method, 1.0).evaluations,
-            BodyIntegrator::WisdomHolman => 1,
+            BodyIntegrator::WisdomHolman(OrbitsAndKicks::Leapfrog) => 1,
+            BodyIntegrator::WisdomHolman(OrbitsAndKicks::Table(table)) => {
+                table.coefficients.kicks()
+            }
         }
     }
 
     /// Order of consistency.
-    pub const fn order(self) -> u32 {
+    pub fn order(self) -> u32 {
         match self {
             BodyIntegrator::Method(method) => method.order(),
-            BodyIntegrator::WisdomHolman => 2,
+            BodyIntegrator::WisdomHolman(OrbitsAndKicks::Leapfrog) => 2,
+            BodyIntegrator::WisdomHolman(OrbitsAndKicks::Table(table)) => {
+                if cubes_of_kicks(table).abs() < 1e-12 { table.order } else { 2 }
+            }
         }
     }
+}
+
+/// The sum of the cubes of the kicks. Unless it vanishes, that a kick is itself a leapfrog of parts that do not commute leaves an error of
+/// order 2 (A. Farrés, J. Laskar, S. Blanes, F. Casas, J. Makazaga, A. Murua, *Celestial Mechanics and Dynamical Astronomy* 116, 2013, section 4).
+fn cubes_of_kicks(table: &'static SplittingTable) -> f64 {
+    let flows = VectorStep::flows(table).unwrap_or_default();
+    let cubes = flows.iter().map(|flow| match flow {
+        Flow::Kick(fraction) => fraction.powi(3),
+        Flow::Drift(_) => 0.0,
+    });
+    cubes.sum()
 }

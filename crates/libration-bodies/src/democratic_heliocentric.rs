@@ -1,9 +1,11 @@
 //! The splitting of Wisdom and Holman in democratic heliocentric coordinates.
 
 use libration_batch::ensemble::Execution;
+use libration_equations::{Flow, VectorStep};
 
 use super::BodiesError;
 use super::bodies::Bodies;
+use super::body_integrator::OrbitsAndKicks;
 use super::direct_sum::{Attraction, axes, axes_mut};
 use super::kepler_flow::kepler_flow;
 
@@ -11,9 +13,12 @@ use super::kepler_flow::kepler_flow;
 ///
 /// M. J. Duncan, H. F. Levison, M. H. Lee, *The Astronomical Journal* 116, 1998; J. Wisdom, M. Holman, ibid. 102, 1991.
 /// A step is half a kick by the forces between the others, half a drift of all by the momentum of the first, an orbit of each around
-/// the first, and the same backwards.
+/// the first, and the same backwards; or a table says how orbits and kicks follow each other.
 #[derive(Clone, Debug)]
 pub(crate) struct DemocraticHeliocentric {
+    order: OrbitsAndKicks,
+    /// Of a table: drifts are orbits.
+    flows: Vec<Flow>,
     /// `G·m` of the first body.
     central: f64,
     /// `m/m₀` of the others, and `G·m`.
@@ -34,7 +39,11 @@ pub(crate) struct DemocraticHeliocentric {
 impl DemocraticHeliocentric {
     /// # Errors
     /// [`BodiesError::CentralBody`] if the first body has no mass, is not the heaviest, or forces are not gravity or softened.
-    pub(crate) fn new(bodies: &Bodies, on: &Execution) -> Result<Self, BodiesError> {
+    pub(crate) fn new(
+        bodies: &Bodies,
+        order: OrbitsAndKicks,
+        on: &Execution,
+    ) -> Result<Self, BodiesError> {
         let [central, ref others @ ..] = *bodies.masses() else {
             return Err(BodiesError::CentralBody { reason: "there is no body" });
         };
@@ -72,6 +81,11 @@ impl DemocraticHeliocentric {
         let first = bodies.body(0);
         let last = others.iter().rposition(|&mass| mass > 0.0);
         let mut new = DemocraticHeliocentric {
+            order,
+            flows: match order {
+                OrbitsAndKicks::Leapfrog => Vec::new(),
+                OrbitsAndKicks::Table(table) => VectorStep::flows(table).unwrap_or_default(),
+            },
             central: bodies.strengths()[0],
             ratios: others.iter().map(|mass| mass / central).collect(),
             strengths: bodies.strengths()[1..].to_vec(),
@@ -96,12 +110,32 @@ impl DemocraticHeliocentric {
     pub(crate) fn step(&mut self, dt: f64, on: &Execution) {
         self.last[0].clone_from(&self.positions);
         self.last[1].clone_from(&self.velocities);
-        self.kick(0.5 * dt);
-        self.jump(0.5 * dt);
-        self.orbit(dt);
-        self.jump(0.5 * dt);
-        self.evaluate(on);
-        self.kick(0.5 * dt);
+        match self.order {
+            OrbitsAndKicks::Leapfrog => {
+                self.kick(0.5 * dt);
+                self.jump(0.5 * dt);
+                self.orbit(dt);
+                self.jump(0.5 * dt);
+                self.evaluate(on);
+                self.kick(0.5 * dt);
+            }
+            OrbitsAndKicks::Table(_) => {
+                for i in 0..self.flows.len() {
+                    match self.flows[i] {
+                        Flow::Drift(fraction) => self.orbit(dt * fraction),
+                        // The two parts of what disturbs the orbits do not commute (A. Farrés, J. Laskar, S. Blanes, F. Casas, J. Makazaga,
+                        // A. Murua, *Celestial Mechanics and Dynamical Astronomy* 116, 2013, section 4).
+                        Flow::Kick(fraction) => {
+                            let part = dt * fraction;
+                            self.jump(0.5 * part);
+                            self.evaluate(on);
+                            self.kick(part);
+                            self.jump(0.5 * part);
+                        }
+                    }
+                }
+            }
+        }
         for (centre, velocity) in self.centre.iter_mut().zip(self.centre_velocity) {
             *centre += dt * velocity;
         }
@@ -151,6 +185,16 @@ impl DemocraticHeliocentric {
             for (out, other) in out[1..].iter_mut().zip(others) {
                 *out = centre + other;
             }
+        }
+    }
+
+    /// Sums of velocities and positions in a step, where an orbit has two of each, whose increments are as large as the state.
+    pub(crate) fn sums(&self) -> [f64; 2] {
+        let orbits = self.flows.iter().filter(|flow| matches!(flow, Flow::Drift(_))).count() as f64;
+        let kicks = self.flows.len() as f64 - orbits;
+        match self.order {
+            OrbitsAndKicks::Leapfrog => [4.0, 4.0],
+            OrbitsAndKicks::Table(_) => [2.0 * orbits + kicks, 2.0 * (orbits + kicks)],
         }
     }
 

@@ -22,7 +22,7 @@ mod step_density;
 mod step_plan;
 
 pub use bodies::{Bodies, Body, MOST_BODIES};
-pub use body_integrator::BodyIntegrator;
+pub use body_integrator::{BodyIntegrator, OrbitsAndKicks};
 pub use conserved::Conserved;
 pub use error::BodiesError;
 pub use initial_conditions::{InitialConditions, KOZAI_TILT};

@@ -65,13 +65,13 @@ impl BodySimulation {
                 vectors[VELOCITIES].values.copy_from_slice(bodies.velocities());
                 Stepper::Plan { plan, vectors }
             }
-            BodyIntegrator::WisdomHolman if compensated => {
+            BodyIntegrator::WisdomHolman(_) if compensated => {
                 let reason =
                     "sums are not compensated; expected an integrator in inertial coordinates";
                 return Err(BodiesError::CentralBody { reason });
             }
-            BodyIntegrator::WisdomHolman => {
-                Stepper::Heliocentric(Box::new(DemocraticHeliocentric::new(&bodies, &on)?))
+            BodyIntegrator::WisdomHolman(order) => {
+                Stepper::Heliocentric(Box::new(DemocraticHeliocentric::new(&bodies, order, &on)?))
             }
         };
         let mut simulation = BodySimulation {
@@ -214,7 +214,7 @@ impl BodySimulation {
             BodyIntegrator::Method(method) => {
                 with_method!(method, |integrator| VectorStep::flows(integrator))
             }
-            BodyIntegrator::WisdomHolman => None,
+            BodyIntegrator::WisdomHolman(_) => None,
         };
         if !flows.is_some_and(|flows| flows.iter().eq(flows.iter().rev())) {
             let reason = "requires a symmetric integrator of kicks and drifts, such as leapfrog";

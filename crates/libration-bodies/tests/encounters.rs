@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used)]
 
 use libration_batch::ensemble::Execution;
-use libration_bodies::{BodiesError, BodyIntegrator, BodySimulation, InitialConditions};
+use libration_bodies::{
+    BodiesError, BodyIntegrator, BodySimulation, InitialConditions, OrbitsAndKicks,
+};
 
 fn pythagorean(integrator: &str, dt: f64) -> BodySimulation {
     let bodies = InitialConditions::Pythagorean.bodies(0, 0).unwrap();
@@ -80,6 +82,13 @@ fn adaptive_steps_require_a_symmetric_splitting() {
     }
     let planets = InitialConditions::OuterSolarSystem.bodies(0, 0).unwrap();
     let on = Execution::serial();
-    let run = BodySimulation::new(planets, BodyIntegrator::WisdomHolman, 9.0, false, on).unwrap();
+    let run = BodySimulation::new(
+        planets,
+        BodyIntegrator::WisdomHolman(OrbitsAndKicks::Leapfrog),
+        9.0,
+        false,
+        on,
+    )
+    .unwrap();
     assert!(run.adaptive().is_err());
 }

@@ -2,27 +2,15 @@
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
+mod common;
+
+use common::{energy_error, simulation};
 use libration_batch::ensemble::Execution;
 use libration_bodies::{
     Bodies, BodiesError, Body, BodyIntegrator, BodySimulation, InitialConditions, KOZAI_TILT,
+    OrbitsAndKicks,
 };
 use libration_core::Method;
-
-fn simulation(bodies: Bodies, integrator: &str, dt: f64) -> BodySimulation {
-    let integrator = BodyIntegrator::from_name(integrator).unwrap();
-    BodySimulation::new(bodies, integrator, dt, false, Execution::serial()).unwrap()
-}
-
-/// The largest relative change of the energy at `samples` equal parts of the motion.
-fn energy_error(simulation: &mut BodySimulation, steps: u64, samples: u64) -> f64 {
-    let start = simulation.conserved().energy;
-    let mut largest: f64 = 0.0;
-    for _ in 0..samples {
-        simulation.advance(steps / samples).unwrap();
-        largest = largest.max((simulation.conserved().energy / start - 1.0).abs());
-    }
-    largest
-}
 
 #[test]
 fn the_figure_eight_returns_after_its_published_period() {
@@ -52,48 +40,6 @@ fn errors_of_the_energy_fall_with_the_order_of_the_integrator() {
         let allowed = if name == "rk4" { 0.6..1.5 } else { -0.3..0.5 };
         assert!(allowed.contains(&(measured - f64::from(order))), "{name}: {measured}");
     }
-}
-
-/// A heavy body and two others on eccentric, tilted orbits.
-fn planets(mass: f64) -> Bodies {
-    let body = |mass, position, velocity| Body { mass, position, velocity, ..Body::default() };
-    let bodies = [
-        body(1.0, [0.0; 3], [0.0; 3]),
-        body(mass, [1.0, 0.0, 0.0], [0.0, 1.05, 0.05]),
-        body(2.0 * mass, [0.0, 2.1, 0.1], [-0.68, 0.0, 0.0]),
-        body(0.0, [-3.5, 0.0, 0.0], [0.0, -0.5, 0.1]),
-    ];
-    Bodies::new(&bodies).unwrap().centred()
-}
-
-#[test]
-fn wisdom_holman_has_order_2_and_errors_in_proportion_to_the_masses() {
-    let error = |mass: f64, dt: f64| {
-        let mut moved = simulation(planets(mass), "wisdom-holman", dt);
-        energy_error(&mut moved, (100.0 / dt) as u64, 200)
-    };
-    let base = error(1e-3, 0.1);
-    let order = (base / error(1e-3, 0.05)).log2();
-    assert!((order - 2.0).abs() < 0.3, "{order}");
-    let of_mass = (base / error(1e-4, 0.1)).log10();
-    assert!((of_mass - 1.0).abs() < 0.2, "{of_mass}");
-}
-
-#[test]
-fn wisdom_holman_approaches_the_motion_of_another_integrator() {
-    let end = |integrator: &str, dt: f64| {
-        let mut moved = simulation(planets(1e-3), integrator, dt);
-        moved.advance((20.0 / dt).round() as u64).unwrap();
-        moved.bodies().positions().to_vec()
-    };
-    let reference = end("blanes-moan-srkn-14-6", 1.0 / 64.0);
-    let distance = |dt: f64| -> f64 {
-        let other = end("wisdom-holman", dt);
-        other.iter().zip(&reference).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
-    };
-    let (coarse, fine) = (distance(1.0 / 16.0), distance(1.0 / 32.0));
-    assert!(fine < 1e-4, "{fine}");
-    assert!(((coarse / fine).log2() - 2.0).abs() < 0.2, "{coarse} {fine}");
 }
 
 #[test]
@@ -252,7 +198,7 @@ fn numbers_that_are_not_allowed_are_named() {
     assert!(Bodies::new(&[good]).unwrap().softening(-1.0).is_err());
     assert!(Bodies::new(&[good]).unwrap().gravitational_constant(f64::INFINITY).is_err());
     let two = Bodies::new(&[good, Body { mass: 2.0, position: [1.0; 3], ..good }]).unwrap();
-    let integrator = BodyIntegrator::WisdomHolman;
+    let integrator = BodyIntegrator::WisdomHolman(OrbitsAndKicks::Leapfrog);
     let refused = BodySimulation::new(two, integrator, 0.1, false, Execution::serial());
     let message = refused.unwrap_err().to_string();
     assert!(message.contains("expected the heaviest body first"), "{message}");

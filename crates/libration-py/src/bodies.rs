@@ -169,12 +169,10 @@ pub(crate) fn _simulate_bodies<'py>(
     let BodyOptions { integrator, dt, steps, every, compensated, predict, adaptive, threads } =
         options;
     let integrator = BodyIntegrator::from_name(&integrator).ok_or_else(|| {
-        let own = Method::ALL.map(Method::name);
-        unknown(
-            "integrator",
-            &integrator,
-            own.into_iter().chain([BodyIntegrator::WisdomHolman.name()]),
-        )
+        let own = Method::ALL.map(|method| method.name().to_owned()).into_iter();
+        let known: Vec<String> =
+            own.chain(BodyIntegrator::wisdom_holman().map(BodyIntegrator::name)).collect();
+        unknown("integrator", &integrator, known.iter().map(String::as_str))
     })?;
     let request = BodiesRequest {
         system: system.read()?,

@@ -33,7 +33,7 @@ pub struct BodiesAudit {
     /// The number of bodies.
     pub bodies: usize,
     /// The integrator.
-    pub integrator: &'static str,
+    pub integrator: String,
     /// Its order.
     pub order: u32,
     /// The time step, or the first of adaptive steps.

@@ -18,7 +18,8 @@ pub(crate) struct BodiesArgs {
     /// Name of initial conditions (figure-eight, pythagorean, outer-solar-system, kozai, plummer, frozen-argon), or a file NAME.toml or NAME.csv
     #[arg(value_name = "SYSTEM")]
     pub(crate) system: String,
-    /// Integrator: any explicit one of `libration list`, or wisdom-holman for orbits around a heavy first body
+    /// Integrator: any explicit one of `libration list`, or wisdom-holman for orbits around a heavy first body, as wisdom-holman:TABLE with errors of
+    /// higher order for light others (saba-2 to saba-6, sbab-2 to sbab-6, aba-10-4, aba-8-6-4, aba-10-6-4, abah-8-4-4, abah-8-6-4, abah-10-6-4)
     #[arg(long, value_name = "NAME", value_parser = integrator)]
     pub(crate) integrator: BodyIntegrator,
     /// Time step, in the units of the system
@@ -88,12 +89,14 @@ The bits of a motion do not depend on --threads."#;
 /// Parses the name of an integrator.
 fn integrator(name: &str) -> Result<BodyIntegrator, String> {
     BodyIntegrator::from_name(name).ok_or_else(|| {
-        let known = Method::all().map(Method::name).chain([BodyIntegrator::WisdomHolman.name()]);
+        let methods = Method::all().map(|method| method.name().to_owned());
+        let known: Vec<String> =
+            methods.chain(BodyIntegrator::wisdom_holman().map(BodyIntegrator::name)).collect();
         let few = Method::ALL.map(Method::name).join(", ");
-        let near = suggestions::nearest(name, known);
+        let near = suggestions::nearest(name, known.iter().map(String::as_str));
         let near = near.map_or_else(String::new, |near| format!("did you mean `{near}`? "));
         format!(
-            "{near}expected one of wisdom-holman, {few}, or a published method of `libration list`"
+            "{near}expected one of wisdom-holman, wisdom-holman:abah-10-6-4, {few}, or a published method of `libration list`"
         )
     })
 }
