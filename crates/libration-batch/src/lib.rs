@@ -11,7 +11,6 @@ pub mod ensemble;
 mod column_program;
 #[cfg(not(test))]
 mod machine;
-pub mod replay;
 pub mod rl;
 
 #[cfg(not(test))]

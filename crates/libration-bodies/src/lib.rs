@@ -15,6 +15,7 @@ mod error;
 mod forces;
 mod initial_conditions;
 mod kepler_flow;
+mod meetings;
 mod pair_potential;
 mod rounding;
 mod simulation;

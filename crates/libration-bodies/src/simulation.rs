@@ -19,10 +19,10 @@ pub struct BodySimulation {
     pub(super) bodies: Bodies,
     integrator: BodyIntegrator,
     pub(super) dt: f64,
-    steps: u64,
+    pub(super) steps: u64,
     pub(super) on: Execution,
     pub(super) stepper: Stepper,
-    has_radii: bool,
+    pub(super) has_radii: bool,
     encounters: Option<ClosestPair>,
     time: f64,
     density: Option<StepDensity>,
@@ -228,36 +228,6 @@ impl BodySimulation {
         let reason = "requires two bodies, one of them with a mass";
         self.density = Some(density.ok_or(BodiesError::Adaptive { reason })?);
         Ok(self)
-    }
-
-    /// Names the bodies that were nearest before the step.
-    fn failure(&self) -> BodiesError {
-        let time = self.time();
-        match self.bodies.closest_pair() {
-            Some((pair, 0.0)) => BodiesError::SamePlace { pair, time },
-            found => BodiesError::Overflow { pair: found.map(|(pair, _)| pair), time },
-        }
-    }
-
-    fn check_distances(&self) -> Result<(), BodiesError> {
-        let time = self.time();
-        if self.has_radii
-            && let Some((i, j, distance)) = self.bodies.first_collision()
-        {
-            return Err(BodiesError::Collision { pair: [i, j], time, distance });
-        }
-        if self.steps > 0 || self.bodies.softening_length() > 0.0 {
-            return Ok(());
-        }
-        // Bodies without mass do not attract and may be anywhere.
-        let attract = |i: usize| self.bodies.masses()[i] > 0.0;
-        let mut same = None;
-        self.bodies.for_each_pair(|i, j, distance| {
-            if distance == 0.0 && (attract(i) || attract(j)) {
-                same = same.or(Some([i, j]));
-            }
-        });
-        same.map_or(Ok(()), |pair| Err(BodiesError::SamePlace { pair, time }))
     }
 
     /// Writes the state of the stepper to the bodies.

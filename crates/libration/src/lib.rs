@@ -6,11 +6,12 @@
 //!
 //! This crate is the front of the engine: [`libration_core`] has numbers, integrators, systems and the parts of control loops,
 //! [`libration_linear`] loops as matrices, [`libration_equations`] systems from text, [`libration_analysis`] what is derived from a
-//! step, [`libration_batch`] what runs many trajectories at once, [`libration_linear_loops`] many loops, and [`libration_bodies`] gravity. None of them does input or
-//! output, reads a clock or prints.
+//! step, [`libration_batch`] what runs many trajectories at once, [`libration_linear_loops`] many loops, [`libration_bodies`] many
+//! bodies, and [`libration_replay`] transitions for a learner. None of them does input or output, but for replay buffers in files; none reads a clock or
+//! prints.
 
 pub use libration_analysis as analysis;
-pub use libration_batch::{Ensemble, checkpoint, ensemble, replay, rl};
+pub use libration_batch::{Ensemble, checkpoint, ensemble, rl};
 pub use libration_bodies as bodies;
 pub use libration_core::{
     AnyMethod, AnySystem, CatalogError, Elementary, Float, Hamiltonian, ImplicitMethod, Integrator,
@@ -20,3 +21,4 @@ pub use libration_core::{
 pub use libration_equations as equations;
 pub use libration_linear as linear;
 pub use libration_linear_loops as linear_loops;
+pub use libration_replay as replay;

@@ -62,7 +62,7 @@ impl<T: Pod> Buffer<T> {
     }
 
     /// The memory itself.
-    pub(crate) fn into_map(self) -> MmapMut {
+    pub fn into_map(self) -> MmapMut {
         self.memory
     }
 }

@@ -68,7 +68,6 @@ pub use program::{
 };
 pub use rollout::Rollout;
 pub use rollout_run::StepBuffers;
-pub(crate) use rollout_slice::first_of;
 pub use sensor::Sensor;
 pub use start::{Episode, Start};
 pub use task::Task;

@@ -155,12 +155,12 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
     }
 
     /// Whether there may be steps that are no transitions.
-    pub(crate) fn pauses(&self) -> bool {
+    pub fn pauses(&self) -> bool {
         self.pauses
     }
 
     /// Writes for the environments from `first` on whether step `t` is no transition: not 0 if it is none.
-    pub(crate) fn write_idle(&self, t: usize, first: usize, idle: &mut [u8]) {
+    pub fn write_idle(&self, t: usize, first: usize, idle: &mut [u8]) {
         idle.fill(0);
         if !self.pauses {
             return;

@@ -1,7 +1,7 @@
 //! Slices of a rollout: neighbouring environments over all steps.
 
 use core::array::from_fn;
-use core::mem::{replace, take};
+use core::mem::replace;
 use core::ops::Range;
 
 use ndarray::{ArrayViewMut2, Axis};
@@ -121,9 +121,6 @@ pub(super) fn first_columns<'a, X>(
 }
 
 /// Takes off the first `count`, or all if there are fewer.
-pub(crate) fn first_of<'a, X>(slice: &mut &'a mut [X], count: usize) -> &'a mut [X] {
-    let whole = take(slice);
-    let (head, tail) = whole.split_at_mut(count.min(whole.len()));
-    *slice = tail;
-    head
+pub(super) fn first_of<'a, X>(slice: &mut &'a mut [X], count: usize) -> &'a mut [X] {
+    slice.split_off_mut(..count.min(slice.len())).unwrap_or_default()
 }

@@ -9,7 +9,7 @@ use memmap2::MmapMut;
 
 use super::capacity::{Fields, PAGE};
 use super::{Capacity, ReplayError};
-use crate::ensemble::{Buffer, Pages};
+use libration_batch::ensemble::{Buffer, Pages};
 
 /// The first eight bytes.
 const MAGIC: u64 = u64::from_le_bytes(*b"LIBRTNRB");

@@ -5,7 +5,7 @@ use libration_core::Float;
 use memmap2::MmapMut;
 
 use super::{Capacity, ReplayBuffer, ReplayError};
-use crate::checkpoint::{Checkpoint, CheckpointError, Trait};
+use libration_batch::checkpoint::{Checkpoint, CheckpointError, Trait};
 
 impl<T: Float + Pod, const O: usize, const D: usize> Checkpoint for ReplayBuffer<T, O, D> {
     fn traits(&self) -> Vec<Trait> {

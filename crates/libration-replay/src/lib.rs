@@ -1,10 +1,12 @@
 //! Replay buffers: memory of transitions from which a learner draws batches.
 //!
-//! A [`ReplayBuffer`] stores the last steps of the environments of a [`Rollout`](crate::rl::Rollout), one rollout per insertion. The next
+//! A [`ReplayBuffer`] stores the last steps of the environments of a [`Rollout`](libration_batch::rl::Rollout), one rollout per insertion. The next
 //! observation is in the next row, or stored separately at the end of an episode: each observation is stored once. A [`Batch`] of
 //! transitions, of n-step returns, or [`Sequences`] of steps is sampled uniformly or in proportion to priorities. Seed and number of
 //! a batch determine the sample. All data lie in one piece of memory, which may be a file. If the process dies, completed
 //! insertions are kept.
+//!
+//! This crate reads no clock and prints nothing; a file in memory is all that it reads and writes.
 
 mod batch;
 mod capacity;

@@ -3,8 +3,8 @@
 use libration_core::control::ControlError;
 use thiserror::Error;
 
-use crate::ensemble::{EnsembleError, InsufficientMemory};
-use crate::rl::EnvironmentError;
+use libration_batch::ensemble::{EnsembleError, InsufficientMemory};
+use libration_batch::rl::EnvironmentError;
 
 /// Error of a replay buffer.
 #[derive(Clone, Debug, Error, PartialEq)]

@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use super::ReplayError;
-use crate::ensemble::InsufficientMemory;
+use libration_batch::ensemble::InsufficientMemory;
 
 /// The capacity of a replay buffer and its memory, before any allocation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,8 +2,6 @@
 
 use libration_core::Float;
 
-use crate::rl::first_of;
-
 /// A batch of transitions, allocated once, to be filled again and again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Batch<T, const O: usize, const D: usize> {
@@ -116,4 +114,9 @@ impl<'a, T, const O: usize, const D: usize> Columns<'a, T, O, D> {
             weight: first_of(&mut self.weight, count),
         }
     }
+}
+
+/// Takes off the first `count`, or all if there are fewer.
+fn first_of<'a, X>(slice: &mut &'a mut [X], count: usize) -> &'a mut [X] {
+    slice.split_off_mut(..count.min(slice.len())).unwrap_or_default()
 }

@@ -9,8 +9,8 @@ use super::capacity::Fields;
 use super::memory::Marks;
 use super::replay_buffer::{END, NONE, TERMINATED, TRUNCATED};
 use super::{ReplayBuffer, ReplayError};
-use crate::ensemble::Execution;
-use crate::rl::{Layout, Plan, Rollout};
+use libration_batch::ensemble::Execution;
+use libration_batch::rl::{Layout, Plan, Rollout};
 
 /// Rows that come in.
 struct Rows<'a> {
@@ -23,7 +23,7 @@ struct Rows<'a> {
 
 impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
     /// Inserts a rollout and overwrites the oldest steps. `next` are the observations after its last step: `[n, i]`, as
-    /// [`observe`](crate::rl::Environments::observe) writes them.
+    /// [`observe`](libration_batch::rl::Environments::observe) writes them.
     ///
     /// If the first observation differs from `next` of the insertion before, as after a reset, the transition before keeps its own.
     /// The last step of a lost environment is not stored: samples are always finite.

@@ -5,7 +5,7 @@ use libration_core::Float;
 
 use super::replay_buffer::{END, NONE, TERMINATED, TRUNCATED};
 use super::{Draw, ReplayBuffer, ReplayError};
-use crate::ensemble::Execution;
+use libration_batch::ensemble::Execution;
 
 /// Sequences of equal length, allocated once and filled many times: each field is `[i, t]`.
 #[derive(Clone, Debug, PartialEq)]

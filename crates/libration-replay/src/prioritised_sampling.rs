@@ -10,7 +10,7 @@ use super::memory::Marks;
 use super::power::power;
 use super::replay_buffer::NONE;
 use super::{Columns, Draw, Lookahead, ReplayBuffer, ReplayError};
-use crate::ensemble::Execution;
+use libration_batch::ensemble::Execution;
 
 /// Of so large ones any number of transitions has a finite sum.
 const MOST_WEIGHT: f64 = 1e280;

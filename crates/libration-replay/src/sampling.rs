@@ -9,7 +9,7 @@ use libration_core::control::error::ensure_probability;
 use super::memory::Marks;
 use super::replay_buffer::{END, NONE, TERMINATED, TRUNCATED};
 use super::{Columns, Draw, ReplayBuffer, ReplayError};
-use crate::ensemble::Execution;
+use libration_batch::ensemble::Execution;
 
 /// The number of steps of a transition of a batch.
 ///
