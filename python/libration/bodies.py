@@ -76,8 +76,17 @@ class Bodies:
         if len(set(self.names)) != count:
             raise ValueError("two bodies have the same name; expected a name for each")
         self.charges = np.zeros(count) if charges is None else _of_shape("charges", charges, (count,))
+        if pair_potential is not None and not isinstance(pair_potential, str):
+            raise TypeError(f"pair_potential is {type(pair_potential).__name__}; expected an expression as a string")
+        if not isinstance(name, str):
+            raise TypeError(f"name is {type(name).__name__}; expected a string")
+        if parameters is not None and not isinstance(parameters, Mapping):
+            raise TypeError(f"parameters is {type(parameters).__name__}; expected a dictionary of names and numbers")
         self.pair_potential = pair_potential
-        self.parameters = dict(parameters or {})
+        self.parameters = {
+            str(key): number(f"parameters[{key!r}]", value, "a finite number", math.isfinite)
+            for key, value in (parameters or {}).items()
+        }
         if self.parameters and pair_potential is None:
             raise ValueError(f"parameters has {sorted(self.parameters)} without a pair_potential")
         if gravitational_constant is None:
@@ -128,7 +137,7 @@ class Bodies:
             "radii": self.radii.tolist(),
             "charges": self.charges.tolist(),
             "pair_potential": self.pair_potential,
-            "parameters": [(name, float(value)) for name, value in self.parameters.items()],
+            "parameters": list(self.parameters.items()),
             "positions": self.positions.ravel().tolist(),
             "velocities": self.velocities.ravel().tolist(),
             "gravitational_constant": self.gravitational_constant,
@@ -137,6 +146,8 @@ class Bodies:
 
 
 def _of_shape(name: str, values: Any, shape: tuple[int, ...]) -> np.ndarray[Any, Any]:
+    if np.iscomplexobj(values):
+        raise TypeError(f"{name} has complex numbers; expected real ones")
     array = np.array(values, dtype=np.float64)
     if array.shape != shape:
         raise ValueError(f"{name} has shape {array.shape}; expected {shape}")

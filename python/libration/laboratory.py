@@ -173,7 +173,8 @@ def run_lab(
         A system by equations (:class:`libration.EquationSystem`), as for ``libration lab --system FILE``: its studies in place of those of the
         oscillator. Keys of a dictionary that have no effect on them are errors; those of a file are ignored.
     studies:
-        Names from :data:`STUDIES` (default: all that apply; :attr:`Results.not_applicable` has the others).
+        Names from :data:`STUDIES` (default: all that apply and do not measure this machine, which are ``throughput``, ``memory``, ``rollout``
+        and ``storage``; :attr:`Results.not_applicable` has those that do not apply).
     effort:
         ``"quick"``, ``"standard"`` or ``"thorough"``.
     out:

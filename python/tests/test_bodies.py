@@ -132,6 +132,14 @@ def test_ions_move_as_ten_lines_of_numpy_move_them() -> None:
     assert 0.5 < energy["predicted_by_order"] / energy["largest_change"] < 2
 
 
+def test_arrays_that_were_changed_are_checked_again() -> None:
+    for name, value in (("charges", np.zeros(1)), ("radii", np.zeros(3)), ("names", ["a"]), ("masses", np.ones(3))):
+        bodies = Bodies([1.0, 1.0], np.eye(3)[:2], np.zeros((2, 3)), pair_potential="q1*q2/r", charges=[1.0, 1.0])
+        setattr(bodies, name, value)
+        with pytest.raises(ValueError, match="numbers for"):
+            libration.simulate_bodies(bodies, integrator="leapfrog", dt=0.01, steps=5)
+
+
 def test_wrong_pair_potentials_name_what_is_wrong() -> None:
     places = np.eye(3)
     cases: list[tuple[dict[str, Any], str]] = [
@@ -146,5 +154,21 @@ def test_wrong_pair_potentials_name_what_is_wrong() -> None:
     for keywords, message in cases:
         with pytest.raises(ValueError, match=message.replace("(", r"\(")):
             Bodies([1.0, 1.0, 1.0], places, places, **keywords)
+    wrong_types: list[tuple[dict[str, Any], str]] = [
+        ({"pair_potential": 3}, "pair_potential is int"),
+        ({"pair_potential": "k*r", "parameters": {"k": "1"}}, "k"),
+        ({"pair_potential": "k*r", "parameters": {"k": True}}, "k"),
+        ({"pair_potential": "k*r", "parameters": [1]}, "parameters is list"),
+        ({"name": 3}, "name is int"),
+    ]
+    for keywords, message in wrong_types:
+        with pytest.raises(TypeError, match=message):
+            Bodies([1.0, 1.0, 1.0], places, places, **keywords)
+    with pytest.raises(TypeError, match="positions has complex numbers"):
+        Bodies([1.0, 1.0, 1.0], 1j * places, places)
+    with pytest.raises(ValueError, match="softening without gravity"):
+        Bodies.published("frozen-argon", softening=0.1)
+    with pytest.raises(ValueError, match="charge = 1.0 has no effect; expected a pair potential"):
+        Bodies([1.0, 1.0, 1.0], places, places, charges=[0.0, 1.0, 0.0])
     with pytest.raises(ValueError, match="mass = 0; expected a mass above 0 with a pair potential"):
         Bodies([1.0, 0.0, 1.0], places, places, pair_potential="r")

@@ -11,7 +11,7 @@ pub(crate) fn folder() -> PathBuf {
     workspace::target().join("report")
 }
 
-/// Runs a quick `lab`, which is to be quiet, and looks at what it wrote into [`folder`].
+/// Runs a quick `lab` with all studies, which is to be quiet, and looks at what it wrote into [`folder`].
 ///
 /// With the binary that the tests have built: a release build would take as long as all of them, and
 /// differs in nothing but its speed.
@@ -27,7 +27,7 @@ pub(crate) fn run_built() -> Outcome {
     let _ = fs::remove_dir_all(&out);
     command::silent(
         command::program(workspace::built("debug/libration"))
-            .args(["lab", "--effort", "quick", "--quiet", "--out"])
+            .args(["lab", "--all", "--effort", "quick", "--quiet", "--out"])
             .arg(&out)
             .current_dir(scratch.path()),
     )?;

@@ -19,7 +19,7 @@ impl BodySimulation {
                 (kicks, drifts, false)
             }
         };
-        let kick_length = self.dt / kicks;
+        let kick_length = self.length / kicks;
         let pairs = self.bodies.forces().pairs;
         let of_pairs = pairs.map_or_else(PairRoundings::default, |pairs| {
             PairRoundings::new(&pairs, self.bodies.positions(), self.steps())

@@ -119,6 +119,22 @@ impl Bodies {
         Ok(self)
     }
 
+    /// Checks that softening and charges have an effect.
+    ///
+    /// # Errors
+    /// [`BodiesError::NothingToSoften`] and [`BodiesError::Charge`].
+    pub fn ensure_effects(&self) -> Result<(), BodiesError> {
+        if self.softening > 0.0 && self.gravitational_constant == 0.0 {
+            return Err(BodiesError::NothingToSoften);
+        }
+        match self.charges.iter().position(|&charge| charge != 0.0) {
+            Some(body) if self.pair_potential.is_none() => {
+                Err(BodiesError::Charge { body, value: self.charges[body] })
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The number of bodies.
     pub fn count(&self) -> usize {
         self.masses.len()

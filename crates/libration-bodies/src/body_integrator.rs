@@ -2,7 +2,6 @@
 
 use libration_core::Method;
 use libration_core::integrator::{SplittingScope, SplittingTable};
-use libration_equations::{Flow, VectorStep};
 
 use super::step_plan::StepPlan;
 
@@ -72,24 +71,11 @@ impl BodyIntegrator {
     }
 
     /// Order of consistency.
-    pub fn order(self) -> u32 {
+    pub const fn order(self) -> u32 {
         match self {
             BodyIntegrator::Method(method) => method.order(),
             BodyIntegrator::WisdomHolman(OrbitsAndKicks::Leapfrog) => 2,
-            BodyIntegrator::WisdomHolman(OrbitsAndKicks::Table(table)) => {
-                if cubes_of_kicks(table).abs() < 1e-12 { table.order } else { 2 }
-            }
+            BodyIntegrator::WisdomHolman(OrbitsAndKicks::Table(table)) => table.order,
         }
     }
-}
-
-/// The sum of the cubes of the kicks. Unless it vanishes, that a kick is itself a leapfrog of parts that do not commute leaves an error of
-/// order 2 (A. Farrés, J. Laskar, S. Blanes, F. Casas, J. Makazaga, A. Murua, *Celestial Mechanics and Dynamical Astronomy* 116, 2013, section 4).
-fn cubes_of_kicks(table: &'static SplittingTable) -> f64 {
-    let flows = VectorStep::flows(table).unwrap_or_default();
-    let cubes = flows.iter().map(|flow| match flow {
-        Flow::Kick(fraction) => fraction.powi(3),
-        Flow::Drift(_) => 0.0,
-    });
-    cubes.sum()
 }

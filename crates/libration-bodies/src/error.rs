@@ -53,6 +53,18 @@ pub enum BodiesError {
         /// The value.
         length: f64,
     },
+    /// A charge without a pair potential.
+    Charge {
+        /// The body.
+        body: usize,
+        /// The charge.
+        value: f64,
+    },
+    /// An energy that is no number.
+    Energy {
+        /// The time.
+        time: f64,
+    },
     /// A softening length without the gravity that it softens.
     NothingToSoften,
     /// A time step that is not allowed.
@@ -75,11 +87,15 @@ pub enum BodiesError {
         time: f64,
         /// The distance of their centres.
         distance: f64,
+        /// The sum of their radii.
+        radii: f64,
     },
     /// Numbers outgrew the floats.
     Overflow {
         /// The bodies that were nearest before, if there are several.
         pair: Option<[usize; 2]>,
+        /// Whether softening would help: without a pair potential.
+        softens: bool,
         /// The time before the step.
         time: f64,
     },
@@ -128,6 +144,12 @@ impl BodiesError {
             BodiesError::Softening { length } => {
                 format!("softening {length:?}; expected a length from 0 to 1e154")
             }
+            BodiesError::Charge { body, value } => {
+                format!("{}: charge = {value:?} has no effect; expected a pair potential, or 0", name(*body))
+            }
+            BodiesError::Energy { time } => format!(
+                "the energy is not finite at t = {time:?}; help: the potential must be finite at all distances that occur"
+            ),
             BodiesError::NothingToSoften => "softening without gravity, which alone is softened; expected softening 0 or a gravitational constant above 0".to_owned(),
             BodiesError::TimeStep { dt } => {
                 format!("dt {dt:?}; expected a finite number other than 0")
@@ -136,14 +158,20 @@ impl BodiesError {
                 "{} are at the same place at t = {time:?}; help: softening makes their force finite",
                 both(*pair)
             ),
-            BodiesError::Collision { pair, time, distance } => {
-                format!("{} collide at t = {time:?}: distance {distance:?}", both(*pair))
+            BodiesError::Collision { pair, time, distance, radii } => {
+                let bodies = both(*pair);
+                format!("{bodies} collide at t = {time:?}: distance {distance:?}, sum of radii {radii:?}")
             }
-            BodiesError::Overflow { pair, time } => {
+            BodiesError::Overflow { pair, softens, time } => {
+                let help = if *softens {
+                    "a shorter time step or softening"
+                } else {
+                    "a shorter time step, or a potential with a derivative at all distances that occur"
+                };
                 let nearest =
                     pair.map_or_else(String::new, |pair| format!("; {} were nearest", both(pair)));
                 format!(
-                    "the motion is not finite after t = {time:?}{nearest}; help: a shorter time step or softening"
+                    "the motion is not finite after t = {time:?}{nearest}; help: {help}"
                 )
             }
             BodiesError::CentralBody { reason } => format!("wisdom-holman: {reason}"),

@@ -9,7 +9,11 @@ impl BodySimulation {
         let time = self.time();
         match self.bodies.closest_pair() {
             Some((pair, 0.0)) => BodiesError::SamePlace { pair, time },
-            found => BodiesError::Overflow { pair: found.map(|(pair, _)| pair), time },
+            found => BodiesError::Overflow {
+                pair: found.map(|(pair, _)| pair),
+                softens: self.bodies.pairs().is_none(),
+                time,
+            },
         }
     }
 
@@ -19,7 +23,8 @@ impl BodySimulation {
         if self.has_radii
             && let Some((i, j, distance)) = self.bodies.first_collision()
         {
-            return Err(BodiesError::Collision { pair: [i, j], time, distance });
+            let radii = self.bodies.radii()[i] + self.bodies.radii()[j];
+            return Err(BodiesError::Collision { pair: [i, j], time, distance, radii });
         }
         if self.steps > 0 || self.bodies.softening_length() > 0.0 {
             return Ok(());

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use libration_batch::ColumnProgram;
 use libration_core::number::{Dual, TwoFloat};
 use libration_core::{Elementary, Scalar};
-use libration_equations::{EquationError, Program, Recorded};
+use libration_equations::{EquationError, EquationErrorKind, Program, Recorded};
 
 /// The inputs of a potential: the distance, and mass and charge of the body that comes first in the list and of the other.
 const NAMES: [&str; 5] = ["r", "m1", "m2", "q1", "q2"];
@@ -38,9 +38,13 @@ impl PairPotential {
     /// The potential of an expression, in the units of the bodies; `parameters` are other names in it.
     ///
     /// # Errors
-    /// [`EquationError`], with the place in the text.
+    /// [`EquationError`], with the place in the text: an expression that is wrong or does not depend on `r`, or a parameter that it does not
+    /// have.
     pub fn new(text: &str, parameters: &[(String, f64)]) -> Result<Self, EquationError> {
         let potential = Program::of_expression(PairPotential::KEY, text, &NAMES, parameters)?;
+        if !potential.inputs_in_use().any(|input| input == 0) {
+            return Err(PairPotential::fault(EquationErrorKind::Independent(NAMES[0])));
+        }
         let force = Program::record(7, |x| force(&potential, x).to_vec());
         let energy = Program::record(7, |x| vec![value(&potential, distance(x), &x[3..])]);
         let stiffness = Program::record(7, |x| {
@@ -52,6 +56,10 @@ impl PairPotential {
         let columns = Arc::new([&force, &energy].map(ColumnProgram::new));
         let (text, parameters) = (text.to_owned(), parameters.to_vec());
         Ok(PairPotential { text, parameters, force, stiffness, columns })
+    }
+
+    fn fault(kind: EquationErrorKind) -> EquationError {
+        EquationError { key: PairPotential::KEY.to_owned(), span: None, kind }
     }
 
     /// The key of the expression in errors and files.

@@ -25,6 +25,8 @@ pub struct BodySimulation {
     pub(super) has_radii: bool,
     encounters: Option<ClosestPair>,
     time: f64,
+    /// Of the last step; before the first its length.
+    pub(super) length: f64,
     density: Option<StepDensity>,
 }
 
@@ -41,7 +43,7 @@ impl BodySimulation {
     /// With `compensated` sums, positions and velocities keep what their sums round off (Kahan 1965).
     ///
     /// # Errors
-    /// [`BodiesError`] if `dt` is zero or not finite, two bodies touch, nothing is softened, or the integrator does not apply.
+    /// [`BodiesError`] if `dt` is zero or not finite, two bodies touch, softening or charges have no effect, or the integrator does not apply.
     pub fn new(
         bodies: Bodies,
         integrator: BodyIntegrator,
@@ -52,9 +54,7 @@ impl BodySimulation {
         if dt == 0.0 || !dt.is_finite() {
             return Err(BodiesError::TimeStep { dt });
         }
-        if bodies.softening_length() > 0.0 && bodies.constant() == 0.0 {
-            return Err(BodiesError::NothingToSoften);
-        }
+        bodies.ensure_effects()?;
         let has_radii = bodies.radii().iter().any(|&radius| radius > 0.0);
         let stepper = match integrator {
             BodyIntegrator::Method(method) => {
@@ -84,6 +84,7 @@ impl BodySimulation {
             has_radii,
             encounters: None,
             time: 0.0,
+            length: dt,
             density: None,
         };
         simulation.check_distances()?;
@@ -155,6 +156,7 @@ impl BodySimulation {
             return Err(self.failure());
         }
         self.steps += 1;
+        self.length = length;
         self.time = match self.density {
             Some(_) => self.time + length,
             None => self.steps as f64 * self.dt,

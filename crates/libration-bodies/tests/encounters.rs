@@ -75,6 +75,23 @@ fn the_published_closest_encounter_is_found() {
 }
 
 #[test]
+fn the_prediction_by_rounding_knows_how_short_adaptive_steps_are() {
+    let fixed = pythagorean("leapfrog", 0.01).rounding_variance().energy;
+    let mut adaptive = pythagorean("leapfrog", 0.01).adaptive().unwrap();
+    assert_eq!(adaptive.rounding_variance().energy, fixed);
+    // Into the first encounter, where a step is a small part of the first.
+    while adaptive.time() < 1.879 {
+        adaptive.advance(1).unwrap();
+    }
+    let bodies = adaptive.bodies().clone();
+    let on = Execution::serial();
+    let integrator = BodyIntegrator::from_name("leapfrog").unwrap();
+    let there = BodySimulation::new(bodies, integrator, 0.01, false, on).unwrap();
+    let ratio = there.rounding_variance().energy / adaptive.rounding_variance().energy;
+    assert!(ratio > 10.0, "{ratio}");
+}
+
+#[test]
 fn adaptive_steps_require_a_symmetric_splitting() {
     for name in ["rk4", "symplectic-euler", "ruth-3", "explicit-euler"] {
         let refused = pythagorean(name, 0.01).adaptive().map(|_| ()).unwrap_err();

@@ -160,6 +160,16 @@ fn what_does_not_go_with_a_pair_potential_is_refused() {
     assert!(adaptive.contains("expected no pair potential"), "{adaptive}");
     let unknown = PairPotential::new("q1*q3/r", &[]).unwrap_err();
     assert_eq!((unknown.span, unknown.key.as_str()), (Some(3..5), "pair-potential"));
+    let charged = Bodies::new(&[at([0.0; 3]), Body { charge: -0.5, ..at([1.0; 3]) }]).unwrap();
+    assert_eq!(charged.ensure_effects(), Err(BodiesError::Charge { body: 1, value: -0.5 }));
+    assert_eq!(
+        start(charged, "leapfrog").err(),
+        Some(BodiesError::Charge { body: 1, value: -0.5 })
+    );
+    let constant = PairPotential::new("q1*q2", &[]).unwrap_err().to_string();
+    assert_eq!(constant, "it does not depend on `r`");
+    let unused = PairPotential::new("1/r", &[("k".to_owned(), 1.0)]).unwrap_err().to_string();
+    assert!(unused.starts_with("the parameter `k` has no effect"), "{unused}");
     for (name, reason) in [("r", "given twice"), ("pi", "a name of the language"), ("1", "no name")]
     {
         let wrong = PairPotential::new("r", &[(name.to_owned(), 1.0)]).unwrap_err();

@@ -66,7 +66,7 @@ fn tables_for_weak_kicks_have_their_orders_in_the_time_step() {
             other.iter().zip(&reference).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
         };
         let order = (distance(1.0 / 32.0) / distance(1.0 / 64.0)).log2();
-        // What is cubic in the masses has order 2 for some, and is still small beside the rest.
+        // What is linear in the masses, of a higher order, is not yet small beside the rest for all of them.
         let (least, name) = (f64::from(integrator.order()) - 0.3, integrator.name());
         assert!((least..11.0).contains(&order), "{name}: {order}");
         assert_eq!(BodyIntegrator::from_name(&name), Some(integrator));

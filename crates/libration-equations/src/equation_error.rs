@@ -70,6 +70,14 @@ pub enum EquationErrorKind {
         "it depends on inputs through `{0}`; expected an expression of states, parameters and time"
     )]
     NeedsInput(String),
+    /// An expression without a name that it must have.
+    #[error("it does not depend on `{0}`")]
+    Independent(&'static str),
+    /// A parameter that the expression does not have.
+    #[error(
+        "the parameter `{0}` has no effect on the expression; expected only parameters that it has"
+    )]
+    Unused(String),
     /// Too many expressions of a task.
     #[error("there are {0} expressions; expected at most {max}", max = crate::MAX_EXPRESSIONS)]
     Expressions(usize),

@@ -10,7 +10,8 @@ impl Program {
     /// The program of an expression of `names`, its inputs in their order, and of parameters with their values; `key` names it in errors.
     ///
     /// # Errors
-    /// [`EquationError`]: a parameter with an invalid name or value, or what is wrong with the expression.
+    /// [`EquationError`]: a parameter with an invalid name or value or one that the expression does not have, or what is wrong with the
+    /// expression.
     pub fn of_expression(
         key: &str,
         text: &str,
@@ -42,6 +43,12 @@ impl Program {
         }
         let expression = Expression::parse(text)
             .map_err(|error| EquationError::of_expression(key.to_owned(), error))?;
+        let has = |name: &str| expression.names().any(|(known, _)| known == name);
+        if let Some((name, _)) = parameters.iter().find(|(name, _)| !has(name)) {
+            let (key, kind) =
+                (format!("parameters.{name}"), EquationErrorKind::Unused(name.clone()));
+            return Err(EquationError { key, span: None, kind });
+        }
         let mut builder = ProgramBuilder::default();
         let inputs = builder.inputs(names.len());
         let mut resolver = Resolver::new(builder);

@@ -59,6 +59,21 @@ impl Raised for BodiesError {
 
 impl BodyTable {
     fn read(self) -> PyResult<NamedBodies> {
+        let count = self.masses.len();
+        let lengths = [
+            ("names", self.names.len(), count),
+            ("radii", self.radii.len(), count),
+            ("charges", self.charges.len(), count),
+            ("positions", self.positions.len(), 3 * count),
+            ("velocities", self.velocities.len(), 3 * count),
+        ];
+        if let Some((name, found, wanted)) =
+            lengths.into_iter().find(|(_, found, wanted)| found != wanted)
+        {
+            let message =
+                format!("{name} has {found} numbers for {count} bodies; expected {wanted}");
+            return Err(value_error(message));
+        }
         let three = |all: &[f64], i: usize| -> [f64; 3] {
             core::array::from_fn(|axis| all.get(3 * i + axis).copied().unwrap_or(f64::NAN))
         };
@@ -81,6 +96,7 @@ impl BodyTable {
             })?;
             bodies = bodies.pair_potential(potential).map_err(Raised::raised)?;
         }
+        bodies.ensure_effects().map_err(Raised::raised)?;
         Ok(NamedBodies { name: self.name, bodies, names: self.names })
     }
 }

@@ -11,7 +11,7 @@ use crate::{AllSettings, Effort, Settings, Spring, Start};
 /// A configuration: shared settings, and the [`Settings`] of each study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
-    /// Names of the studies to run; all studies if empty.
+    /// Names of the studies to run; if empty, all that do not measure the machine.
     pub studies: Vec<String>,
     /// Effort of a run.
     pub effort: Effort,

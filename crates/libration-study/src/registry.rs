@@ -27,10 +27,13 @@ impl Registry {
         self.studies.iter().map(|study| study.name()).collect()
     }
 
-    /// Returns the studies that a configuration names, in its order; all if it names none.
+    /// Returns the studies that a configuration names, in its order; if it names none, all that do not measure the machine.
     pub fn chosen(&self, config: &Config) -> Vec<&'static dyn Study> {
         match config.studies.as_slice() {
-            [] => self.studies.to_vec(),
+            [] => {
+                let all = self.studies.iter().copied();
+                all.filter(|study| !study.measures_the_machine()).collect()
+            }
             names => names.iter().filter_map(|name| self.by_name(name)).collect(),
         }
     }

@@ -21,6 +21,11 @@ pub trait Study: Sync {
     /// Returns the question of the study.
     fn question(&self) -> &'static str;
 
+    /// Returns whether it measures the machine that it runs on: such a study runs only if it is named.
+    fn measures_the_machine(&self) -> bool {
+        false
+    }
+
     /// Returns the claims of the source report that the study judges.
     fn source_claims(&self) -> &'static [SourceClaim] {
         &[]

@@ -38,11 +38,18 @@ impl Changes {
         }
     }
 
-    /// Looks at the present state, unless it is stopped.
-    pub(super) fn sample(&mut self, simulation: &BodySimulation, should_stop: &dyn Fn() -> bool) {
+    /// Looks at the present state, unless it is stopped. Returns whether its energy is finite.
+    pub(super) fn sample(
+        &mut self,
+        simulation: &BodySimulation,
+        should_stop: &dyn Fn() -> bool,
+    ) -> bool {
         let now = simulation.conserved();
         if should_stop() {
-            return;
+            return true;
+        }
+        if !now.energy.is_finite() {
+            return false;
         }
         let distance = |a: [f64; 3], b: [f64; 3]| -> f64 {
             a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
@@ -60,6 +67,7 @@ impl Changes {
             self.of_reading[i] += of_reading[i];
         }
         self.samples += 1.0;
+        true
     }
 
     /// The largest changes.

@@ -1,6 +1,6 @@
 //! The closest encounter of a motion.
 
-use libration::bodies::{Bodies, BodySimulation};
+use libration::bodies::{Bodies, BodyIntegrator, BodySimulation};
 use serde::Serialize;
 
 use super::BodiesRequest;
@@ -15,12 +15,12 @@ pub struct Encounter {
     /// The time.
     pub t: f64,
     /// Steps of an orbit at that distance: `2π √(d³/G(m₁ + m₂))` over the time step. Below some 20 the step is too long for the encounter.
-    /// None without masses, and for adaptive steps.
+    /// None without masses, for adaptive steps, and with the first body of a splitting around it, whose orbits are solved.
     pub steps_per_orbit: Option<f64>,
 }
 
 /// Bodies up to which distances of all pairs are taken at each step.
-const FEW: usize = 16;
+pub const ENCOUNTERS_AT_EACH_STEP: usize = 16;
 
 /// Bodies up to which they are taken at each sample.
 const MOST: usize = 2048;
@@ -38,13 +38,13 @@ impl Closest {
     }
 
     pub(super) fn start(&self, simulation: &mut BodySimulation) {
-        if self.count <= FEW {
+        if self.count <= ENCOUNTERS_AT_EACH_STEP {
             simulation.watch_encounters();
         }
     }
 
     pub(super) fn sample(&mut self, simulation: &BodySimulation) {
-        if self.count <= FEW || self.count > MOST {
+        if self.count <= ENCOUNTERS_AT_EACH_STEP || self.count > MOST {
             return;
         }
         if let Some((pair, distance)) = simulation.bodies().closest_pair()
@@ -64,11 +64,14 @@ impl Closest {
         let mass = bodies.constant() * (bodies.masses()[i] + bodies.masses()[j]);
         let orbit = core::f64::consts::TAU * (distance.powi(3) / mass).sqrt();
         let names = &request.system.names;
+        let is_solved =
+            matches!(request.integrator, BodyIntegrator::WisdomHolman(_)) && (i == 0 || j == 0);
         Some(Encounter {
             bodies: [names[i].clone(), names[j].clone()],
             distance,
             t,
-            steps_per_orbit: (mass > 0.0 && !request.is_adaptive).then(|| orbit / request.dt.abs()),
+            steps_per_orbit: (mass > 0.0 && !request.is_adaptive && !is_solved)
+                .then(|| orbit / request.dt.abs()),
         })
     }
 }

@@ -13,7 +13,7 @@ use crate::export::Rows;
 use crate::trajectory::{Monitor, TrajectoryError};
 use changes::{Changes, QUANTITIES, sizes};
 use encounter::Closest;
-pub use encounter::Encounter;
+pub use encounter::{ENCOUNTERS_AT_EACH_STEP, Encounter};
 pub use files::write;
 pub use request::BodiesRequest;
 
@@ -102,6 +102,9 @@ pub fn simulate(
     let mut closest = Closest::new(&request.system.bodies);
     closest.start(&mut simulation);
     let start = simulation.conserved();
+    if !start.energy.is_finite() {
+        return Err(named(&BodiesError::Energy { time: 0.0 }, request));
+    }
     let mut keep = |simulation: &BodySimulation| {
         for (i, body) in simulation.bodies().iter().enumerate() {
             let values: Vec<f64> = body.position.into_iter().chain(body.velocity).collect();
@@ -187,7 +190,10 @@ fn run(
     loop {
         let step = simulation.steps();
         if step.is_multiple_of(stride) || step == steps {
-            changes.sample(simulation, &|| monitor.should_stop());
+            if !changes.sample(simulation, &|| monitor.should_stop()) {
+                let error = BodiesError::Energy { time: simulation.time() };
+                return Ok((changes, samples, Some(error)));
+            }
             keep(simulation)?;
             samples += 1;
         }

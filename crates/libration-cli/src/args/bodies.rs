@@ -28,7 +28,7 @@ pub(crate) struct BodiesArgs {
     /// Number of steps
     #[arg(long, value_name = "N", value_parser = trajectory_steps, allow_hyphen_values = true)]
     pub(crate) steps: u64,
-    /// Take a sample every N steps [default: at most 1000 samples]
+    /// Take a sample every N steps [default: at most 1000 samples; of 64 bodies and more, at most a tenth of the time]
     #[arg(long, value_name = "N", value_parser = every, allow_hyphen_values = true)]
     pub(crate) every: Option<u64>,
     /// Number of bodies of plummer

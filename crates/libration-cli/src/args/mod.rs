@@ -9,6 +9,7 @@ mod clock;
 mod equation_advice;
 mod gains;
 mod identify;
+mod lab;
 mod linear;
 mod linear_analysis;
 mod linear_simulation;
@@ -26,10 +27,8 @@ mod topic;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand};
-use libration::ensemble::InstructionSet;
-use libration_lab::STUDIES;
 use libration_settings::EquationExample;
 use libration_study::Effort;
 
@@ -43,6 +42,7 @@ pub(crate) use bodies::BodiesArgs;
 pub(crate) use clock::ClockArgs;
 pub(crate) use gains::GainsArgs;
 pub(crate) use identify::IdentifyArgs;
+pub(crate) use lab::LabArgs;
 pub(crate) use linear::LinearArgs;
 pub(crate) use linear_analysis::LinearAnalysisArgs;
 pub(crate) use linear_simulation::LinearSimulationArgs;
@@ -140,60 +140,6 @@ pub(crate) enum Command {
     Completions(CompletionsArgs),
 }
 
-/// Arguments of `lab`.
-#[derive(Args, Debug)]
-#[command(after_help = LAB_EXAMPLES)]
-pub(crate) struct LabArgs {
-    /// Studies to run [default: those of the configuration, or all]
-    #[arg(value_name = "STUDY", value_parser = study_names())]
-    pub(crate) studies: Vec<String>,
-    /// Configuration file [default: the settings of the report]
-    #[arg(long, value_name = "FILE")]
-    pub(crate) config: Option<PathBuf>,
-    /// File NAME.toml with the equations of a system: the studies that apply to it, in its names and units
-    #[arg(long, value_name = "FILE", value_parser = equation_file)]
-    pub(crate) system: Option<PathBuf>,
-    /// Parameter of the system of --system; repeatable
-    #[arg(
-        long,
-        value_name = "NAME=VALUE",
-        value_parser = number::assignment,
-        allow_hyphen_values = true,
-        requires = "system"
-    )]
-    pub(crate) set: Vec<(String, f64)>,
-    /// Output folder of the report
-    #[arg(long, value_name = "DIR", default_value = "libration-report")]
-    pub(crate) out: PathBuf,
-    /// Effort of the run [default: that of the configuration, or standard]
-    #[arg(long, value_parser = efforts())]
-    pub(crate) effort: Option<Effort>,
-    /// Instruction set of the kernels [default: that of the configuration, or LIBRATION_SIMD]
-    #[arg(long, value_name = "SET", value_parser = simd::instruction_sets())]
-    pub(crate) simd: Option<InstructionSet>,
-    /// Open the report in the browser
-    #[arg(long)]
-    pub(crate) open: bool,
-    /// Print the default configuration with comments, and exit
-    #[arg(long, conflicts_with_all = ["schema", "config", "system", "studies", "effort", "simd", "open"])]
-    pub(crate) print_config: bool,
-    /// Print the JSON schema of the configuration, and exit
-    #[arg(long, conflicts_with_all = ["config", "system", "studies", "effort", "simd", "open"])]
-    pub(crate) schema: bool,
-}
-
-const LAB_EXAMPLES: &str = "\
-Examples:
-  libration lab
-  libration lab spectrum drift --out my-report
-  libration lab --config mine.toml --effort thorough
-  libration lab --system pendulum.toml --set length=0.5 --effort quick
-
-The output folder contains report.html, results.json, figures/*.svg and data/*.parquet.
-During a run the files are in the subfolder libration-unfinished. At the end they replace the files
-of an earlier run. An interrupted run leaves them in that subfolder if the output folder already
-contains a complete report.";
-
 /// Arguments of `list`.
 #[derive(Args, Debug)]
 #[command(after_help = LIST_EXAMPLES)]
@@ -284,13 +230,6 @@ fn color_choice(words: &[OsString]) -> ColorChoice {
             None => None,
         });
     choices.last().unwrap_or_default()
-}
-
-fn study_names() -> PossibleValuesParser {
-    let value = |study: &&dyn libration_study::Study| {
-        PossibleValue::new(study.name()).help(study.question())
-    };
-    PossibleValuesParser::new(STUDIES.studies.iter().map(value).collect::<Vec<_>>())
 }
 
 fn efforts() -> impl TypedValueParser<Value = Effort> {

@@ -6,7 +6,10 @@ use std::path::Path;
 
 use libration::bodies::{InitialConditions, PairPotential};
 use libration::ensemble::Execution;
-use libration_analyze::bodies::{BodiesAudit, BodiesRequest, simulate, write};
+use libration::equations::Expression;
+use libration_analyze::bodies::{
+    BodiesAudit, BodiesRequest, ENCOUNTERS_AT_EACH_STEP, simulate, write,
+};
 use libration_analyze::export::{ExportError, Rows};
 use libration_analyze::trajectory::TrajectoryError;
 use libration_settings::bodies_file::{self, NamedBodies};
@@ -65,8 +68,14 @@ fn system(args: &BodiesArgs) -> Result<NamedBodies, Failure> {
     let wrong =
         |flag: &'static str| move |error: &dyn Display| Failure::usage(format!("{error} ({flag})"));
     if let Some(text) = &args.pair_potential {
-        let parameters = bodies.pairs().map(PairPotential::parameters).unwrap_or_default();
-        let potential = PairPotential::new(text, parameters).map_err(|error| {
+        // Of the file, those that the expression has.
+        let own = bodies.pairs().map(PairPotential::parameters).unwrap_or_default();
+        let has = |name: &str| {
+            let parsed = Expression::parse(text);
+            parsed.is_ok_and(|parsed| parsed.names().any(|(known, _)| known == name))
+        };
+        let parameters: Vec<_> = own.iter().filter(|(name, _)| has(name)).cloned().collect();
+        let potential = PairPotential::new(text, &parameters).map_err(|error| {
             Failure::usage(format!("{} (--pair-potential)", explanation(&error)))
         })?;
         let names = &system.names;
@@ -168,8 +177,9 @@ fn failed(error: TrajectoryError) -> Failure {
 // Writing into a string cannot fail.
 fn describe(audit: &BodiesAudit) -> String {
     let mut text = format!(
-        "{} bodies of {} with {} (order {}): {} {} {} to t = {}\n\n",
+        "{} {} of {} with {} (order {}): {} {} {} to t = {}\n\n",
         audit.bodies,
+        if audit.bodies == 1 { "body" } else { "bodies" },
         audit.system,
         audit.integrator,
         audit.order,
@@ -203,7 +213,8 @@ fn describe(audit: &BodiesAudit) -> String {
         let [a, b] = &encounter.bodies;
         let _ = write!(
             text,
-            "Closest encounter: {a} and {b} at a distance of {} at t = {}",
+            "Closest encounter{}: {a} and {b} at a distance of {} at t = {}",
+            if audit.bodies > ENCOUNTERS_AT_EACH_STEP { " at the samples" } else { "" },
             short(encounter.distance),
             short(encounter.t)
         );

@@ -73,7 +73,9 @@ fn configure(args: &LabArgs) -> Result<Config, Failure> {
         Some(path) => read(path)?,
         None => STUDIES.config(),
     };
-    if !args.studies.is_empty() {
+    if args.all {
+        config.studies = STUDIES.names().into_iter().map(str::to_owned).collect();
+    } else if !args.studies.is_empty() {
         config.studies.clone_from(&args.studies);
     }
     config.effort = args.effort.unwrap_or(config.effort);

@@ -33,6 +33,55 @@ fn the_audit_of_bodies_has_a_prediction_for_each_change() {
     }
 }
 
+/// Two charges at rest at a distance of 1.
+fn two_charges(folder: &std::path::Path) -> String {
+    let file = folder.join("two.csv");
+    let rows = "mass,x,y,z,vx,vy,vz,charge\n1,0,0,0,0,0,0,1\n2,1,0,0,0,0.5,0,-1\n";
+    fs::write(&file, rows).unwrap();
+    file.display().to_string()
+}
+
+fn with_potential(file: &str, potential: &str) -> assert_cmd::assert::Assert {
+    let mut command = Command::cargo_bin("libration").unwrap();
+    let words = format!("bodies {file} --integrator leapfrog --dt 0.01 --steps 300 --json");
+    command.args(words.split_whitespace()).args(["--pair-potential", potential]).assert()
+}
+
+#[test]
+fn a_pair_potential_on_the_command_line_moves_charges() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = with_potential(&two_charges(folder.path()), "q1*q2/r").success();
+    let audit: Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
+    assert_eq!(
+        (&audit["gravitational_constant"], &audit["pair_potential"]),
+        (&0.0.into(), &"q1*q2/r".into())
+    );
+    // The kinetic energy of a mass of 2 at a speed of 0.5, less 1.
+    assert!((audit["energy"].as_f64().unwrap() + 0.75).abs() < 1e-12, "{audit}");
+}
+
+#[test]
+fn potentials_that_are_wrong_or_not_finite_are_refused_or_end_the_motion() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = two_charges(folder.path());
+    for (potential, message) in [
+        ("q1*q2/d", "unknown name `d`; the names are"),
+        ("q1*q2", "it does not depend on `r`"),
+        ("log(-r)", "the energy is not finite at t = 0.0"),
+        ("1/(r-1)", "the energy is not finite at t = 0.0"),
+    ] {
+        let failed = with_potential(&file, potential).code(2);
+        let said = text(&failed.get_output().stderr);
+        assert!(said.contains(message), "{potential}: {said}");
+    }
+    // Fine at the start.
+    let failed = with_potential(&file, "if(r < 0.9, log(-r), -1/r)").code(1);
+    let output = failed.get_output();
+    assert!(text(&output.stderr).contains("the energy is not finite at t = "), "{output:?}");
+    let audit: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(audit["stopped"].as_str().unwrap().contains("not finite"), "{audit}");
+}
+
 #[test]
 fn rows_have_each_body_of_each_sample() {
     let folder = tempfile::tempdir().unwrap();

@@ -3,7 +3,7 @@
 use libration::Method;
 use libration_lab::STUDIES;
 use libration_settings::SettingsError;
-use libration_study::Effort;
+use libration_study::{Config, Effort};
 use libration_study_motion::{DriftSettings, SpectrumSettings};
 use serde_json::{Value, json};
 
@@ -241,4 +241,18 @@ fn the_schema_describes_every_key() {
     let schema = STUDIES.schema();
     assert_eq!(schema["properties"].as_object().unwrap().len(), 19);
     assert_described(&schema);
+}
+
+#[test]
+fn studies_that_measure_the_machine_run_only_if_they_are_named() {
+    let names = |config: &Config| -> Vec<&str> {
+        STUDIES.chosen(config).into_iter().map(|study| study.name()).collect()
+    };
+    let default = names(&STUDIES.config());
+    for name in ["throughput", "memory", "rollout", "storage"] {
+        assert!(!default.contains(&name), "{name}");
+        let studies = vec![name.to_owned()];
+        assert_eq!(names(&Config { studies, ..STUDIES.config() }), [name]);
+    }
+    assert_eq!(default.len() + 4, STUDIES.studies.len());
 }

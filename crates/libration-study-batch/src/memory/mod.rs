@@ -44,6 +44,10 @@ impl Study for Memory {
         "memory"
     }
 
+    fn measures_the_machine(&self) -> bool {
+        true
+    }
+
     fn question(&self) -> &'static str {
         "How much memory do rollouts take, how does it grow, and when is it full?"
     }

@@ -37,6 +37,10 @@ impl Study for Rollout {
         "rollout"
     }
 
+    fn measures_the_machine(&self) -> bool {
+        true
+    }
+
     fn question(&self) -> &'static str {
         "How fast are rollouts of many environments, what limits them, and which settings change \
          their bits?"

@@ -29,6 +29,10 @@ impl Study for Storage {
         "storage"
     }
 
+    fn measures_the_machine(&self) -> bool {
+        true
+    }
+
     fn question(&self) -> &'static str {
         "How fast are replay buffers, data sets and checkpoints, and do they preserve every byte?"
     }

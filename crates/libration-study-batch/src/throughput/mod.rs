@@ -42,6 +42,10 @@ impl Study for Throughput {
         "throughput"
     }
 
+    fn measures_the_machine(&self) -> bool {
+        true
+    }
+
     fn question(&self) -> &'static str {
         "How fast do many trajectories advance on this machine, and what limits them?"
     }
