@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use libration_settings::latency_presets::LatencyValue;
-use libration_settings::{Count, Number};
+use libration_settings::{Count, Number, duration};
 use serde::Deserialize;
 
 /// A request file.
@@ -22,6 +22,7 @@ pub(super) struct RequestFile {
 #[derive(Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct RequestTable {
+    #[serde(deserialize_with = "duration::number")]
     pub(super) horizon: Number,
     pub(super) rollout: [Count; 2],
 }
@@ -82,6 +83,7 @@ pub(super) struct ObserverTable {
 #[derive(Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct LoopTable {
+    #[serde(deserialize_with = "duration::number")]
     pub(super) period: Number,
     pub(super) latency: LatencyValue,
     pub(super) jitter: Number,

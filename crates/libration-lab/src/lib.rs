@@ -4,6 +4,7 @@ mod claims_table;
 pub mod claims_without_study;
 pub mod output;
 pub mod results;
+mod results_comparison;
 mod run_manifest;
 mod series;
 pub mod session;
@@ -12,5 +13,6 @@ mod system_page;
 mod system_studies;
 mod unjudged_claims;
 
+pub use results_comparison::{Change, ComparedResults, Condition, NOISE, ResultsComparison};
 pub use studies::STUDIES;
 pub use system_studies::{NotApplicable, SystemStudies};

@@ -4,6 +4,7 @@
 
 pub mod bodies_file;
 mod document;
+pub mod duration;
 mod equation_examples;
 pub mod equations;
 mod error;

@@ -9,6 +9,7 @@ use libration_advise::{AdvisedSystem, Control, Law, Measure, Request, Tolerance}
 use libration_analyze::LatencyOption;
 use libration_settings::initial_value_problem::InitialValueProblem;
 
+use super::number::{period_of_rate, time};
 use super::timing::{feedback, finite, latency, law, weights};
 use super::{LinearArgs, SystemArgs, TopicArgs};
 use crate::error::Failure;
@@ -27,10 +28,13 @@ pub(crate) struct AdviseArgs {
     /// Gains of the feedback −KP·q − KD·v [default: no loop; in s⁻² and s⁻¹, with --set m= in N/m and N·s/m]
     #[arg(long, value_name = "KP,KD", value_parser = feedback, allow_hyphen_values = true)]
     pub(super) feedback: Option<Feedback>,
-    /// Sample period of the loop in s [default: 0.01, or that of a sampled plant]
-    #[arg(long, value_name = "SECONDS", value_parser = number, allow_hyphen_values = true)]
-    pub(super) period: Option<f64>,
-    /// Latency of a command: 0.015 (in s), 1.5steps (of --period) or preset:NAME; with --plant also one for each input, e.g. 0.003,0.01
+    /// Sample period of the loop in s, also as 2ms [default: 0.01, or that of a sampled plant]
+    #[arg(long, value_name = "SECONDS", value_parser = time, allow_hyphen_values = true)]
+    period: Option<f64>,
+    /// Rate of the loop in Hz in place of its period, e.g. 500 or 0.5kHz
+    #[arg(long = "rate", value_name = "HZ", value_parser = period_of_rate, conflicts_with = "period", allow_hyphen_values = true)]
+    period_of_rate: Option<f64>,
+    /// Latency of a command: 0.015 (in s), 15ms, 1.5steps (of --period) or preset:NAME; with --plant also one for each input, e.g. 0.003,0.01
     /// [default: 0]
     #[arg(
         long,
@@ -97,11 +101,11 @@ pub(crate) struct AdviseArgs {
         allow_hyphen_values = true
     )]
     pub(super) tolerance: ToleranceArg,
-    /// Duration over which --tolerance holds, in s
+    /// Duration over which --tolerance holds, in s, also as 10min
     #[arg(
         long,
         value_name = "SECONDS",
-        value_parser = number,
+        value_parser = time,
         default_value = "10",
         allow_hyphen_values = true
     )]
@@ -118,7 +122,7 @@ pub(crate) struct AdviseArgs {
 }
 
 /// Options that conflict with a request file.
-const REQUEST_OPTIONS: [&str; 14] = [
+const REQUEST_OPTIONS: [&str; 15] = [
     "plant",
     "lqr",
     "gain",
@@ -129,6 +133,7 @@ const REQUEST_OPTIONS: [&str; 14] = [
     "v",
     "feedback",
     "period",
+    "period_of_rate",
     "cost_weights",
     "deviation",
     "tolerance",
@@ -184,7 +189,7 @@ impl AdviseArgs {
         }
         let control = self.feedback.map(|gains| Control {
             law: Law::Pd(gains),
-            period: self.period.unwrap_or(0.01),
+            period: self.period().unwrap_or(0.01),
             latency: 0.0,
             jitter: Jitter::Gaussian(0.0),
             skew: 0.0,
@@ -204,6 +209,11 @@ impl AdviseArgs {
             map: false,
             invocation: String::new(),
         })
+    }
+
+    /// Returns the stated period of the loop in s.
+    pub(super) fn period(&self) -> Option<f64> {
+        self.period.or(self.period_of_rate)
     }
 
     /// Returns the request with the timing options in place of its own.

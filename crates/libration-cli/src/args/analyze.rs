@@ -5,7 +5,7 @@ use clap::{ArgGroup, Args};
 use libration::thermostat::LangevinMethod;
 use libration_analyze::Stepping;
 
-use super::number::{criterion, forecast_steps, seed, time_step, tolerance};
+use super::number::{compared_time, criterion, forecast_steps, seed, time_step, tolerance};
 use super::system::integrators;
 use super::timing::{CostArgs, TimingArgs};
 use super::{LinearAnalysisArgs, SystemArgs};
@@ -31,7 +31,7 @@ pub(crate) struct AnalyzeArgs {
         required_unless_present_any = ["plant", "config", "compare", "temperature"]
     )]
     pub(crate) integrator: Option<Stepping>,
-    /// Time step in s [default with --temperature: 1/ω of the fastest mode]
+    /// Time step in s, also as 2ms or 500Hz [default with --temperature: 1/ω of the fastest mode]
     #[arg(
         long,
         value_name = "SECONDS",
@@ -81,11 +81,11 @@ pub(crate) struct AnalyzeArgs {
         requires = "compare"
     )]
     pub(crate) tolerance: Option<f64>,
-    /// Time of the motion in s with --compare
+    /// Time of the motion with --compare, in s, also as 10min
     #[arg(
         long,
         value_name = "SECONDS",
-        value_parser = criterion,
+        value_parser = compared_time,
         allow_hyphen_values = true,
         requires = "compare"
     )]

@@ -8,7 +8,7 @@ use libration::bodies::BodyIntegrator;
 use libration_analyze::trajectory::Format;
 use libration_settings::suggestions;
 
-use super::number::{count, seed, time_step, trajectory_steps};
+use super::number::{count, seed, time_step_of_system, trajectory_steps};
 use super::simulate::{every, formats};
 
 /// Arguments of `bodies`.
@@ -23,7 +23,7 @@ pub(crate) struct BodiesArgs {
     #[arg(long, value_name = "NAME", value_parser = integrator)]
     pub(crate) integrator: BodyIntegrator,
     /// Time step, in the units of the system
-    #[arg(long, value_name = "TIME", value_parser = time_step, allow_hyphen_values = true)]
+    #[arg(long, value_name = "TIME", value_parser = time_step_of_system, allow_hyphen_values = true)]
     pub(crate) dt: f64,
     /// Number of steps
     #[arg(long, value_name = "N", value_parser = trajectory_steps, allow_hyphen_values = true)]

@@ -30,7 +30,7 @@ impl AdviseArgs {
 
     /// Returns the request for a simulation of a system by equations.
     pub(crate) fn equation_request(&self, system: EquationSystem) -> Result<Request, Failure> {
-        if self.feedback.is_some() || self.period.is_some() {
+        if self.feedback.is_some() || self.period().is_some() {
             return Err(Failure::usage(
                 "--feedback and --period are given without a loop; a loop around a file of equations takes --lqr or --gain",
             ));

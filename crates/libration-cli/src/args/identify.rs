@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use libration_identify::{Hold, NoiseKind, ResponseKind};
 
+use super::number::time;
 use super::{ClockName, TimeUnitName, timing};
 
 /// Arguments of `identify`.
@@ -48,16 +49,16 @@ pub(crate) struct IdentifyArgs {
     #[arg(long, value_name = "NAME", requires = "plant")]
     pub(crate) plant_output: Option<String>,
     /// Known dead time in s
-    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = finite)]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = time)]
     pub(crate) dead_time: Option<f64>,
     /// Known lag in s
-    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = finite)]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = time)]
     pub(crate) lag: Option<f64>,
     /// Known gain, in units of the response per unit of the command
     #[arg(long, value_name = "NUMBER", allow_hyphen_values = true, value_parser = finite)]
     pub(crate) gain: Option<f64>,
     /// Largest dead time to try, in s [default: an eighth of the log, up to 1 s or 50 responses]
-    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = finite)]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = time)]
     pub(crate) largest_dead_time: Option<f64>,
     /// Number of simulated logs that check the intervals (0: none)
     #[arg(long, value_name = "N", default_value_t = 100, allow_hyphen_values = true)]

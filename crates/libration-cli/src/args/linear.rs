@@ -86,7 +86,7 @@ impl AdviseArgs {
                 ));
             }
         };
-        let looped = LinearLoopTable { period: self.period.map(Number), ..Default::default() };
+        let looped = LinearLoopTable { period: self.period().map(Number), ..Default::default() };
         let mut file = RequestFile { controller: Some(controller), looped, ..Default::default() };
         file.system.linear = plant;
         self.set_timing(&mut file);

@@ -6,6 +6,7 @@ mod audit;
 mod bench;
 mod bodies;
 mod clock;
+mod compare;
 mod equation_advice;
 mod gains;
 mod identify;
@@ -40,6 +41,7 @@ pub(crate) use audit::AuditArgs;
 pub(crate) use bench::BenchArgs;
 pub(crate) use bodies::BodiesArgs;
 pub(crate) use clock::ClockArgs;
+pub(crate) use compare::CompareArgs;
 pub(crate) use gains::GainsArgs;
 pub(crate) use identify::IdentifyArgs;
 pub(crate) use lab::LabArgs;
@@ -128,6 +130,8 @@ pub(crate) enum Command {
     Rollout(RolloutArgs),
     /// Check the files of a data set, recompute it or repair it
     Verify(VerifyArgs),
+    /// Compare the findings of two runs of `lab`: what became worse, better, or differs
+    Compare(CompareArgs),
     /// Measure the speed of simulations on this machine, and its hardware limits
     Bench(BenchArgs),
     /// Analyze the clocks of a log: rate, jitter, drift, latency between topics, and what they do to a loop

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use libration_analyze::comparison;
-use libration_settings::limits;
+use libration_settings::{duration, limits};
 
 /// The coordinates of one option.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,20 +56,47 @@ pub(super) fn assignment(text: &str) -> Result<(String, f64), String> {
     Ok((key.to_owned(), value))
 }
 
-/// Parses a time step.
+/// Parses a time step in s.
 pub(super) fn time_step(text: &str) -> Result<f64, String> {
-    let dt = text
-        .trim()
-        .parse()
-        .map_err(|_| format!("not a number; expected a time step that is {}", limits::TIME_STEP))?;
+    let rule =
+        || format!("expected a time step that is {}, also as 2ms or 500Hz", limits::TIME_STEP);
+    let dt = duration::seconds(text).ok_or_else(|| format!("not a number; {}", rule()))?;
     limits::within(limits::TIME_STEP, "--dt", dt)?;
     Ok(dt)
+}
+
+/// Parses a time step in the unit of a system.
+pub(super) fn time_step_of_system(text: &str) -> Result<f64, String> {
+    let rule = limits::TIME_STEP;
+    let number = text.trim().parse();
+    let dt = number.map_err(|_| format!("not a number; expected a time step that is {rule}"))?;
+    limits::within(limits::TIME_STEP, "--dt", dt)?;
+    Ok(dt)
+}
+
+/// Parses a finite number of seconds.
+pub(super) fn time(text: &str) -> Result<f64, String> {
+    let seconds = duration::seconds(text).filter(|x| x.is_finite());
+    seconds.ok_or_else(|| format!("expected {}", duration::DURATION))
+}
+
+/// Parses the rate of a loop in Hz, and returns its period in s.
+pub(super) fn period_of_rate(text: &str) -> Result<f64, String> {
+    let rate = duration::rate(text).filter(|x| x.is_finite() && *x > 0.0);
+    let period = rate.map(|rate| 1.0 / rate).filter(|period| period.is_finite());
+    period.ok_or_else(|| "expected a rate above 0 in Hz, e.g. 500, 500Hz or 0.5kHz".to_owned())
 }
 
 /// Parses the tolerance of a comparison.
 pub(super) fn tolerance(text: &str) -> Result<f64, String> {
     let tolerance = text.trim().parse().ok().filter(|x| comparison::TOLERANCES.contains(x));
     tolerance.ok_or_else(|| "expected a number from 1e-13 to 0.1".to_owned())
+}
+
+/// Parses the time of a comparison.
+pub(super) fn compared_time(text: &str) -> Result<f64, String> {
+    let time = duration::seconds(text).filter(|x| limits::CRITERION.contains(x));
+    time.ok_or_else(|| "expected a duration between 1e-60 and 1e60 s, also as 10min".to_owned())
 }
 
 /// Parses the limit of a criterion.

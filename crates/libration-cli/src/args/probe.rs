@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{ArgGroup, Args};
+use libration_settings::duration;
 
 use super::number::{self, Coordinates};
 
@@ -112,8 +113,9 @@ fn time_limit(text: &str) -> Result<Duration, String> {
 }
 
 fn seconds(text: &str, most: f64) -> Result<Duration, String> {
-    match text.trim().parse::<f64>() {
-        Ok(x) if x > 0.0 && x <= most => Ok(Duration::from_secs_f64(x)),
-        _ => Err(format!("expected a number of seconds above 0, at most {most}")),
-    }
+    let seconds = duration::seconds(text).filter(|&x| x > 0.0 && x <= most);
+    let seconds = seconds.map(Duration::from_secs_f64);
+    seconds.ok_or_else(|| {
+        format!("expected a number of seconds above 0, at most {most}, also as 10min")
+    })
 }

@@ -53,7 +53,7 @@ pub(crate) struct StepArgs {
         required_unless_present_any = LOOPS
     )]
     pub(crate) integrator: Stepping,
-    /// Time step in s
+    /// Time step in s, also as 2ms or 500Hz
     #[arg(
         long,
         value_name = "SECONDS",

@@ -3,6 +3,7 @@
 use clap::Args;
 use libration::control::{Feedback, Jitter, LqrWeights};
 use libration_analyze::{LatencyOption, Timing};
+use libration_settings::duration;
 use libration_settings::latency_presets::LatencyPreset;
 use libration_settings::limits::{MOST_GAIN, MOST_RMS};
 
@@ -12,7 +13,7 @@ pub(crate) struct TimingArgs {
     /// Gains of the feedback −KP·q − KD·v [default: no loop; in s⁻² and s⁻¹, with --set m= in N/m and N·s/m]
     #[arg(long, value_name = "KP,KD", value_parser = feedback, allow_hyphen_values = true, group = "loop")]
     pub(crate) feedback: Option<Feedback>,
-    /// Latency of a command, e.g. 0.015 (in s), 1.5steps (of --dt) or preset:NAME; at most 4096 steps [default: 0]
+    /// Latency of a command, e.g. 0.015 (in s), 15ms, 1.5steps (of --dt) or preset:NAME; at most 4096 steps [default: 0]
     #[arg(
         long,
         value_name = "TIME",
@@ -85,17 +86,22 @@ pub(super) fn weights(text: &str) -> Result<LqrWeights, String> {
     Ok(LqrWeights { position: weight(q)?, velocity: weight(v)?, command: weight(u)? })
 }
 
+/// Parses a latency: a duration, steps, or the name of a preset.
 pub(super) fn latency(text: &str) -> Result<LatencyOption, String> {
     if let Some(seconds) = LatencyPreset::parse(text)? {
         return Ok(LatencyOption::Seconds(seconds));
     }
-    let (number, make): (&str, fn(f64) -> LatencyOption) = match text.trim().strip_suffix("steps") {
-        Some(steps) => (steps, LatencyOption::Steps),
-        None => (text, LatencyOption::Seconds),
+    let latency = match text.trim().strip_suffix("steps") {
+        Some(steps) => finite(steps).map(LatencyOption::Steps),
+        // A rate is no latency.
+        None if text.trim().ends_with("Hz") => None,
+        None => duration::seconds(text).map(LatencyOption::Seconds),
     };
-    let number = finite(number).filter(|&x| x >= 0.0);
-    number.map(make).ok_or_else(|| {
-        "expected a finite number of at least 0, e.g. 0.015 (in s) or 1.5steps, or preset:NAME of `libration list --presets`".to_owned()
+    let allowed = |latency: &LatencyOption| match *latency {
+        LatencyOption::Seconds(x) | LatencyOption::Steps(x) => x.is_finite() && x >= 0.0,
+    };
+    latency.filter(allowed).ok_or_else(|| {
+        "expected a finite number of at least 0, e.g. 0.015 (in s), 15ms or 1.5steps, or preset:NAME of `libration list --presets`".to_owned()
     })
 }
 

@@ -12,6 +12,7 @@ use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::limits;
 
 use super::closed_loop::{dephasing, describe_loop};
+use super::digits::{beside_one, short, sum};
 use super::simulate::linear_file;
 use super::{analyze_equations, analyze_linear, compare_integrators, equation_file, temperature};
 use crate::args::{AnalyzeArgs, CostArgs};
@@ -108,7 +109,7 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
         let _ = writeln!(text, "  {name:<22} {value}");
     };
     let rows = |rows: &[Vec<f64>]| -> Vec<String> {
-        rows.iter().map(|r| r.iter().map(|x| format!("{x:>24?}")).collect()).collect()
+        rows.iter().map(|r| r.iter().map(|x| format!("{:>24}", short(*x))).collect()).collect()
     };
     for (i, row) in rows(&analysis.update_matrix).into_iter().enumerate() {
         line(if i == 0 { "update matrix" } else { "" }, row.trim_end().to_owned());
@@ -119,23 +120,22 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
             line(name, row.iter().map(|entry| format!(" {entry:>23}")).collect());
         }
     }
-    line(
-        "determinant",
-        format!("{:?}  (1 {:+e})", analysis.determinant, analysis.determinant_minus_one),
-    );
-    line("trace", format!("{:?}", analysis.trace));
+    line("determinant", beside_one(analysis.determinant, analysis.determinant_minus_one));
+    line("trace", short(analysis.trace));
     for (i, [re, im]) in analysis.eigenvalues.iter().enumerate() {
         let sign = if im.is_sign_negative() { '-' } else { '+' };
         let name = if i == 0 { "eigenvalues" } else { "" };
-        line(name, format!("{re:?} {sign} {:?} i", im.abs()));
+        line(name, format!("{} {sign} {} i", short(*re), short(im.abs())));
     }
-    let excess = analysis.spectral_radius_minus_one;
-    line("spectral radius", format!("{:?}  (1 {excess:+e})", analysis.spectral_radius));
+    line(
+        "spectral radius",
+        beside_one(analysis.spectral_radius, analysis.spectral_radius_minus_one),
+    );
     if let Some(bounded) = analysis.bounded {
         line("orbits", if bounded { "bounded" } else { "unbounded" }.into());
     }
     if let Some(windows) = &analysis.stability_windows {
-        let end = |x: Option<f64>| x.map_or("∞".into(), |x| format!("{x:?}"));
+        let end = |x: Option<f64>| x.map_or("∞".into(), short);
         let shown: Vec<String> =
             windows.iter().map(|&[from, to]| format!("{} to {}", end(from), end(to))).collect();
         let shown = if shown.is_empty() { "none".into() } else { shown.join(", ") };
@@ -148,7 +148,7 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
     }
     let mut largest = |what: &str, limit: Option<f64>, dt: Option<Option<f64>>| {
         if let Some(limit) = limit {
-            line("largest dt in s", format!("{} for {what} {limit:?}", known(dt)));
+            line("largest dt in s", format!("{} for {what} {}", known(dt), short(limit)));
         }
     };
     if let Some(dt) = &analysis.largest_dt {
@@ -159,18 +159,18 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
     }
     if let Some(form) = &analysis.modified_hamiltonian {
         let ModifiedHamiltonian { qq, qv, vv } = form;
-        line("conserved", format!("{vv:?} v² {:+?} q v {qq:+?} q²", 2.0 * qv));
+        line("conserved", sum(&[(*vv, "v²"), (2.0 * qv, "q v"), (*qq, "q²")]));
     }
     if let Some(word) = &analysis.order_of_word {
         line("splitting", format!("order {}: {}", word.order, word.word.join(", ")));
         line("", certified(word));
     }
-    line("symplecticity defect", format!("{:e}", analysis.symplecticity_defect));
-    line("reversibility defect", format!("{:e}", analysis.reversibility_defect));
+    line("symplecticity defect", short(analysis.symplecticity_defect));
+    line("reversibility defect", short(analysis.reversibility_defect));
     line(
         "phase error per step",
         match analysis.phase_error_per_step {
-            Some(error) => format!("{error:e} rad"),
+            Some(error) => format!("{} rad", short(error)),
             None => "none: nothing oscillates".into(),
         },
     );
@@ -212,7 +212,7 @@ const UNKNOWN: &str = "not known: the polynomials of this step outgrow exact ari
 /// Returns a largest time step as text.
 fn known(dt: Option<Option<f64>>) -> String {
     match dt {
-        Some(Some(dt)) => format!("{dt:?}"),
+        Some(Some(dt)) => short(dt),
         Some(None) => "any".into(),
         None => UNKNOWN.into(),
     }

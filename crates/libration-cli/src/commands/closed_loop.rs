@@ -4,6 +4,8 @@ use std::fmt::Write as _;
 
 use libration_analyze::{LoopAnalysis, LoopCost, LoopGrowth, StableLatencies, Timing};
 
+use super::digits::{beside_one, short, sum};
+
 /// Appends a block for each set of conditions (feedback, latency, jitter, skew, losses), with the conditions as heading.
 pub(super) fn describe_loop(answer: &LoopAnalysis, timing: &Timing, text: &mut String) {
     let late = answer.latency_steps.filter(|steps| *steps > 0.0);
@@ -60,13 +62,13 @@ fn describe_steady(answer: &LoopAnalysis, lines: &mut Lines<'_>) {
     if let (Some([kp, kd]), Some(steps)) = (answer.feedback, answer.latency_steps) {
         let [of_kp, of_kd] = answer.feedback_units.unwrap_or_default();
         let quantity = answer.command.unwrap_or("command");
-        let law = format!("-({kp:?} {of_kp}) q - ({kd:?} {of_kd}) v");
-        lines.row(quantity, &format!("{law}, latency {steps:?} steps"));
+        let law = format!("-({} {of_kp}) q - ({} {of_kd}) v", short(kp), short(kd));
+        lines.row(quantity, &format!("{law}, latency {} steps", short(steps)));
     }
     if let (Some(radius), Some(excess)) =
         (answer.closed_loop_spectral_radius, answer.closed_loop_spectral_radius_minus_one)
     {
-        lines.row("spectral radius", &format!("{radius:?}  (1 {excess:+e})"));
+        lines.row("spectral radius", &beside_one(radius, excess));
     }
     if let Some(critical) = &answer.critical {
         describe_critical(critical, lines);
@@ -77,10 +79,10 @@ fn describe_critical(critical: &StableLatencies, lines: &mut Lines<'_>) {
     lines.row("critical latency", &number(critical.critical_latency_steps, "steps"));
     lines.row("", &number(critical.critical_latency_seconds, "s"));
     lines.row("of split steps", &number(critical.critical_latency_split_steps, "steps"));
-    let end = |x: Option<f64>| x.map_or("∞".into(), |x| format!("{x:?}"));
+    let end = |x: Option<f64>| x.map_or("∞".into(), short);
     let windows = critical.latency_windows.iter();
     let shown: Vec<String> =
-        windows.map(|&(from, to)| format!("{from:?} to {}", end(to))).collect();
+        windows.map(|&(from, to)| format!("{} to {}", short(from), end(to))).collect();
     let shown = if shown.is_empty() { "none".into() } else { shown.join(", ") };
     lines.row("stable, steps late", &shown);
     lines.row("continuous margin", &number(critical.delay_margin_seconds, "s"));
@@ -93,7 +95,8 @@ fn describe_growth(
     lines: &mut Lines<'_>,
 ) {
     let grown = growth.mean_square_radius.zip(growth.mean_square_growth);
-    let shown = grown.map(|(radius, growth)| format!("{radius:?} a step  (1 {growth:+e})"));
+    let shown =
+        grown.map(|(radius, growth)| format!("{} a step  (1 {growth:+.6e})", short(radius)));
     lines.row("second moments grow by", shown.as_deref().unwrap_or(TOO_FAR));
     if answer.jitter_clips == Some(true) {
         lines.row("", CLIPPED);
@@ -114,21 +117,20 @@ fn describe_growth(
 
 fn describe_cost(cost: &LoopCost, lines: &mut Lines<'_>) {
     let [q, v, u] = cost.cost_weights;
-    let command = if u == 0.0 { String::new() } else { format!(" {u:+?} u²") };
-    let of = format!("{q:?} q² {v:+?} v²{command} under unit noise");
+    let of = sum(&[(q, "q²"), (v, "v²"), (u, "u²")]);
     let shown = match (cost.cost, cost.cost_infinite) {
-        (Some(cost), _) => format!("{cost:?}, the mean of {of}"),
+        (Some(cost), _) => format!("{}, the mean of {of} under unit noise", short(cost)),
         (None, Some(_)) => "infinite: second moments grow".into(),
         (None, None) => "not known: the state of the loop has too many dimensions".into(),
     };
     lines.row("cost", &shown);
     if let Some(increase) = cost.cost_increase {
-        lines.row("", &format!("{increase:+e} relative to a loop with an ideal clock and link"));
+        lines.row("", &format!("{increase:+.6e} relative to a loop with an ideal clock and link"));
     }
 }
 
 fn number(x: Option<f64>, unit: &str) -> String {
-    x.map_or_else(|| "none".to_owned(), |x| format!("{x:?} {unit}"))
+    x.map_or_else(|| "none".to_owned(), |x| format!("{} {unit}", short(x)))
 }
 
 /// Reason for missing second moments.

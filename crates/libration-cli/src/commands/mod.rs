@@ -17,9 +17,11 @@ mod clock_page;
 mod clock_report;
 mod clock_text;
 mod closed_loop;
+mod compare;
 mod compare_integrators;
 mod completions;
 mod config_file;
+mod digits;
 mod disagreements;
 mod equation_file;
 mod equation_loop;
@@ -53,6 +55,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::Advise(args) => advise::run(&args, arguments.quiet),
         Command::Analyze(args) => analyze::run(&args),
         Command::Simulate(args) => simulate::run(&args, arguments.quiet),
+        Command::Compare(args) => compare::run(&args),
         Command::Bodies(args) => bodies::run(&args, arguments.quiet),
         Command::Rollout(args) => rollout::run(&args, arguments.quiet),
         Command::Verify(args) => rollout::verify(&args, arguments.quiet),

@@ -77,7 +77,8 @@ fn what_is_open_and_what_is_closed_stands_in_blocks_of_their_own() {
     let [(_, open), (_, closed), (_, drawn)] = &blocks[1..] else { panic!() };
     // An oscillator that nobody commands neither grows nor decays.
     assert_eq!(number(open, "spectral radius"), 1.0);
-    assert!((number(closed, "spectral radius") - 0.972_274_008_985_203).abs() < 1e-14);
+    // The text has ten digits; JSON, below, has all.
+    assert!((number(closed, "spectral radius") - 0.972_274_008_985_203).abs() < 1e-10);
     assert!(number(closed, "critical latency") < 1.0);
     assert!(number(drawn, "second moments grow by") > 1.028);
     assert!(drawn.iter().any(|row| row.starts_with("cost")));
@@ -85,7 +86,7 @@ fn what_is_open_and_what_is_closed_stands_in_blocks_of_their_own() {
     assert_eq!(found["spectral_radius"], 1.0);
     assert_eq!(found["spectral_radius_minus_one"], 0.0);
     let radius = found["closed_loop_spectral_radius"].as_f64().unwrap();
-    assert_eq!(radius, number(closed, "spectral radius"));
+    assert!((radius - number(closed, "spectral radius")).abs() < 1e-10);
     let excess = found["closed_loop_spectral_radius_minus_one"].as_f64().unwrap();
     assert!((radius - 1.0 - excess).abs() < 1e-15);
     // Without a loop there is one block, and the plant alone loses its phase under a skewed clock.

@@ -50,8 +50,8 @@ fn plants_and_controllers_that_do_not_fit_are_usage_errors_that_name_the_key() {
         ),
         (
             "period = 0.01",
-            "period = 0.01\nlatency = \"5 ms\"",
-            "the latency is \"5 ms\"; expected a number of seconds, or \"preset:NAME\"",
+            "period = 0.01\nlatency = \"5 msec\"",
+            "the latency is \"5 msec\"; expected a number of seconds, one with a unit such as \"2ms\", or \"preset:NAME\"",
         ),
         ("period = 0.01", "period = 0.01\noverrun = \"skip\"", "but no job overruns"),
         (

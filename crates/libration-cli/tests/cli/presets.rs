@@ -95,8 +95,8 @@ fn files_take_presets_and_refuse_unknown_ones() {
             predicate::str::contains("did you mean `usb-frame`?")
                 .and(predicate::str::contains("loop.toml")),
         );
-        run("\"fast\"")
-            .code(2)
-            .stderr(predicate::str::contains("expected a number of seconds, or \"preset:NAME\""));
+        run("\"fast\"").code(2).stderr(predicate::str::contains(
+            "expected a number of seconds, one with a unit such as \"2ms\", or \"preset:NAME\"",
+        ));
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use libration_settings::{Count, Number};
+use libration_settings::{Count, Number, duration};
 use serde::Deserialize;
 
 use super::system_tables::{EquationSource, EquationsTable, Numbers, SystemTables, Weights};
@@ -16,6 +16,7 @@ pub(super) struct File {
     pub(super) environments: Count,
     pub(super) steps: Count,
     pub(super) integrator: String,
+    #[serde(deserialize_with = "duration::number")]
     pub(super) dt: Number,
     pub(super) substeps: Count,
     pub(super) limit: Count,

@@ -6,6 +6,7 @@ use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use super::LatencyPreset;
+use crate::duration::seconds;
 
 /// A latency in s; `"preset:NAME"` is read as the latency of the preset.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,8 +46,8 @@ impl<'de> Visitor<'de> for Reader {
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self.takes_lists {
-            true => "a number, \"preset:NAME\", or a list with one of them for each channel",
-            false => "a number, or \"preset:NAME\"",
+            true => "a number, a text such as \"2ms\", \"preset:NAME\", or a list with one of them for each channel",
+            false => "a number, a text such as \"2ms\", or \"preset:NAME\"",
         })
     }
 
@@ -69,9 +70,11 @@ impl<'de> Visitor<'de> for Reader {
         }
         match LatencyPreset::parse(text).map_err(E::custom)? {
             Some(seconds) => Ok(LatencyValues::All(seconds)),
-            None => Err(E::custom(format!(
-                "the latency is \"{text}\"; expected a number of seconds, or \"preset:NAME\"; help: `libration list --presets` lists the presets"
-            ))),
+            None => seconds(text).map(LatencyValues::All).ok_or_else(|| {
+                E::custom(format!(
+                    "the latency is \"{text}\"; expected a number of seconds, one with a unit such as \"2ms\", or \"preset:NAME\"; help: `libration list --presets` lists the presets"
+                ))
+            }),
         }
     }
 

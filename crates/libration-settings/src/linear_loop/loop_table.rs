@@ -4,13 +4,14 @@ use serde::Deserialize;
 
 use super::weights_table::{Weights, WeightsTable};
 use crate::latency_presets::LatencyValues;
-use crate::{Fault, Number};
+use crate::{Fault, Number, duration};
 
 /// The table `[loop]` of a loop around a linear plant.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct LinearLoopTable {
-    /// The sampling period, in s (default: that of a sampled plant, or 0.01).
+    /// The sampling period, in s, or with a unit (default: that of a sampled plant, or 0.01).
+    #[serde(deserialize_with = "duration::optional")]
     pub period: Option<Number>,
     /// The latency of all inputs, or of each, in s.
     pub latency: Channels,

@@ -1,0 +1,63 @@
+//! Numbers in answers: as many digits as mean something to a reader. JSON has all of them.
+
+/// A number with at most ten digits, without zeros at its end.
+pub(super) fn short(x: f64) -> String {
+    // Rounded in decimal, so that its shortest form has no more digits.
+    let rounded = format!("{x:.9e}").parse().unwrap_or(x);
+    let text = format!("{rounded:?}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
+/// A number near one, with its difference from one, which may be far below the last digit.
+pub(super) fn beside_one(x: f64, difference: f64) -> String {
+    if difference == 0.0 { "1".to_owned() } else { format!("{}  (1 {difference:+.6e})", short(x)) }
+}
+
+/// A sum of terms without those that are zero, such as `0.5 v² + 5 q²`; `0` if all are.
+pub(super) fn sum(terms: &[(f64, &str)]) -> String {
+    let mut text = String::new();
+    for &(factor, of) in terms.iter().filter(|(factor, _)| *factor != 0.0) {
+        let sign = if factor < 0.0 { "−" } else { "+" };
+        text += &match (text.is_empty(), factor < 0.0) {
+            (true, false) => format!("{} {of}", short(factor)),
+            (true, true) => format!("−{} {of}", short(-factor)),
+            (false, _) => format!(" {sign} {} {of}", short(factor.abs())),
+        };
+    }
+    if text.is_empty() { "0".to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_at_most_ten_digits_and_no_zeros_at_the_end() {
+        for (x, text) in [
+            (1.0, "1"),
+            (0.5, "0.5"),
+            (0.9995000416652778, "0.9995000417"),
+            (0.1 + 0.2, "0.3"),
+            (-15.324841096092163, "-15.3248411"),
+            (3.967187110845871e-294, "3.967187111e-294"),
+            (1e20, "1e20"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(short(x), text);
+        }
+    }
+
+    #[test]
+    fn what_is_zero_is_left_out() {
+        assert_eq!(sum(&[(0.5, "v²"), (0.0, "q v"), (4.99875, "q²")]), "0.5 v² + 4.99875 q²");
+        assert_eq!(sum(&[(-1.0, "v²"), (-0.25, "q v")]), "−1 v² − 0.25 q v");
+        assert_eq!(sum(&[(0.0, "v²")]), "0");
+        assert_eq!(beside_one(1.0, 0.0), "1");
+        assert_eq!(
+            beside_one(1.0005422962608295, 5.422962608294426e-4),
+            "1.000542296  (1 +5.422963e-4)"
+        );
+        // A difference that the number does not show.
+        assert_eq!(beside_one(1.0, 1e-30), "1  (1 +1.000000e-30)");
+    }
+}

@@ -1,0 +1,113 @@
+//! `libration compare`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use super::advise::libration;
+
+/// Writes results with three findings: of theory, of a speed, and of another measurement.
+fn results(folder: &Path, name: &str, [drift, rate, share]: [f64; 3], verdict: &str) -> PathBuf {
+    let finding = |id: &str, unit: &str, measured: f64, predicted: Value, verdict: &str| {
+        let tolerance = if predicted.is_null() { Value::Null } else { json!(1e-3) };
+        json!({
+            "id": id, "text": "something", "unit": unit, "predicted": predicted, "measured": measured,
+            "relation": "equal", "tolerance": tolerance, "tolerance_reason": "rounding",
+            "verdict": verdict, "undecided": null
+        })
+    };
+    let findings = [
+        finding("drift.largest", "1", drift, json!(1.0), verdict),
+        finding("rollout.rate", "1/s", rate, Value::Null, "measured"),
+        finding("rollout.share", "1", share, Value::Null, "measured"),
+    ];
+    let study = json!({
+        "name": "drift", "question": "?", "seconds": 1.0, "findings": findings, "claims": [], "tables": [],
+        "figures": [], "data": []
+    });
+    let all = json!({
+        "schema": "libration.results/1", "machine": { "version": name }, "config": { "effort": "quick" },
+        "studies": [study]
+    });
+    let folder = folder.join(name);
+    fs::create_dir(&folder).unwrap();
+    fs::write(folder.join("results.json"), all.to_string()).unwrap();
+    folder
+}
+
+fn compared(words: &[&str], code: i32) -> String {
+    let done = libration(&[&["compare"], words].concat()).code(code);
+    let output = done.get_output();
+    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+}
+
+#[test]
+fn findings_that_became_worse_fail_the_comparison_and_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str, numbers: [f64; 3], verdict: &str| {
+        results(folder.path(), name, numbers, verdict).to_str().unwrap().to_owned()
+    };
+    let first = path("first", [1.0, 1e9, 0.5], "agrees");
+    let near = path("near", [1.0005, 0.9e9, 0.55], "agrees");
+    let said = compared(&[&first, &near], 0);
+    assert!(said.contains("0 findings are the same, 3 within"), "{said}");
+    assert!(said.contains("machine.version differs: \"first\", then \"near\""), "{said}");
+    let said = compared(&[&first, &first], 0);
+    assert!(
+        said.contains("3 findings are the same, 0 within") && !said.contains("differs"),
+        "{said}"
+    );
+    let wrong = path("wrong", [1.5, 1e9, 0.5], "disagrees");
+    let said = compared(&[&first, &wrong], 1);
+    assert!(said.contains("agreed with theory, now disagrees: 1, then 1.5"), "{said}");
+    assert!(said.contains("a finding became worse"), "{said}");
+    let said = compared(&[&wrong, &first], 0);
+    assert!(said.contains("better\n  drift.largest"), "{said}");
+    let slow = path("slow", [1.0, 0.7e9, 0.5], "agrees");
+    let said = compared(&[&first, &slow], 1);
+    assert!(
+        said.contains("worse\n  rollout.rate\n    1000000000 1/s, then 700000000 1/s, 0.7 times"),
+        "{said}"
+    );
+    compared(&[&first, &slow, "--noise", "0.31"], 0);
+    // Nobody knows whether more of it is better.
+    let other = path("other", [1.0, 1e9, 0.2], "agrees");
+    let said = compared(&[&first, &other], 0);
+    assert!(said.contains("different\n  rollout.share"), "{said}");
+}
+
+#[test]
+fn a_comparison_as_json_has_all_that_differs() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = results(folder.path(), "first", [1.0, 1e9, 0.5], "agrees");
+    let file = first.join("results.json");
+    let mut shorter: Value = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
+    shorter["studies"][0]["findings"].as_array_mut().unwrap().remove(0);
+    let second = folder.path().join("second.json");
+    fs::write(&second, shorter.to_string()).unwrap();
+    let said = compared(&[file.to_str().unwrap(), second.to_str().unwrap(), "--json"], 0);
+    let said: Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(said["schema"], "libration.compare/1");
+    assert_eq!((&said["same"], &said["only_before"]), (&json!(2), &json!(["drift.largest"])));
+}
+
+#[test]
+fn files_without_results_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = results(folder.path(), "first", [1.0, 1e9, 0.5], "agrees");
+    let file = folder.path().join("other.json");
+    for (text, message) in [
+        ("{", "no JSON"),
+        ("{}", "it has no schema; expected `libration.results/1`"),
+        ("{\"schema\": \"libration.bodies/1\"}", "its schema is `libration.bodies/1`"),
+        ("{\"schema\": \"libration.results/1\"}", "missing field `studies`"),
+    ] {
+        fs::write(&file, text).unwrap();
+        let said = compared(&[first.to_str().unwrap(), file.to_str().unwrap()], 2);
+        assert!(said.contains(message) && said.contains("other.json"), "{said}");
+    }
+    assert!(compared(&[first.to_str().unwrap(), "missing"], 2).contains("cannot read `missing`"));
+    let path = first.to_str().unwrap();
+    assert!(compared(&[path, path, "--noise", "2"], 2).contains("expected a number from 0 to 1"));
+}

@@ -1,0 +1,88 @@
+//! Durations and rates with units, in options and files.
+
+use std::fs;
+
+use super::advise::{json, libration};
+
+const LOOP: [&str; 5] = ["advise", "--system", "oscillator", "--feedback", "10,2"];
+
+#[test]
+fn a_period_and_a_latency_with_units_are_those_in_seconds() {
+    let answer = |words: &[&str]| json(&[&LOOP[..], words].concat());
+    let seconds = answer(&["--period", "0.002", "--latency", "0.0015"]);
+    for words in [
+        ["--period", "2ms", "--latency", "1.5 ms"],
+        ["--period", "2000us", "--latency", "1500µs"],
+        ["--period", "500Hz", "--latency", "1.5ms"],
+        ["--rate", "500", "--latency", "0.75steps"],
+        ["--rate", "0.5 kHz", "--latency", "0.0015"],
+    ] {
+        assert_eq!(answer(&words)["budget"], seconds["budget"], "{words:?}");
+    }
+    // The command that repeats the answer has the words of the user, those of its parts are in seconds.
+    let text = libration(&[&LOOP[..], &["--rate", "500"]].concat()).success();
+    let text = String::from_utf8_lossy(&text.get_output().stdout).into_owned();
+    assert!(text.contains("--rate 500\n") && text.contains("--dt 0.002 "), "{text}");
+}
+
+#[test]
+fn time_steps_and_horizons_take_units() {
+    let analyze = ["analyze", "--system", "oscillator", "--integrator", "velocity-verlet", "--dt"];
+    let answer = |dt: &str| json(&[&analyze[..], &[dt]].concat());
+    let seconds = answer("0.01");
+    for dt in ["10ms", "100Hz", "1e4 us"] {
+        assert_eq!(answer(dt), seconds, "{dt}");
+    }
+}
+
+#[test]
+fn texts_that_are_no_durations_are_refused_with_examples() {
+    for (words, message) in [
+        (["--period", "2 sec"], "also with a unit: 0.002, 2ms, 500us or 500Hz"),
+        (["--period", "nanms"], "also with a unit"),
+        (["--rate", "0"], "expected a rate above 0 in Hz"),
+        (["--rate", "2ms"], "expected a rate above 0 in Hz"),
+        (["--latency", "500Hz"], "15ms or 1.5steps"),
+        (["--latency", "-1ms"], "expected a finite number of at least 0"),
+    ] {
+        let failed = libration(&[&LOOP[..], &words].concat()).code(2);
+        let said = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
+        assert!(said.contains(message), "{words:?}: {said}");
+    }
+    let both = [&LOOP[..], &["--period", "2ms", "--rate", "500"]].concat();
+    libration(&both).code(2);
+    // The unit of time of bodies is their own.
+    let bodies =
+        ["bodies", "figure-eight", "--integrator", "leapfrog", "--steps", "9", "--dt", "1ms"];
+    libration(&bodies).code(2);
+}
+
+#[test]
+fn files_take_units() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("loop.toml");
+    let plant = "[system.linear]\na = [[0, 1], [0, 0]]\nb = [[0], [1]]\n[controller.lqr]\nstates = [1, 0]\ninputs = [1]\n";
+    let system = "[system.oscillator]\nomega2 = 10\n[controller.pd]\nposition = 10\nvelocity = 2\n[request]\nhorizon = HORIZON\n";
+    for (text, each) in [(plant, "[\"1.5 ms\"]"), (system, "\"1.5ms\"")] {
+        let write = |period: &str, latency: &str, horizon: &str| {
+            let text = text.replace("HORIZON", horizon);
+            let looped = format!("{text}[loop]\nperiod = {period}\nlatency = {latency}\n");
+            fs::write(&path, looped).unwrap();
+            ["advise", "--config", path.to_str().unwrap()]
+        };
+        let answer = |words: [&str; 3]| {
+            let mut answer = json(&words);
+            // It is measured.
+            answer.as_object_mut().unwrap().remove("throughput");
+            answer
+        };
+        let seconds = answer(write("0.002", "0.0015", "5"));
+        assert_eq!(answer(write("\"2ms\"", each, "\"5s\"")), seconds);
+        assert_eq!(answer(write("\"500Hz\"", each, "\"5000ms\"")), seconds);
+        for (period, latency) in [("\"2 sec\"", "0"), ("0.002", "\"fast\"")] {
+            let failed = libration(&write(period, latency, "5")).code(2);
+            let said = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
+            assert!(said.contains("loop.toml") && said.contains("2ms"), "{said}");
+        }
+    }
+}

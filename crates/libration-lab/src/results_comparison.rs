@@ -1,0 +1,206 @@
+//! Two results of `lab`, finding by finding.
+
+use std::collections::HashMap;
+use std::io;
+use std::path::Path;
+
+use libration_data::read_text_bounded;
+use libration_report::Record;
+use libration_report::record::{Finding, Verdict};
+use serde::{Deserialize, Serialize};
+
+use crate::results::SCHEMA;
+
+/// Findings of two runs, compared.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ResultsComparison {
+    /// What differs between the runs themselves: the machine, the version, keys of the configuration.
+    pub conditions: Vec<Condition>,
+    /// Findings with the same bits.
+    pub same: usize,
+    /// Findings whose difference is within the tolerance of theory, or that of speeds.
+    pub within: usize,
+    /// Findings that became worse: theory contradicts what it confirmed, or a rate fell.
+    pub regressions: Vec<Change>,
+    /// Findings that became better in the same sense.
+    pub improvements: Vec<Change>,
+    /// Other findings that differ.
+    pub changed: Vec<Change>,
+    /// Findings of the first run alone.
+    pub only_before: Vec<String>,
+    /// Findings of the second run alone.
+    pub only_after: Vec<String>,
+}
+
+/// A condition of the runs that differs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Condition {
+    /// Its key in `results.json`.
+    pub key: String,
+    /// Its value in the first run.
+    pub before: String,
+    /// Its value in the second run.
+    pub after: String,
+}
+
+/// A finding that differs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Change {
+    /// Its identifier.
+    pub id: String,
+    /// What was measured, in words.
+    pub text: String,
+    /// Unit of both measurements.
+    pub unit: String,
+    /// Measured in the first run; `null` in a file if it is not finite.
+    pub before: f64,
+    /// Measured in the second run.
+    pub after: f64,
+    /// Verdicts of both runs.
+    pub verdicts: [Verdict; 2],
+}
+
+/// What a comparison needs of a file with results.
+#[derive(Clone, Debug, Deserialize)]
+pub struct ComparedResults {
+    #[serde(default)]
+    machine: serde_json::Map<String, serde_json::Value>,
+    #[serde(default)]
+    config: serde_json::Map<String, serde_json::Value>,
+    studies: Vec<Record>,
+}
+
+/// Bytes of the longest file that is read.
+const MOST_BYTES: u64 = 1 << 28;
+
+impl ComparedResults {
+    /// The text of a file of results.
+    ///
+    /// # Errors
+    /// If it cannot be read, is longer than 256 MiB, or is not UTF-8.
+    pub fn read_text(file: &Path) -> io::Result<String> {
+        read_text_bounded(file, MOST_BYTES)
+    }
+
+    /// The results in the text of a file `results.json`.
+    ///
+    /// # Errors
+    /// A sentence that says what is wrong: no JSON, other JSON, or another version of the format.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let value: serde_json::Value =
+            serde_json::from_str(text).map_err(|error| format!("no JSON: {error}"))?;
+        match value.get("schema").and_then(serde_json::Value::as_str) {
+            Some(SCHEMA) => {}
+            Some(other) => return Err(format!("its schema is `{other}`; expected `{SCHEMA}`")),
+            None => {
+                return Err(format!(
+                    "it has no schema; expected `{SCHEMA}`, a file of `libration lab`"
+                ));
+            }
+        }
+        serde_json::from_value(value)
+            .map_err(|error| format!("no results of `libration lab`: {error}"))
+    }
+
+    fn findings(&self) -> impl Iterator<Item = &Finding> {
+        self.studies.iter().flat_map(|record| &record.findings)
+    }
+}
+
+/// The largest relative change of a measurement without a prediction that is taken for noise, unless the user says otherwise.
+pub const NOISE: f64 = 0.2;
+
+impl ResultsComparison {
+    /// Compares two results. Measurements without a prediction, which are speeds for the most part, may differ by `noise` of the first.
+    pub fn new(before: &ComparedResults, after: &ComparedResults, noise: f64) -> Self {
+        let known: HashMap<&str, &Finding> =
+            after.findings().map(|finding| (finding.id.as_str(), finding)).collect();
+        let old: HashMap<&str, &Finding> =
+            before.findings().map(|finding| (finding.id.as_str(), finding)).collect();
+        let mut comparison = ResultsComparison {
+            conditions: conditions(before, after),
+            same: 0,
+            within: 0,
+            regressions: Vec::new(),
+            improvements: Vec::new(),
+            changed: Vec::new(),
+            only_before: Vec::new(),
+            only_after: Vec::new(),
+        };
+        for first in before.findings() {
+            match known.get(first.id.as_str()) {
+                Some(second) => comparison.add(first, second, noise),
+                None => comparison.only_before.push(first.id.clone()),
+            }
+        }
+        let new = after.findings().filter(|finding| !old.contains_key(finding.id.as_str()));
+        comparison.only_after.extend(new.map(|finding| finding.id.clone()));
+        comparison
+    }
+
+    fn add(&mut self, first: &Finding, second: &Finding, noise: f64) {
+        let change = || Change {
+            id: second.id.clone(),
+            text: second.text.clone(),
+            unit: second.unit.clone(),
+            before: first.measured,
+            after: second.measured,
+            verdicts: [first.verdict, second.verdict],
+        };
+        let difference = second.measured - first.measured;
+        // Files have no infinities: both are NaN then.
+        let are_missing = first.measured.is_nan() && second.measured.is_nan();
+        let fell = difference < -noise * first.measured.abs();
+        let rose = difference > noise * first.measured.abs();
+        let is_rate = second.unit.ends_with("/s");
+        match (first.verdict, second.verdict) {
+            (Verdict::Agrees, Verdict::Disagrees) => self.regressions.push(change()),
+            (Verdict::Disagrees, Verdict::Agrees) => self.improvements.push(change()),
+            _ if difference == 0.0 || are_missing => self.same += 1,
+            (Verdict::Measured, Verdict::Measured) if is_rate && fell => {
+                self.regressions.push(change());
+            }
+            (Verdict::Measured, Verdict::Measured) if is_rate && rose => {
+                self.improvements.push(change());
+            }
+            (Verdict::Measured, Verdict::Measured) if !(fell || rose) && !difference.is_nan() => {
+                self.within += 1;
+            }
+            _ if is_within(first, second, difference) => self.within += 1,
+            _ => self.changed.push(change()),
+        }
+    }
+}
+
+/// Whether a difference is allowed by the tolerances of both measurements, which may lie on either side of their predictions.
+fn is_within(first: &Finding, second: &Finding, difference: f64) -> bool {
+    let tolerances = [first, second].map(|finding| finding.tolerance.tolerance);
+    let allowed = tolerances.into_iter().flatten().sum::<f64>();
+    let moved = match (first.predicted, second.predicted) {
+        (Some(first), Some(second)) => second - first,
+        _ => 0.0,
+    };
+    let both_judge = tolerances.iter().all(Option::is_some);
+    both_judge && (difference - moved).abs() <= allowed
+}
+
+/// The conditions that differ, each with its key.
+fn conditions(before: &ComparedResults, after: &ComparedResults) -> Vec<Condition> {
+    let mut all = Vec::new();
+    for (table, first, second) in
+        [("machine", &before.machine, &after.machine), ("config", &before.config, &after.config)]
+    {
+        let missing = serde_json::Value::Null;
+        let others = second.keys().filter(|key| !first.contains_key(*key));
+        for key in first.keys().chain(others) {
+            let of = |map: &serde_json::Map<String, serde_json::Value>| {
+                map.get(key).unwrap_or(&missing).to_string()
+            };
+            let (before, after) = (of(first), of(second));
+            if before != after {
+                all.push(Condition { key: format!("{table}.{key}"), before, after });
+            }
+        }
+    }
+    all
+}
