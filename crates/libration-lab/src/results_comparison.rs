@@ -163,7 +163,7 @@ impl ResultsComparison {
             (Verdict::Measured, Verdict::Measured) if is_rate && rose => {
                 self.improvements.push(change());
             }
-            (Verdict::Measured, Verdict::Measured) if !(fell || rose) && !difference.is_nan() => {
+            (Verdict::Measured, Verdict::Measured) if !(fell || rose || difference.is_nan()) => {
                 self.within += 1;
             }
             _ if is_within(first, second, difference) => self.within += 1,

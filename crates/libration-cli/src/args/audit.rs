@@ -28,8 +28,8 @@ pub(crate) struct AuditArgs {
     /// Largest deviation from the energy at the start, relative to it
     #[arg(long, value_name = "NUMBER", default_value = "1e-4", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) tolerance: f64,
-    /// Duration in s for which the tolerance holds [default: that of the runs]
-    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
+    /// Duration for which the tolerance holds, in s, also as 10min [default: that of the runs]
+    #[arg(long, value_name = "SECONDS", value_parser = positive_time, allow_hyphen_values = true)]
     pub(crate) horizon: Option<f64>,
     /// Write an HTML page to FILE
     #[arg(long, value_name = "FILE")]
@@ -48,6 +48,11 @@ Examples:
 Times may have any unit, if --dt and --horizon have the same one.
 
 Exit codes: 0 no fault; 1 a fault, or a failed run; 2 invalid input.";
+
+fn positive_time(text: &str) -> Result<f64, String> {
+    let time = number::time(text)?;
+    if time > 0.0 { Ok(time) } else { Err("expected a duration above 0".to_owned()) }
+}
 
 fn positive(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
