@@ -56,7 +56,7 @@ pub(super) struct PidTable {
     pub(super) proportional: Number,
     pub(super) integral: Number,
     pub(super) derivative: Number,
-    #[serde(default = "zero")]
+    #[serde(default = "zero", deserialize_with = "duration::number")]
     pub(super) filter: Number,
     #[serde(default = "infinite")]
     pub(super) most: Number,
@@ -83,7 +83,7 @@ pub(super) struct ObserverTable {
 #[derive(Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct LoopTable {
-    #[serde(deserialize_with = "duration::number")]
+    #[serde(deserialize_with = "duration::number_of_period")]
     pub(super) period: Number,
     pub(super) latency: LatencyValue,
     pub(super) jitter: Number,

@@ -20,7 +20,7 @@ pub struct ResultsComparison {
     pub same: usize,
     /// Findings whose difference is within the tolerance of theory, or that of speeds.
     pub within: usize,
-    /// Findings that became worse: theory contradicts what it confirmed, or a rate fell.
+    /// Findings that became worse: theory contradicts what it did not before, or a rate fell or is missing.
     pub regressions: Vec<Change>,
     /// Findings that became better in the same sense.
     pub improvements: Vec<Change>,
@@ -56,6 +56,10 @@ pub struct Change {
     pub before: f64,
     /// Measured in the second run.
     pub after: f64,
+    /// The prediction of the second run, if there is one.
+    pub predicted: Option<f64>,
+    /// The tolerance of the second run, if there is one.
+    pub tolerance: Option<f64>,
     /// Verdicts of both runs.
     pub verdicts: [Verdict; 2],
 }
@@ -63,6 +67,8 @@ pub struct Change {
 /// What a comparison needs of a file with results.
 #[derive(Clone, Debug, Deserialize)]
 pub struct ComparedResults {
+    #[serde(default = "yes")]
+    complete: bool,
     #[serde(default)]
     machine: serde_json::Map<String, serde_json::Value>,
     #[serde(default)]
@@ -107,6 +113,10 @@ impl ComparedResults {
     }
 }
 
+fn yes() -> bool {
+    true
+}
+
 /// The largest relative change of a measurement without a prediction that is taken for noise, unless the user says otherwise.
 pub const NOISE: f64 = 0.2;
 
@@ -133,60 +143,72 @@ impl ResultsComparison {
                 None => comparison.only_before.push(first.id.clone()),
             }
         }
-        let new = after.findings().filter(|finding| !old.contains_key(finding.id.as_str()));
-        comparison.only_after.extend(new.map(|finding| finding.id.clone()));
+        for new in after.findings().filter(|finding| !old.contains_key(finding.id.as_str())) {
+            comparison.only_after.push(new.id.clone());
+            if new.verdict == Verdict::Disagrees {
+                comparison.regressions.push(change(None, new));
+            }
+        }
         comparison
     }
 
     fn add(&mut self, first: &Finding, second: &Finding, noise: f64) {
-        let change = || Change {
-            id: second.id.clone(),
-            text: second.text.clone(),
-            unit: second.unit.clone(),
-            before: first.measured,
-            after: second.measured,
-            verdicts: [first.verdict, second.verdict],
-        };
+        let change = change(Some(first), second);
         let difference = second.measured - first.measured;
         // Files have no infinities: both are NaN then.
-        let are_missing = first.measured.is_nan() && second.measured.is_nan();
-        let fell = difference < -noise * first.measured.abs();
+        let is_equal = difference == 0.0 || first.measured.is_nan() && second.measured.is_nan();
+        let is_lost = second.measured.is_nan() && !first.measured.is_nan();
+        let fell = difference < -noise * first.measured.abs() || is_lost;
         let rose = difference > noise * first.measured.abs();
         let is_rate = second.unit.ends_with("/s");
+        let is_another = first.unit != second.unit || first.relation != second.relation;
         match (first.verdict, second.verdict) {
-            (Verdict::Agrees, Verdict::Disagrees) => self.regressions.push(change()),
-            (Verdict::Disagrees, Verdict::Agrees) => self.improvements.push(change()),
-            _ if difference == 0.0 || are_missing => self.same += 1,
-            (Verdict::Measured, Verdict::Measured) if is_rate && fell => {
-                self.regressions.push(change());
+            (Verdict::Agrees | Verdict::Measured, Verdict::Disagrees) => {
+                self.regressions.push(change)
             }
-            (Verdict::Measured, Verdict::Measured) if is_rate && rose => {
-                self.improvements.push(change());
-            }
-            (Verdict::Measured, Verdict::Measured) if !(fell || rose || difference.is_nan()) => {
-                self.within += 1;
-            }
-            _ if is_within(first, second, difference) => self.within += 1,
-            _ => self.changed.push(change()),
+            (Verdict::Disagrees, Verdict::Agrees) => self.improvements.push(change),
+            (before, after) if is_another || before != after => self.changed.push(change),
+            _ if is_equal && first.predicted == second.predicted => self.same += 1,
+            (Verdict::Measured, _) if is_rate && fell => self.regressions.push(change),
+            (Verdict::Measured, _) if is_rate && rose => self.improvements.push(change),
+            (Verdict::Measured, _) if !(fell || rose || difference.is_nan()) => self.within += 1,
+            _ if is_within(first, second) => self.within += 1,
+            _ => self.changed.push(change),
         }
     }
 }
 
-/// Whether a difference is allowed by the tolerances of both measurements, which may lie on either side of their predictions.
-fn is_within(first: &Finding, second: &Finding, difference: f64) -> bool {
-    let tolerances = [first, second].map(|finding| finding.tolerance.tolerance);
-    let allowed = tolerances.into_iter().flatten().sum::<f64>();
-    let moved = match (first.predicted, second.predicted) {
-        (Some(first), Some(second)) => second - first,
-        _ => 0.0,
+fn change(first: Option<&Finding>, second: &Finding) -> Change {
+    Change {
+        id: second.id.clone(),
+        text: second.text.clone(),
+        unit: second.unit.clone(),
+        before: first.map_or(f64::NAN, |first| first.measured),
+        after: second.measured,
+        predicted: second.predicted,
+        tolerance: second.tolerance.tolerance,
+        verdicts: [first.map_or(Verdict::Measured, |first| first.verdict), second.verdict],
+    }
+}
+
+/// Whether measurements and predictions differ by no more than the tolerances of both.
+fn is_within(first: &Finding, second: &Finding) -> bool {
+    let [Some(one), Some(other)] = [first, second].map(|finding| finding.tolerance.tolerance)
+    else {
+        return false;
     };
-    let both_judge = tolerances.iter().all(Option::is_some);
-    both_judge && (difference - moved).abs() <= allowed
+    let [Some(before), Some(after)] = [first.predicted, second.predicted] else { return false };
+    let allowed = one + other;
+    (second.measured - first.measured).abs() <= allowed && (after - before).abs() <= allowed
 }
 
 /// The conditions that differ, each with its key.
 fn conditions(before: &ComparedResults, after: &ComparedResults) -> Vec<Condition> {
     let mut all = Vec::new();
+    if !(before.complete && after.complete) {
+        let [before, after] = [before, after].map(|results| results.complete.to_string());
+        all.push(Condition { key: "complete".to_owned(), before, after });
+    }
     for (table, first, second) in
         [("machine", &before.machine, &after.machine), ("config", &before.config, &after.config)]
     {

@@ -7,110 +7,148 @@ use serde::{Deserialize, Deserializer};
 
 use crate::Number;
 
-/// Units of durations, in s.
-const DURATIONS: [(&str, f64); 9] = [
-    ("ns", 1e-9),
-    ("us", 1e-6),
+/// Units below a second, as powers of ten.
+const PARTS: [(&str, i32); 5] = [
+    ("ns", -9),
+    ("us", -6),
     // The micro sign, and the Greek letter.
-    ("µs", 1e-6),
-    ("μs", 1e-6),
-    ("ms", 1e-3),
-    ("s", 1.0),
-    ("min", 60.0),
-    ("h", 3600.0),
-    ("d", 86400.0),
+    ("µs", -6),
+    ("μs", -6),
+    ("ms", -3),
 ];
 
-/// Units of rates, in Hz.
-const RATES: [(&str, f64); 3] = [("Hz", 1.0), ("kHz", 1e3), ("MHz", 1e6)];
+/// Longer units, in s.
+const MULTIPLES: [(&str, f64); 4] = [("s", 1.0), ("min", 60.0), ("h", 3600.0), ("d", 86400.0)];
+
+/// Units of rates, as powers of ten.
+const RATES: [(&str, i32); 3] = [("kHz", 3), ("MHz", 6), ("Hz", 0)];
 
 /// What a duration may be, in messages.
-pub const DURATION: &str = "a number of seconds, also with a unit: 0.002, 2ms, 500us or 500Hz";
+pub const DURATION: &str = "a number of seconds, also with a unit: 0.002, 2ms or 10min";
 
-/// The seconds of a duration such as `0.002`, `2ms` or `2 ms`; a rate such as `500Hz` stands for its period. None for any other text.
+/// What a period may be, in messages.
+pub const PERIOD: &str = "a number of seconds, also with a unit: 0.002, 2ms or 500Hz";
+
+/// The seconds of a duration such as `0.002`, `2ms` or `2 ms`, with the bits of the number in seconds. None for any other text.
 pub fn seconds(text: &str) -> Option<f64> {
     let text = text.trim();
-    text.parse().ok().or_else(|| of_unit(text, &DURATIONS)).or_else(|| {
-        // A quotient of the number and the unit, so that 500 Hz has the bits of 0.002 s.
-        let (number, unit) = parts(text, &RATES)?;
-        Some(1.0 / (number * unit))
-    })
+    let multiple = || {
+        let of = |&(unit, factor): &(&str, f64)| {
+            Some(number_before(text, unit)?.parse::<f64>().ok()? * factor)
+        };
+        MULTIPLES.iter().find_map(of)
+    };
+    text.parse().ok().or_else(|| of_power(text, &PARTS)).or_else(multiple)
+}
+
+/// The seconds of a period: a duration, or a rate such as `500Hz`. None for any other text.
+pub fn period(text: &str) -> Option<f64> {
+    seconds(text).or_else(|| of_power(text.trim(), &RATES).map(|rate| 1.0 / rate))
 }
 
 /// The rate in Hz of a text such as `500`, `500Hz` or `0.5 kHz`. None for any other text.
 pub fn rate(text: &str) -> Option<f64> {
     let text = text.trim();
-    text.parse().ok().or_else(|| of_unit(text, &RATES))
+    text.parse().ok().or_else(|| of_power(text, &RATES))
 }
 
-fn of_unit(text: &str, units: &[(&str, f64)]) -> Option<f64> {
-    let (number, unit) = parts(text, units)?;
-    // The quotient by a power of ten has one rounding, the product with a negative power two: 2 ms has the bits of 0.002 s.
-    Some(if unit < 1.0 { number / (1.0 / unit).round() } else { number * unit })
-}
-
-/// The number of a text, and its unit.
-fn parts(text: &str, units: &[(&str, f64)]) -> Option<(f64, f64)> {
-    units.iter().find_map(|(name, unit)| {
-        let number = text.strip_suffix(name)?.trim_end();
-        // `1e3s` is a number and its unit, `infs` and `nans` are not.
-        let is_number = number.ends_with(|c: char| c.is_ascii_digit() || c == '.');
-        let number = number.parse().ok().filter(|_| is_number)?;
-        Some((number, *unit))
+/// A number with a unit that is a power of ten: the decimal point moves, so that `33.3ms` has the bits of `0.0333`.
+fn of_power(text: &str, units: &[(&str, i32)]) -> Option<f64> {
+    units.iter().find_map(|(unit, power)| {
+        let number = number_before(text, unit)?;
+        let (digits, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
+        let exponent = exponent.parse::<i32>().ok()?.checked_add(*power)?;
+        format!("{digits}e{exponent}").parse().ok()
     })
 }
 
-/// A number of seconds in a file; `"2ms"` and `"500Hz"` are read as `0.002`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seconds(pub f64);
+/// The text before a unit, if it is a number: `infs` and `nans` are not.
+fn number_before<'t>(text: &'t str, unit: &str) -> Option<&'t str> {
+    let number = text.strip_suffix(unit)?.trim_end();
+    let is_number = number.ends_with(|c: char| c.is_ascii_digit() || c == '.');
+    (is_number && number.parse::<f64>().is_ok()).then_some(number)
+}
 
-/// Reads a field of type [`Number`] as [`Seconds`].
+/// Reads a field in s as a number, or as a text such as `"2ms"`.
 ///
 /// # Errors
 /// If it is no duration.
 pub fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Number, D::Error> {
-    Seconds::deserialize(deserializer).map(|Seconds(x)| Number(x))
+    deserializer.deserialize_any(Reader { takes_rates: false }).map(Number)
 }
 
-/// Reads a field that may be missing.
+/// The same of a field that may be missing.
 ///
 /// # Errors
 /// If it is no duration.
 pub fn optional<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Number>, D::Error> {
-    number(deserializer).map(Some)
+    Ok(Option::<Duration>::deserialize(deserializer)?.map(|Duration(x)| Number(x)))
 }
 
-impl<'de> Deserialize<'de> for Seconds {
+/// Reads a period in s as a number, or as a text such as `"2ms"` or `"500Hz"`.
+///
+/// # Errors
+/// If it is no period.
+pub fn number_of_period<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Number, D::Error> {
+    deserializer.deserialize_any(Reader { takes_rates: true }).map(Number)
+}
+
+/// The same of a field that may be missing.
+///
+/// # Errors
+/// If it is no period.
+pub fn optional_period<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<Number>, D::Error> {
+    Ok(Option::<Period>::deserialize(deserializer)?.map(|Period(x)| Number(x)))
+}
+
+struct Duration(f64);
+
+impl<'de> Deserialize<'de> for Duration {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Reader;
+        number(deserializer).map(|Number(x)| Duration(x))
+    }
+}
 
-        impl Visitor<'_> for Reader {
-            type Value = f64;
+/// A period in s in a file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Period(pub f64);
 
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(
-                    "a number of seconds, or a text with a unit such as \"2ms\" or \"500Hz\"",
-                )
-            }
-            fn visit_f64<E: Error>(self, x: f64) -> Result<f64, E> {
-                Ok(x)
-            }
-            fn visit_i64<E: Error>(self, x: i64) -> Result<f64, E> {
-                Ok(x as f64)
-            }
-            fn visit_u64<E: Error>(self, x: u64) -> Result<f64, E> {
-                Ok(x as f64)
-            }
-            fn visit_i128<E: Error>(self, x: i128) -> Result<f64, E> {
-                Ok(x as f64)
-            }
-            fn visit_str<E: Error>(self, text: &str) -> Result<f64, E> {
-                seconds(text)
-                    .ok_or_else(|| E::invalid_value(serde::de::Unexpected::Str(text), &self))
-            }
-        }
+impl<'de> Deserialize<'de> for Period {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        number_of_period(deserializer).map(|Number(x)| Period(x))
+    }
+}
 
-        deserializer.deserialize_any(Reader).map(Seconds)
+struct Reader {
+    takes_rates: bool,
+}
+
+impl Visitor<'_> for Reader {
+    type Value = f64;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self.takes_rates {
+            true => "a number of seconds, or a text with a unit such as \"2ms\" or \"500Hz\"",
+            false => "a number of seconds, or a text with a unit such as \"2ms\"",
+        })
+    }
+    fn visit_f64<E: Error>(self, x: f64) -> Result<f64, E> {
+        Ok(x)
+    }
+    fn visit_i64<E: Error>(self, x: i64) -> Result<f64, E> {
+        Ok(x as f64)
+    }
+    fn visit_u64<E: Error>(self, x: u64) -> Result<f64, E> {
+        Ok(x as f64)
+    }
+    fn visit_i128<E: Error>(self, x: i128) -> Result<f64, E> {
+        Ok(x as f64)
+    }
+    fn visit_str<E: Error>(self, text: &str) -> Result<f64, E> {
+        let read = if self.takes_rates { period } else { seconds };
+        read(text).ok_or_else(|| E::invalid_value(serde::de::Unexpected::Str(text), &self))
     }
 }
 
@@ -133,9 +171,10 @@ mod tests {
             ("2min", 120.0),
             ("1h", 3600.0),
             ("2d", 172_800.0),
-            ("500Hz", 0.002),
-            ("0.5 kHz", 0.002),
-            ("1MHz", 1e-6),
+            ("33.3ms", 0.0333),
+            ("0.1us", 0.1e-6),
+            ("1.1ns", 1.1e-9),
+            ("2e1ms", 0.02),
             ("-2ms", -0.002),
         ] {
             assert_eq!(seconds(text), Some(wanted), "{text}");

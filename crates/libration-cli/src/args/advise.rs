@@ -9,7 +9,7 @@ use libration_advise::{AdvisedSystem, Control, Law, Measure, Request, Tolerance}
 use libration_analyze::LatencyOption;
 use libration_settings::initial_value_problem::InitialValueProblem;
 
-use super::number::{period_of_rate, time};
+use super::number::{self, period_of_rate, time};
 use super::timing::{feedback, finite, latency, law, weights};
 use super::{LinearArgs, SystemArgs, TopicArgs};
 use crate::error::Failure;
@@ -28,8 +28,8 @@ pub(crate) struct AdviseArgs {
     /// Gains of the feedback −KP·q − KD·v [default: no loop; in s⁻² and s⁻¹, with --set m= in N/m and N·s/m]
     #[arg(long, value_name = "KP,KD", value_parser = feedback, allow_hyphen_values = true)]
     pub(super) feedback: Option<Feedback>,
-    /// Sample period of the loop in s, also as 2ms [default: 0.01, or that of a sampled plant]
-    #[arg(long, value_name = "SECONDS", value_parser = time, allow_hyphen_values = true)]
+    /// Sample period of the loop in s, also as 2ms or 500Hz [default: 0.01, or that of a sampled plant]
+    #[arg(long, value_name = "SECONDS", value_parser = number::period, allow_hyphen_values = true)]
     period: Option<f64>,
     /// Rate of the loop in Hz in place of its period, e.g. 500 or 0.5kHz
     #[arg(long = "rate", value_name = "HZ", value_parser = period_of_rate, conflicts_with = "period", allow_hyphen_values = true)]
@@ -61,7 +61,7 @@ pub(crate) struct AdviseArgs {
     #[arg(
         long,
         value_name = "PART",
-        value_parser = number,
+        value_parser = finite_number,
         allow_hyphen_values = true
     )]
     pub(super) skew: Option<f64>,
@@ -69,7 +69,7 @@ pub(crate) struct AdviseArgs {
     #[arg(
         long,
         value_name = "P",
-        value_parser = number,
+        value_parser = finite_number,
         allow_hyphen_values = true
     )]
     pub(super) loss: Option<f64>,
@@ -86,7 +86,7 @@ pub(crate) struct AdviseArgs {
     #[arg(
         long,
         value_name = "DISTANCE",
-        value_parser = number,
+        value_parser = finite_number,
         requires = "feedback",
         default_value = "0.1",
         allow_hyphen_values = true
@@ -180,7 +180,7 @@ impl AdviseArgs {
             one_degree_of_freedom(given.system.as_deref().unwrap_or_default(), self.feedback)?;
             // The operating point of a loop is the origin by default.
             if self.feedback.is_some() && given.q.is_none() {
-                given.q = Some(super::number::Coordinates::origin());
+                given.q = Some(number::Coordinates::origin());
             }
             given.resolve()?
         };
@@ -220,6 +220,8 @@ impl AdviseArgs {
     pub(crate) fn with_timing(&self, mut request: Request) -> Result<Request, Failure> {
         let Some(control) = &mut request.control else {
             let given = [
+                (self.period.is_some(), "period"),
+                (self.period_of_rate.is_some(), "rate"),
                 (!self.latency.is_empty(), "latency"),
                 (self.jitter.is_some(), "jitter"),
                 (self.skew.is_some(), "skew"),
@@ -281,7 +283,7 @@ fn one_degree_of_freedom(system: &str, feedback: Option<Feedback>) -> Result<(),
     }
 }
 
-fn number(text: &str) -> Result<f64, String> {
+fn finite_number(text: &str) -> Result<f64, String> {
     finite(text).ok_or_else(|| "expected a finite number".to_owned())
 }
 

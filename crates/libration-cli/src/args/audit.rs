@@ -45,7 +45,7 @@ Examples:
   libration audit a.csv b.csv --energy total --time t --dt 0.002,0.001 --tolerance 1e-4 --horizon 1000
   libration audit a.parquet b.parquet --energy E --page audit.html
 
-Times may have any unit, if --dt and --horizon have the same one.
+Times are in s; of files with another unit, numbers without a unit in --dt and --horizon have that of the files.
 
 Exit codes: 0 no fault; 1 a fault, or a failed run; 2 invalid input.";
 

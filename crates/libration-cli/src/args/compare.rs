@@ -29,8 +29,8 @@ Examples:
   libration lab --all --out after
   libration compare before after
 
-A finding is worse if it agreed with theory and now disagrees, or if it is a rate, in units of 1/s, that fell by
-more than --noise. Then the exit code is 1.";
+A finding is worse if it disagrees with theory and did not before, or if it is a rate (its unit ends in /s) that
+fell by more than --noise or is missing. Then the exit code is 1.";
 
 fn noise(text: &str) -> Result<f64, String> {
     let noise = super::timing::finite(text).filter(|x| (0.0..=1.0).contains(x));

@@ -11,7 +11,7 @@ use libration_settings::linear_loop::WeightsTable;
 use super::AnalyzeArgs;
 use super::linear::{Gain, lqr, rows};
 use super::linear_simulation::{TimingOptions, controller_table, loop_of_plant};
-use super::number::time;
+use super::number::period;
 use super::timing::latency;
 use crate::error::Failure;
 
@@ -31,7 +31,7 @@ pub(crate) struct LinearAnalysisArgs {
     #[arg(long, value_name = "ROWS", value_parser = rows, requires = "plant", conflicts_with = "system", allow_hyphen_values = true)]
     gain: Option<Gain>,
     /// Period of the loop in s, also as 2ms or 500Hz [default: 0.01]
-    #[arg(long, value_name = "SECONDS", value_parser = time, requires = "plant", conflicts_with = "system", allow_hyphen_values = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = period, requires = "plant", conflicts_with = "system", allow_hyphen_values = true)]
     period: Option<f64>,
     /// Latency of the measurements of a linear plant: of all, or of each [default: 0]
     #[arg(long, value_name = "TIME", value_parser = latency, value_delimiter = ',', requires = "loop", conflicts_with = "system", allow_hyphen_values = true)]

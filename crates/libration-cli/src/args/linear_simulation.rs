@@ -16,7 +16,7 @@ use libration_settings::{Number, suggestions};
 
 use super::advise::seconds;
 use super::linear::{Gain, lqr, named, rows};
-use super::number::{Coordinates, assignment, coordinates, time};
+use super::number::{Coordinates, assignment, coordinates, period};
 use super::timing::{finite, latency};
 use super::{SimulateArgs, SystemArgs, simd};
 use crate::error::Failure;
@@ -37,7 +37,7 @@ pub(crate) struct LinearSimulationArgs {
     #[arg(long, value_name = "ROWS", value_parser = rows, allow_hyphen_values = true)]
     gain: Option<Gain>,
     /// Period of the loop in s, also as 2ms or 500Hz [default: 0.01]
-    #[arg(long, value_name = "SECONDS", value_parser = time, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = period, allow_hyphen_values = true)]
     period: Option<f64>,
     /// Latency of the measurements of a linear plant: of all, or of each [default: 0]
     #[arg(long, value_name = "TIME", value_parser = latency, value_delimiter = ',', allow_hyphen_values = true)]

@@ -4,18 +4,19 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use libration_advise::jitter_measurement::{Plan, Priority};
+use libration_settings::duration;
 
-use super::TopicArgs;
+use super::{TopicArgs, number};
 
 /// Arguments of `measure-jitter`.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct MeasureJitterArgs {
-    /// Rate of the loop in Hz
-    #[arg(long, value_name = "HZ", default_value = "1000", allow_hyphen_values = true)]
+    /// Rate of the loop in Hz, also as 0.5kHz
+    #[arg(long, value_name = "HZ", value_parser = rate, default_value = "1000", allow_hyphen_values = true)]
     rate: f64,
-    /// Duration for each priority in s
-    #[arg(long, value_name = "S", default_value = "10", allow_hyphen_values = true)]
+    /// Duration for each priority in s, also as 1min
+    #[arg(long, value_name = "S", value_parser = number::time, default_value = "10", allow_hyphen_values = true)]
     seconds: f64,
     /// Keep all cores busy during the measurement
     #[arg(long)]
@@ -74,4 +75,9 @@ enum PriorityChoice {
     Ordinary,
     Raised,
     Both,
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    let rate = duration::rate(text);
+    rate.ok_or_else(|| "expected a rate in Hz, e.g. 500, 500Hz or 0.5kHz".to_owned())
 }

@@ -60,7 +60,7 @@ pub(super) fn assignment(text: &str) -> Result<(String, f64), String> {
 pub(super) fn time_step(text: &str) -> Result<f64, String> {
     let rule =
         || format!("expected a time step that is {}, also as 2ms or 500Hz", limits::TIME_STEP);
-    let dt = duration::seconds(text).ok_or_else(|| format!("not a number; {}", rule()))?;
+    let dt = duration::period(text).ok_or_else(|| format!("not a number; {}", rule()))?;
     limits::within(limits::TIME_STEP, "--dt", dt)?;
     Ok(dt)
 }
@@ -78,6 +78,12 @@ pub(super) fn time_step_of_system(text: &str) -> Result<f64, String> {
 pub(super) fn time(text: &str) -> Result<f64, String> {
     let seconds = duration::seconds(text).filter(|x| x.is_finite());
     seconds.ok_or_else(|| format!("expected {}", duration::DURATION))
+}
+
+/// Parses the period of a loop in s.
+pub(super) fn period(text: &str) -> Result<f64, String> {
+    let seconds = duration::period(text).filter(|x| x.is_finite());
+    seconds.ok_or_else(|| format!("expected {}", duration::PERIOD))
 }
 
 /// Parses the rate of a loop in Hz, and returns its period in s.

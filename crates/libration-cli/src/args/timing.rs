@@ -93,8 +93,6 @@ pub(super) fn latency(text: &str) -> Result<LatencyOption, String> {
     }
     let latency = match text.trim().strip_suffix("steps") {
         Some(steps) => finite(steps).map(LatencyOption::Steps),
-        // A rate is no latency.
-        None if text.trim().ends_with("Hz") => None,
         None => duration::seconds(text).map(LatencyOption::Seconds),
     };
     let allowed = |latency: &LatencyOption| match *latency {

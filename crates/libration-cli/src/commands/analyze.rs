@@ -12,7 +12,7 @@ use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::limits;
 
 use super::closed_loop::{dephasing, describe_loop};
-use super::digits::{beside_one, short, sum};
+use super::digits::{beside_one, exact, short, sum};
 use super::simulate::linear_file;
 use super::{analyze_equations, analyze_linear, compare_integrators, equation_file, temperature};
 use crate::args::{AnalyzeArgs, CostArgs};
@@ -135,7 +135,7 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
         line("orbits", if bounded { "bounded" } else { "unbounded" }.into());
     }
     if let Some(windows) = &analysis.stability_windows {
-        let end = |x: Option<f64>| x.map_or("∞".into(), short);
+        let end = |x: Option<f64>| x.map_or("∞".into(), exact);
         let shown: Vec<String> =
             windows.iter().map(|&[from, to]| format!("{} to {}", end(from), end(to))).collect();
         let shown = if shown.is_empty() { "none".into() } else { shown.join(", ") };
@@ -212,7 +212,7 @@ const UNKNOWN: &str = "not known: the polynomials of this step outgrow exact ari
 /// Returns a largest time step as text.
 fn known(dt: Option<Option<f64>>) -> String {
     match dt {
-        Some(Some(dt)) => short(dt),
+        Some(Some(dt)) => exact(dt),
         Some(None) => "any".into(),
         None => UNKNOWN.into(),
     }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use libration_analyze::{LoopAnalysis, LoopCost, LoopGrowth, StableLatencies, Timing};
 
-use super::digits::{beside_one, short, sum};
+use super::digits::{beside_one, exact, short, sum};
 
 /// Appends a block for each set of conditions (feedback, latency, jitter, skew, losses), with the conditions as heading.
 pub(super) fn describe_loop(answer: &LoopAnalysis, timing: &Timing, text: &mut String) {
@@ -76,13 +76,15 @@ fn describe_steady(answer: &LoopAnalysis, lines: &mut Lines<'_>) {
 }
 
 fn describe_critical(critical: &StableLatencies, lines: &mut Lines<'_>) {
-    lines.row("critical latency", &number(critical.critical_latency_steps, "steps"));
-    lines.row("", &number(critical.critical_latency_seconds, "s"));
-    lines.row("of split steps", &number(critical.critical_latency_split_steps, "steps"));
-    let end = |x: Option<f64>| x.map_or("∞".into(), short);
+    let limit =
+        |x: Option<f64>, unit| x.map_or("none".to_owned(), |x| format!("{} {unit}", exact(x)));
+    lines.row("critical latency", &limit(critical.critical_latency_steps, "steps"));
+    lines.row("", &limit(critical.critical_latency_seconds, "s"));
+    lines.row("of split steps", &limit(critical.critical_latency_split_steps, "steps"));
+    let end = |x: Option<f64>| x.map_or("∞".into(), exact);
     let windows = critical.latency_windows.iter();
     let shown: Vec<String> =
-        windows.map(|&(from, to)| format!("{} to {}", short(from), end(to))).collect();
+        windows.map(|&(from, to)| format!("{} to {}", exact(from), end(to))).collect();
     let shown = if shown.is_empty() { "none".into() } else { shown.join(", ") };
     lines.row("stable, steps late", &shown);
     lines.row("continuous margin", &number(critical.delay_margin_seconds, "s"));

@@ -7,7 +7,7 @@ use libration_lab::{Change, ComparedResults, ResultsComparison};
 use libration_report::record::Verdict;
 use serde_json::json;
 
-use super::digits::short;
+use super::digits::{exact, short};
 use crate::args::CompareArgs;
 use crate::error::Failure;
 use crate::terminal;
@@ -65,22 +65,60 @@ fn describe(comparison: &ResultsComparison) -> String {
     }
     for (title, ids) in [("first", &comparison.only_before), ("second", &comparison.only_after)] {
         if !ids.is_empty() {
-            let _ = writeln!(text, "\nonly in the {title}: {}", ids.join(", "));
+            let _ = writeln!(text, "\nonly in the {title}: {}", listed(ids));
         }
     }
     text
 }
 
 fn sentence(change: &Change) -> String {
+    let Change { before, after, text, .. } = change;
     let unit = if change.unit == "1" { String::new() } else { format!(" {}", change.unit) };
-    let numbers = format!("{}{unit}, then {}{unit}", short(change.before), short(change.after));
-    let ratio = change.after / change.before;
-    let ratio = if ratio.is_finite() { format!(", {} times", short(ratio)) } else { String::new() };
-    let verdict = match change.verdicts {
-        [Verdict::Agrees, Verdict::Disagrees] => "agreed with theory, now disagrees: ",
-        [Verdict::Disagrees, Verdict::Agrees] => "disagreed with theory, now agrees: ",
-        [Verdict::Disagrees, Verdict::Disagrees] => "disagrees with theory, as before: ",
+    let [first, second] = change.verdicts;
+    if second == Verdict::Disagrees {
+        let number = |x: Option<f64>| x.map_or_else(|| "none".to_owned(), exact);
+        let (predicted, tolerance) = (number(change.predicted), number(change.tolerance));
+        let before = match first {
+            Verdict::Agrees => format!("agreed with theory at {}, now disagrees", exact(*before)),
+            Verdict::Disagrees => format!("disagreed with theory at {}, as now", exact(*before)),
+            Verdict::Measured => "disagrees with theory".to_owned(),
+        };
+        let after = exact(*after);
+        return format!(
+            "{before}: measured {after}{unit}, predicted {predicted}, tolerance {tolerance}; {text}"
+        );
+    }
+    let of =
+        |x: f64| if x.is_nan() { "no number".to_owned() } else { format!("{}{unit}", short(x)) };
+    let ratio = after / before;
+    let ratio = if ratio > 0.0 && ratio.is_finite() {
+        format!(", {} times", short(ratio))
+    } else {
+        String::new()
+    };
+    let verdict = match (first, second) {
+        (Verdict::Disagrees, Verdict::Agrees) => "disagreed with theory, now agrees: ",
+        (Verdict::Agrees | Verdict::Disagrees, Verdict::Measured) => "no longer has a prediction: ",
+        (Verdict::Measured, Verdict::Agrees) => "has a prediction now: ",
         _ => "",
     };
-    format!("{verdict}{numbers}{ratio}; {}", change.text)
+    format!("{verdict}{}, then {}{ratio}; {text}", of(*before), of(*after))
+}
+
+/// Identifiers; of many the number for each study.
+fn listed(ids: &[String]) -> String {
+    if ids.len() <= 10 {
+        return ids.join(", ");
+    }
+    let mut counts: Vec<(&str, usize)> = Vec::new();
+    for id in ids {
+        let study = id.split('.').next().unwrap_or(id);
+        match counts.last_mut() {
+            Some((last, count)) if *last == study => *count += 1,
+            _ => counts.push((study, 1)),
+        }
+    }
+    let counts: Vec<String> =
+        counts.iter().map(|(study, count)| format!("{count} of `{study}`")).collect();
+    counts.join(", ")
 }

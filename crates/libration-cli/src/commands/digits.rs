@@ -8,6 +8,12 @@ pub(super) fn short(x: f64) -> String {
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
+/// A limit with all its digits: rounded, it might be beyond itself.
+pub(super) fn exact(x: f64) -> String {
+    let text = format!("{x:?}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
 /// A number near one, with its difference from one, which may be far below the last digit.
 pub(super) fn beside_one(x: f64, difference: f64) -> String {
     if difference == 0.0 { "1".to_owned() } else { format!("{}  (1 {difference:+.6e})", short(x)) }

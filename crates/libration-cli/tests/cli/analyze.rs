@@ -154,3 +154,22 @@ fn the_time_of_a_driven_oscillator_passes_at_its_own_rate() {
     assert!(said.contains("--v") && said.contains("must be 1"), "{said}");
     libration(&[&["analyze"], &words[..], &["--v", "3,1"]].concat()).success();
 }
+
+#[test]
+fn limits_are_printed_with_all_their_digits() {
+    // Rounded to ten digits, the end of this window would be far outside.
+    let words = "analyze --system oscillator --set omega2=10 --integrator yoshida4 --dt";
+    let text = |dt: &str| {
+        let mut command = assert_cmd::Command::cargo_bin("libration").unwrap();
+        let output = command.args(words.split(' ')).arg(dt).output().unwrap();
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    let said = text("0.01");
+    let row = said.lines().find(|line| line.contains("stable for dt")).unwrap();
+    let limit: f64 = row.rsplit(' ').next().unwrap().parse().unwrap();
+    // The float next to the limit may lie on either side of it.
+    let below = (limit * (1.0 - 1e-14)).to_string();
+    assert!(text(&below).contains("orbits                 bounded"), "{row}");
+    let beyond = (limit * (1.0 + 1e-14)).to_string();
+    assert!(text(&beyond).contains("orbits                 unbounded"), "{row}");
+}

@@ -60,7 +60,12 @@ fn findings_that_became_worse_fail_the_comparison_and_are_named() {
     );
     let wrong = path("wrong", [1.5, 1e9, 0.5], "disagrees");
     let said = compared(&[&first, &wrong], 1);
-    assert!(said.contains("agreed with theory, now disagrees: 1, then 1.5"), "{said}");
+    assert!(
+        said.contains(
+            "agreed with theory at 1, now disagrees: measured 1.5, predicted 1, tolerance 0.001"
+        ),
+        "{said}"
+    );
     assert!(said.contains("a finding became worse"), "{said}");
     let said = compared(&[&wrong, &first], 0);
     assert!(said.contains("better\n  drift.largest"), "{said}");
@@ -90,6 +95,50 @@ fn a_comparison_as_json_has_all_that_differs() {
     let said: Value = serde_json::from_str(&said).unwrap();
     assert_eq!(said["schema"], "libration.compare/1");
     assert_eq!((&said["same"], &said["only_before"]), (&json!(2), &json!(["drift.largest"])));
+}
+
+#[test]
+fn another_verdict_prediction_or_unit_is_not_the_same_finding() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = results(folder.path(), "first", [1.0, 1e9, 0.5], "agrees");
+    let text = fs::read_to_string(first.join("results.json")).unwrap();
+    let second = folder.path().join("second.json");
+    let changed = |key: &str, value: Value| {
+        let mut all: Value = serde_json::from_str(&text).unwrap();
+        all["studies"][0]["findings"][0][key] = value;
+        fs::write(&second, all.to_string()).unwrap();
+    };
+    let paths = [first.to_str().unwrap(), second.to_str().unwrap()];
+    for (key, value, title) in [
+        (
+            "verdict",
+            json!("measured"),
+            "different\n  drift.largest\n    no longer has a prediction",
+        ),
+        ("predicted", json!(5.0), "different\n  drift.largest"),
+        ("unit", json!("m"), "different\n  drift.largest"),
+        ("relation", json!("at-most"), "different\n  drift.largest"),
+    ] {
+        changed(key, value);
+        let said = compared(&paths, 0);
+        assert!(said.contains(title) && said.contains("2 findings are the same"), "{key}: {said}");
+    }
+    // What disagrees and was not there before, and a rate that is missing.
+    let mut all: Value = serde_json::from_str(&text).unwrap();
+    all["studies"][0]["findings"][0]["id"] = json!("drift.new");
+    all["studies"][0]["findings"][0]["verdict"] = json!("disagrees");
+    all["studies"][0]["findings"][1]["measured"] = Value::Null;
+    all["complete"] = json!(false);
+    fs::write(&second, all.to_string()).unwrap();
+    let said = compared(&paths, 1);
+    for part in [
+        "drift.new\n    disagrees with theory: measured 1, predicted 1",
+        "rollout.rate\n    1000000000 1/s, then no number",
+        "complete differs: true, then false",
+        "2 findings became worse",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
 }
 
 #[test]

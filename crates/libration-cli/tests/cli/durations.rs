@@ -38,11 +38,12 @@ fn time_steps_and_horizons_take_units() {
 #[test]
 fn texts_that_are_no_durations_are_refused_with_examples() {
     for (words, message) in [
-        (["--period", "2 sec"], "also with a unit: 0.002, 2ms, 500us or 500Hz"),
+        (["--period", "2 sec"], "also with a unit: 0.002, 2ms or 500Hz"),
         (["--period", "nanms"], "also with a unit"),
         (["--rate", "0"], "expected a rate above 0 in Hz"),
         (["--rate", "2ms"], "expected a rate above 0 in Hz"),
         (["--latency", "500Hz"], "15ms or 1.5steps"),
+        (["--horizon", "500Hz"], "also with a unit: 0.002, 2ms or 10min"),
         (["--latency", "-1ms"], "expected a finite number of at least 0"),
     ] {
         let failed = libration(&[&LOOP[..], &words].concat()).code(2);
@@ -51,6 +52,12 @@ fn texts_that_are_no_durations_are_refused_with_examples() {
     }
     let both = [&LOOP[..], &["--period", "2ms", "--rate", "500"]].concat();
     libration(&both).code(2);
+    let lone = libration(&["advise", "--system", "oscillator", "--rate", "500"]).code(2);
+    assert!(
+        String::from_utf8_lossy(&lone.get_output().stderr)
+            .contains("--rate is given, but there is no loop")
+    );
+    libration(&["measure-jitter", "--rate", "0.5 kHz", "--seconds", "50ms"]).success();
     // The unit of time of bodies is their own.
     let bodies =
         ["bodies", "figure-eight", "--integrator", "leapfrog", "--steps", "9", "--dt", "1ms"];
@@ -79,7 +86,8 @@ fn files_take_units() {
         let seconds = answer(write("0.002", "0.0015", "5"));
         assert_eq!(answer(write("\"2ms\"", each, "\"5s\"")), seconds);
         assert_eq!(answer(write("\"500Hz\"", each, "\"5000ms\"")), seconds);
-        for (period, latency) in [("\"2 sec\"", "0"), ("0.002", "\"fast\"")] {
+        for (period, latency) in [("\"2 sec\"", "0"), ("0.002", "\"fast\""), ("0.002", "\"500Hz\"")]
+        {
             let failed = libration(&write(period, latency, "5")).code(2);
             let said = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
             assert!(said.contains("loop.toml") && said.contains("2ms"), "{said}");

@@ -16,7 +16,7 @@ pub(super) struct File {
     pub(super) environments: Count,
     pub(super) steps: Count,
     pub(super) integrator: String,
-    #[serde(deserialize_with = "duration::number")]
+    #[serde(deserialize_with = "duration::number_of_period")]
     pub(super) dt: Number,
     pub(super) substeps: Count,
     pub(super) limit: Count,

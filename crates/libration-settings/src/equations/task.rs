@@ -11,7 +11,7 @@ use toml::Spanned;
 use super::EquationSystem;
 use super::expression_error::{help, inside};
 use super::table::Wrong;
-use crate::duration::Seconds;
+use crate::duration::Period;
 use crate::{Document, Number, SettingsError, suggestions};
 
 /// A task on a system by equations: what is observed, the reward, when an episode is over, and where it starts.
@@ -56,7 +56,7 @@ pub(super) struct TaskTable {
     targets: Vec<Spanned<String>>,
     #[serde(default)]
     inner: BTreeMap<Spanned<String>, Spanned<String>>,
-    inner_period: Option<Spanned<Seconds>>,
+    inner_period: Option<Spanned<Period>>,
 }
 
 /// A number, or the ends of a range.

@@ -54,7 +54,7 @@ pub struct CascadePidTable {
     integral: Number,
     #[serde(default = "zero")]
     derivative: Number,
-    #[serde(default = "zero")]
+    #[serde(default = "zero", deserialize_with = "crate::duration::number")]
     filter: Number,
 }
 

@@ -11,7 +11,7 @@ use crate::{Fault, Number, duration};
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct LinearLoopTable {
     /// The sampling period, in s, or with a unit (default: that of a sampled plant, or 0.01).
-    #[serde(deserialize_with = "duration::optional")]
+    #[serde(deserialize_with = "duration::optional_period")]
     pub period: Option<Number>,
     /// The latency of all inputs, or of each, in s.
     pub latency: Channels,

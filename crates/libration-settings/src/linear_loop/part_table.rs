@@ -17,6 +17,7 @@ pub struct PartTable {
     /// The output behind which it stands.
     pub output: Option<String>,
     /// The time constant of a first-order lag, in s.
+    #[serde(deserialize_with = "crate::duration::optional")]
     pub lag: Option<Number>,
     /// The cutoff frequency of a second-order Butterworth filter, in Hz.
     pub butterworth2: Option<Number>,

@@ -20,7 +20,7 @@ pub struct PidTable {
     integral: Number,
     #[serde(default = "zero")]
     derivative: Number,
-    #[serde(default = "zero")]
+    #[serde(default = "zero", deserialize_with = "crate::duration::number")]
     filter: Number,
 }
 

@@ -55,6 +55,7 @@ pub struct PlantTable {
     /// Names of the outputs.
     pub outputs: Option<Vec<String>>,
     /// The period in s of a plant whose matrices are those of a step.
+    #[serde(default, deserialize_with = "crate::duration::optional_period")]
     pub sampling_period: Option<Number>,
 }
 
