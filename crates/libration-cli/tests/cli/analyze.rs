@@ -160,7 +160,7 @@ fn limits_are_printed_with_all_their_digits() {
     // Rounded to ten digits, the end of this window would be far outside.
     let words = "analyze --system oscillator --set omega2=10 --integrator yoshida4 --dt";
     let text = |dt: &str| {
-        let mut command = assert_cmd::Command::cargo_bin("libration").unwrap();
+        let mut command = Command::cargo_bin("libration").unwrap();
         let output = command.args(words.split(' ')).arg(dt).output().unwrap();
         String::from_utf8_lossy(&output.stdout).into_owned()
     };
