@@ -105,7 +105,7 @@ impl PairForces<'_> {
     }
 
     /// Bodies `i` and `j` as inputs of the programs.
-    pub(crate) fn pair(&self, positions: &[f64], i: usize, j: usize) -> Pair<f64> {
+    pub(crate) fn pair(&self, positions: &[f64], i: usize, j: usize) -> Pair {
         let [x, y, z] = axes(positions).map(|plane| plane[j] - plane[i]);
         let (a, b) = (i.min(j), i.max(j));
         let (masses, charges) = (self.masses, self.charges);

@@ -32,7 +32,7 @@ impl PartialEq for PairPotential {
 }
 
 /// What a pair is evaluated from: the offset from a body to another, and the rest of [`NAMES`].
-pub(crate) type Pair<S> = [S; 7];
+pub(crate) type Pair = [f64; 7];
 
 impl PairPotential {
     /// The potential of an expression, in the units of the bodies; `parameters` are other names in it.
@@ -84,7 +84,7 @@ impl PairPotential {
     }
 
     /// The square of the rounding error of the force between two bodies, and of the derivative of the force along the line between them.
-    pub(crate) fn errors(&self, pair: &Pair<f64>) -> [f64; 2] {
+    pub(crate) fn errors(&self, pair: &Pair) -> [f64; 2] {
         let rounded = self.force.on::<f64>().run(pair).collect::<Vec<_>>();
         let wide = self.force.on::<TwoFloat>();
         let exact = { wide }.run(&pair.map(TwoFloat::from_f64)).collect::<Vec<_>>();

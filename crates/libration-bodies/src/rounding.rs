@@ -52,7 +52,9 @@ impl PairRoundings {
     pub(crate) fn new(pairs: &PairForces<'_>, positions: &[f64], number: u64) -> Self {
         let count = pairs.masses.len();
         let bodies = (CHECKED_PAIRS / count).clamp(1, count);
-        let first = (number % count as u64) as usize * bodies;
+        // Scattered, since the numbers of steps that are sampled are multiples of a stride.
+        let scattered = number.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32;
+        let first = (scattered % count as u64) as usize;
         let mut of = PairRoundings::default();
         for i in (first..first + bodies).map(|i| i % count) {
             for j in (0..count).filter(|&j| j != i) {

@@ -153,7 +153,7 @@ impl ResultsComparison {
     }
 
     fn add(&mut self, first: &Finding, second: &Finding, noise: f64) {
-        let change = change(Some(first), second);
+        let change = || change(Some(first), second);
         let difference = second.measured - first.measured;
         // Files have no infinities: both are NaN then.
         let is_equal = difference == 0.0 || first.measured.is_nan() && second.measured.is_nan();
@@ -164,16 +164,16 @@ impl ResultsComparison {
         let is_another = first.unit != second.unit || first.relation != second.relation;
         match (first.verdict, second.verdict) {
             (Verdict::Agrees | Verdict::Measured, Verdict::Disagrees) => {
-                self.regressions.push(change)
+                self.regressions.push(change())
             }
-            (Verdict::Disagrees, Verdict::Agrees) => self.improvements.push(change),
-            (before, after) if is_another || before != after => self.changed.push(change),
+            (Verdict::Disagrees, Verdict::Agrees) => self.improvements.push(change()),
+            (before, after) if is_another || before != after => self.changed.push(change()),
             _ if is_equal && first.predicted == second.predicted => self.same += 1,
-            (Verdict::Measured, _) if is_rate && fell => self.regressions.push(change),
-            (Verdict::Measured, _) if is_rate && rose => self.improvements.push(change),
+            (Verdict::Measured, _) if is_rate && fell => self.regressions.push(change()),
+            (Verdict::Measured, _) if is_rate && rose => self.improvements.push(change()),
             (Verdict::Measured, _) if !(fell || rose || difference.is_nan()) => self.within += 1,
             _ if is_within(first, second) => self.within += 1,
-            _ => self.changed.push(change),
+            _ => self.changed.push(change()),
         }
     }
 }

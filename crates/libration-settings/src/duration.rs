@@ -1,11 +1,9 @@
 //! Durations: numbers of seconds, or with a unit.
 
-use core::fmt;
-
-use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use crate::Number;
+use crate::value::NumberReader;
 
 /// Units below a second, as powers of ten.
 const PARTS: [(&str, i32); 5] = [
@@ -74,7 +72,8 @@ fn number_before<'t>(text: &'t str, unit: &str) -> Option<&'t str> {
 /// # Errors
 /// If it is no duration.
 pub fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Number, D::Error> {
-    deserializer.deserialize_any(Reader { takes_rates: false }).map(Number)
+    let expected = "a number of seconds, or a text with a unit such as \"2ms\"";
+    deserializer.deserialize_any(NumberReader { expected, of_text: seconds })
 }
 
 /// The same of a field that may be missing.
@@ -90,7 +89,8 @@ pub fn optional<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Num
 /// # Errors
 /// If it is no period.
 pub fn number_of_period<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Number, D::Error> {
-    deserializer.deserialize_any(Reader { takes_rates: true }).map(Number)
+    let expected = "a number of seconds, or a text with a unit such as \"2ms\" or \"500Hz\"";
+    deserializer.deserialize_any(NumberReader { expected, of_text: period })
 }
 
 /// The same of a field that may be missing.
@@ -118,37 +118,6 @@ pub struct Period(pub f64);
 impl<'de> Deserialize<'de> for Period {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         number_of_period(deserializer).map(|Number(x)| Period(x))
-    }
-}
-
-struct Reader {
-    takes_rates: bool,
-}
-
-impl Visitor<'_> for Reader {
-    type Value = f64;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self.takes_rates {
-            true => "a number of seconds, or a text with a unit such as \"2ms\" or \"500Hz\"",
-            false => "a number of seconds, or a text with a unit such as \"2ms\"",
-        })
-    }
-    fn visit_f64<E: Error>(self, x: f64) -> Result<f64, E> {
-        Ok(x)
-    }
-    fn visit_i64<E: Error>(self, x: i64) -> Result<f64, E> {
-        Ok(x as f64)
-    }
-    fn visit_u64<E: Error>(self, x: u64) -> Result<f64, E> {
-        Ok(x as f64)
-    }
-    fn visit_i128<E: Error>(self, x: i128) -> Result<f64, E> {
-        Ok(x as f64)
-    }
-    fn visit_str<E: Error>(self, text: &str) -> Result<f64, E> {
-        let read = if self.takes_rates { period } else { seconds };
-        read(text).ok_or_else(|| E::invalid_value(serde::de::Unexpected::Str(text), &self))
     }
 }
 

@@ -17,34 +17,39 @@ pub struct Count(pub i128);
 
 impl<'de> Deserialize<'de> for Number {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Reader;
+        // JSON has no infinite numbers.
+        let of_text = |text: &str| text.parse().ok().filter(|x: &f64| x.is_infinite());
+        deserializer.deserialize_any(NumberReader { expected: "a number", of_text })
+    }
+}
 
-        impl Visitor<'_> for Reader {
-            type Value = f64;
+/// Reads a number, or a text that stands for one.
+pub(crate) struct NumberReader {
+    pub(crate) expected: &'static str,
+    pub(crate) of_text: fn(&str) -> Option<f64>,
+}
 
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a number")
-            }
-            fn visit_f64<E: Error>(self, x: f64) -> Result<f64, E> {
-                Ok(x)
-            }
-            /// JSON has no infinite numbers.
-            fn visit_str<E: Error>(self, x: &str) -> Result<f64, E> {
-                let infinite = x.parse().ok().filter(|x: &f64| x.is_infinite());
-                infinite.ok_or_else(|| E::invalid_type(serde::de::Unexpected::Str(x), &self))
-            }
-            fn visit_i64<E: Error>(self, x: i64) -> Result<f64, E> {
-                Ok(x as f64)
-            }
-            fn visit_u64<E: Error>(self, x: u64) -> Result<f64, E> {
-                Ok(x as f64)
-            }
-            fn visit_i128<E: Error>(self, x: i128) -> Result<f64, E> {
-                Ok(x as f64)
-            }
-        }
+impl Visitor<'_> for NumberReader {
+    type Value = Number;
 
-        deserializer.deserialize_any(Reader).map(Number)
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.expected)
+    }
+    fn visit_f64<E: Error>(self, x: f64) -> Result<Number, E> {
+        Ok(Number(x))
+    }
+    fn visit_str<E: Error>(self, text: &str) -> Result<Number, E> {
+        let number = (self.of_text)(text).map(Number);
+        number.ok_or_else(|| E::invalid_type(serde::de::Unexpected::Str(text), &self))
+    }
+    fn visit_i64<E: Error>(self, x: i64) -> Result<Number, E> {
+        Ok(Number(x as f64))
+    }
+    fn visit_u64<E: Error>(self, x: u64) -> Result<Number, E> {
+        Ok(Number(x as f64))
+    }
+    fn visit_i128<E: Error>(self, x: i128) -> Result<Number, E> {
+        Ok(Number(x as f64))
     }
 }
 

@@ -70,10 +70,9 @@ fn system(args: &BodiesArgs) -> Result<NamedBodies, Failure> {
     if let Some(text) = &args.pair_potential {
         // Of the file, those that the expression has.
         let own = bodies.pairs().map(PairPotential::parameters).unwrap_or_default();
-        let has = |name: &str| {
-            let parsed = Expression::parse(text);
-            parsed.is_ok_and(|parsed| parsed.names().any(|(known, _)| known == name))
-        };
+        let parsed = Expression::parse(text).ok();
+        let has =
+            |name: &str| parsed.iter().flat_map(Expression::names).any(|(known, _)| known == name);
         let parameters: Vec<_> = own.iter().filter(|(name, _)| has(name)).cloned().collect();
         let potential = PairPotential::new(text, &parameters).map_err(|error| {
             Failure::usage(format!("{} (--pair-potential)", explanation(&error)))
