@@ -8,7 +8,7 @@ const FLOORS: [&[&str]; 13] = [
     &["libration-core"],
     &["libration-equations", "libration-linear"],
     &["libration-analysis", "libration-batch"],
-    &["libration-bodies", "libration-linear-loops", "libration-replay"],
+    &["libration-bodies", "libration-linear-loops", "libration-live", "libration-replay"],
     &["libration"],
     &["libration-data", REPORT, "libration-work"],
     &["libration-logs", "libration-settings"],

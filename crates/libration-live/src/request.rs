@@ -1,0 +1,52 @@
+//! Requests of a page.
+
+use libration_equations::StepProgram;
+
+use crate::stability_map::MapAxis;
+use crate::subject::Subject;
+use crate::{Answer, Setting, SettingError, control_loop, map_row, motion};
+
+/// The answer to a request, whose first line has its kind: `view`, `limits`, or `map KEY VALUE,… KEY VALUE` for a row of a map of
+/// stability. A [`Setting`] follows. The text `error` of an answer says what is wrong with a request.
+pub fn answer(request: &str) -> Answer {
+    let (kind, setting) = request.split_once('\n').unwrap_or((request, ""));
+    read(kind, setting).unwrap_or_else(|error| {
+        let mut answer = Answer::default();
+        answer.text("error", error.to_string());
+        answer
+    })
+}
+
+fn read(kind: &str, setting: &str) -> Result<Answer, SettingError> {
+    let setting: Setting = setting.parse()?;
+    let words: Vec<&str> = kind.split(' ').collect();
+    match (words.as_slice(), &setting.control) {
+        (["view"], None) => motion::view(&setting),
+        (["view"], Some(control)) => control_loop::view(&setting, control),
+        (["limits"], None) => limits(&setting),
+        (["limits"], Some(control)) => control_loop::limits(&setting, control),
+        (["map", x, values, y, value], _) => {
+            let number = |text: &str| {
+                text.parse().map_err(|_| SettingError::Value {
+                    key: "map".into(),
+                    value: text.into(),
+                    expected: "a number",
+                })
+            };
+            let values = values.split(',').map(number).collect::<Result<_, _>>()?;
+            map_row(&setting, &MapAxis { key: (*x).into(), values }, (y, number(value)?))
+        }
+        _ => Err(SettingError::Key(kind.to_owned())),
+    }
+}
+
+/// The limits of free motion.
+fn limits(setting: &Setting) -> Result<Answer, SettingError> {
+    let subject = Subject::new(setting)?;
+    let step = StepProgram::of(setting.integrator, subject.equations.dynamics());
+    let point = subject.point(&[]);
+    let mut answer = Answer::default();
+    let largest = point.rests.then(|| motion::largest_stable_step(&subject, &step, &point));
+    answer.number("dt.stable", largest.map(|largest| largest.unwrap_or(f64::INFINITY)));
+    Ok(answer)
+}
