@@ -7,6 +7,7 @@ mod dependencies;
 mod examples;
 mod instructions;
 mod lints;
+mod live;
 mod processor_time;
 mod python;
 mod release;
@@ -39,7 +40,7 @@ enum Action {
     With(fn(&[String]) -> Outcome),
 }
 
-const TASKS: [Task; 12] = [
+const TASKS: [Task; 13] = [
     Task {
         name: "ci",
         summary: "all of the below up to `report`, with format, lints and documentation",
@@ -59,6 +60,11 @@ const TASKS: [Task; 12] = [
         name: "codegen",
         summary: "every batch kernel is made of vectors, read from its assembly",
         action: Action::Plain(codegen::run),
+    },
+    Task {
+        name: "live",
+        summary: "compiles the engine of live pages to WebAssembly, into the assets of the report",
+        action: Action::Plain(live::build),
     },
     Task {
         name: "test",

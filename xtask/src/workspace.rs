@@ -25,7 +25,7 @@ pub(crate) fn built(program: &str) -> PathBuf {
 }
 
 /// The crates of the engine: numbers and physics, which do no input or output.
-pub(crate) const ENGINE: [&str; 7] = [
+pub(crate) const ENGINE: [&str; 8] = [
     "libration",
     "libration-analysis",
     "libration-batch",
@@ -33,6 +33,7 @@ pub(crate) const ENGINE: [&str; 7] = [
     "libration-equations",
     "libration-linear",
     "libration-linear-loops",
+    "libration-live",
 ];
 
 /// Whether a file is a source of the engine.

@@ -2,6 +2,7 @@
 
 mod claims_table;
 pub mod claims_without_study;
+mod live_page;
 pub mod output;
 pub mod results;
 mod results_comparison;

@@ -1,5 +1,6 @@
 //! Results of a run, as in `results.json`.
 
+use libration::live::Setting;
 use libration_analyze::equation_analysis::EquationSummary;
 use libration_report::Record;
 use libration_study::{Config, Machine, UnjudgedClaim};
@@ -49,4 +50,7 @@ pub struct StudiedSystem {
     /// The command of its studies.
     #[serde(skip)]
     pub command: String,
+    /// The setting of the live section of its page.
+    #[serde(skip)]
+    pub live: Setting,
 }

@@ -11,7 +11,7 @@ use libration_report::page::{Chapter, Page};
 use libration_report::record::{DataFile, FigureFile, RecordError, Series};
 use libration_study::StudyError;
 
-use crate::claims_table;
+use crate::{claims_table, live_page};
 use crate::output::{Output, OutputError};
 use crate::results::{Results, SCHEMA};
 use crate::system_page;
@@ -219,6 +219,7 @@ fn cover(results: &Results, chapters: &[Chapter]) -> Cover {
         machine: host,
         complete: results.complete,
         score: system.map_or_else(|| claims_table::score(results, chapters), |_| String::new()),
+        live: live_page::settings(config, system),
         ledger: match system {
             Some(system) => system_page::states(system),
             None => claims_table::render(results, chapters),

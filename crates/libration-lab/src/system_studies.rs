@@ -3,6 +3,7 @@
 use libration_analyze::equation_analysis::EquationSummary;
 use libration_settings::equations::EquationSystem;
 use libration_settings::linear_loop::linearised_equations;
+use libration_settings::live_settings;
 use libration_study::{Config, Effort, Study};
 use libration_study_batch::SystemDeterminism;
 use libration_study_motion::{Convergence, Nonlinear, Problem, SystemPrecision, SystemStability};
@@ -85,7 +86,12 @@ impl<'a> SystemStudies<'a> {
     /// The system as results show it.
     pub(crate) fn studied(&self) -> StudiedSystem {
         let summary = EquationSummary::new(self.system);
-        StudiedSystem { summary, turn: self.problem.turn(), command: self.command.clone() }
+        StudiedSystem {
+            summary,
+            turn: self.problem.turn(),
+            command: self.command.clone(),
+            live: live_settings::of_equations(self.system),
+        }
     }
 
     /// The studies that a configuration names, in its order, or all if it names none; and the configuration with nothing but what they use.

@@ -8,7 +8,7 @@ use libration_core::number::Dual;
 use libration_core::random::{Address, Purpose};
 use libration_equations::StepProgram;
 use libration_linear::{
-    Channels, DiscreteController, LinearLoop, LoopTiming, Matrix, eigenvalues,
+    Channels, CostWeights, DiscreteController, LinearLoop, LoopTiming, Matrix, eigenvalues,
 };
 
 use crate::motion::{SMALL, WORK, complex, growth, in_range, radius};
@@ -348,5 +348,21 @@ pub(crate) fn limits(setting: &Setting, control: &Control) -> Result<Answer, Set
     let rise = cost(&own.timing()).zip(cost(&own.linear.ideal()));
     let rise = rise.map(|(own, ideal)| own.cost / ideal.cost - 1.0);
     answer.number("cost.rise", rise);
+    Ok(answer)
+}
+
+/// The gain of the linear-quadratic regulator with weights of 1, row by row.
+pub(crate) fn design(setting: &Setting, control: &Control) -> Result<Answer, SettingError> {
+    let subject = Subject::new(setting)?;
+    let point = subject.point(&[]);
+    let plant = subject.plant(&point)?;
+    let weights = CostWeights {
+        states: Matrix::identity(plant.states.len()),
+        inputs: Matrix::identity(plant.inputs.len()),
+    };
+    let regulator = plant.design_regulator(&weights, control.period);
+    let regulator = regulator.map_err(|error| SettingError::Subject(error.to_string()))?;
+    let mut answer = Answer::default();
+    answer.column("gain", regulator.gain.entries().to_vec());
     Ok(answer)
 }

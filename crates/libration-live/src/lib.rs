@@ -8,7 +8,9 @@
 #[cfg(target_arch = "wasm32")]
 mod abi;
 mod answer;
+mod catalogue;
 mod control_loop;
+mod linear_system;
 mod motion;
 mod request;
 mod setting;

@@ -6,7 +6,7 @@ use libration_equations::StepProgram;
 use libration_linear::{Matrix, eigenvalues};
 use num_complex::Complex64;
 
-use crate::subject::{Point, Stepper, Subject, is_finite};
+use crate::subject::{Point, Stepper, Subject, fastest, is_finite};
 use crate::{Answer, Setting, SettingError};
 
 /// The operations of programs that a frame has time for.
@@ -36,7 +36,7 @@ pub(crate) fn view(setting: &Setting) -> Result<Answer, SettingError> {
     answer.number("horizon", steps as f64 * setting.dt);
     answer.number("evaluations", step.evaluations() as f64 / setting.dt);
     trajectory(&mut answer, &subject, &step, setting.dt, steps);
-    let point = subject.point(&[]);
+    let point = subject.calm_point(&[]);
     linear(&mut answer, setting, &subject, &step, &point);
     Ok(answer)
 }
@@ -127,13 +127,8 @@ fn largest_energy_change(
 fn reference(subject: &Subject, interval: f64, points: usize) -> Vec<Vec<f64>> {
     let Some(method) = Method::from_name("dormand-prince-8") else { return Vec::new() };
     let step = StepProgram::of(AnyMethod::Explicit(method), subject.equations.dynamics());
-    let point = Point {
-        state: subject.start.clone(),
-        inputs: vec![0.0; subject.equations.inputs().len()],
-        rests: false,
-    };
-    let rate = |point: &Point| fastest(&subject.slopes(point));
-    let rate = rate(&point).max(rate(&subject.point(&[])));
+    let inputs = vec![0.0; subject.equations.inputs().len()];
+    let rate = subject.fastest_rate();
     let parts = (interval * rate * REFERENCE_STEPS).ceil().max(1.0);
     let work = parts * points as f64 * step.program().operations() as f64;
     if !rate.is_finite() || work > WORK {
@@ -145,15 +140,9 @@ fn reference(subject: &Subject, interval: f64, points: usize) -> Vec<Vec<f64>> {
     for _ in 0..points {
         recorded.iter_mut().zip(&subject.places).for_each(|(own, &i)| own.push(state[i]));
         (0..parts as usize)
-            .for_each(|_| stepper.step(&mut state, &point.inputs, interval / parts));
+            .for_each(|_| stepper.step(&mut state, &inputs, interval / parts));
     }
     recorded
-}
-
-/// The largest size of an eigenvalue.
-pub(crate) fn fastest(matrix: &Matrix) -> f64 {
-    let values = eigenvalues(matrix).unwrap_or_default();
-    values.iter().map(|value| value.norm()).fold(0.0, f64::max)
 }
 
 /// The derivative of a step at a point by the states.

@@ -3,9 +3,11 @@
 use core::fmt::{self, Display};
 use core::str::FromStr;
 
-use libration_core::AnyMethod;
+use libration_core::{AnyMethod, Method};
 use libration_equations::{Definitions, EquationError};
 use thiserror::Error;
+
+use crate::subject::Subject;
 
 /// A system by its equations, and how it is stepped and controlled.
 ///
@@ -99,13 +101,34 @@ impl Default for Control {
 }
 
 impl Setting {
+    /// Free motion of a system by its equations: in steps of a fifth of a radian of the fastest mode, over sixty radians; by velocity
+    /// Verlet where accelerations depend on positions alone, else by RK4.
+    pub fn of_equations(
+        system: &str,
+        definitions: Definitions,
+        start: Vec<(String, f64)>,
+    ) -> Self {
+        let mut setting =
+            Setting { system: system.to_owned(), definitions, start, ..Setting::empty() };
+        let Ok(subject) = Subject::new(&setting) else { return setting };
+        let rate = subject.fastest_rate();
+        if rate.is_finite() && rate > 0.0 {
+            setting.dt = one_digit(0.2 / rate);
+            setting.horizon = one_digit(60.0 / rate);
+        }
+        if !subject.equations.dynamics().is_positional() {
+            setting.integrator = Method::Rk4.into();
+        }
+        setting
+    }
+
     /// A setting without equations and control.
     fn empty() -> Self {
         Setting {
             system: "system".into(),
             definitions: Definitions::default(),
             start: Vec::new(),
-            integrator: AnyMethod::Explicit(libration_core::Method::VelocityVerlet),
+            integrator: Method::VelocityVerlet.into(),
             dt: 0.01,
             horizon: 10.0,
             control: None,
@@ -253,6 +276,11 @@ fn put<T>(entries: &mut Vec<(String, T)>, new: (String, T)) {
         Some(entry) => entry.1 = new.1,
         None => entries.push(new),
     }
+}
+
+/// A positive number, rounded to one digit.
+fn one_digit(x: f64) -> f64 {
+    format!("{x:.0e}").parse().unwrap_or(x)
 }
 
 /// Rows of numbers: `10,2;0,1`.

@@ -38,7 +38,11 @@ pub fn map_row(setting: &Setting, x: &MapAxis, (key, y): (&str, f64)) -> Result<
     }
     let subject = Subject::new(&setting)?;
     let step = StepProgram::of(setting.integrator, subject.equations.dynamics());
-    let fixed = x.parameter().is_none().then(|| subject.point(&[]));
+    let point = |parameters: &[f64]| match &setting.control {
+        Some(_) => subject.point(parameters),
+        None => subject.calm_point(parameters),
+    };
+    let fixed = x.parameter().is_none().then(|| point(&[]));
     let mut rates = Vec::with_capacity(x.values.len());
     for &value in &x.values {
         let mut setting = setting.clone();
@@ -46,7 +50,7 @@ pub fn map_row(setting: &Setting, x: &MapAxis, (key, y): (&str, f64)) -> Result<
         if varied.is_none() {
             setting.set(&x.key, &value.to_string())?;
         }
-        let moved = varied.map(|value| subject.point(&[value]));
+        let moved = varied.map(|value| point(&[value]));
         let Some(point) = moved.as_ref().or(fixed.as_ref()) else { continue };
         let rate = match &setting.control {
             Some(control) => {

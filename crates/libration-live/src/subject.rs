@@ -3,7 +3,7 @@
 use libration_analysis::{Equilibrium, jacobian, rate_derivative};
 use libration_core::{Elementary, Float};
 use libration_equations::{Degree, Equations, Evaluation, StepProgram};
-use libration_linear::{LinearPlant, Matrix};
+use libration_linear::{LinearPlant, Matrix, eigenvalues};
 
 use crate::{Setting, SettingError};
 
@@ -89,6 +89,30 @@ impl Subject {
     /// The equilibrium without commands nearer to the start, of the two that Newton's method finds from the start and from zero; the
     /// start if there is none. `parameters` are the values of parameters that vary.
     pub(crate) fn point(&self, parameters: &[f64]) -> Point {
+        let mut points = self.points(parameters);
+        points.swap_remove(0)
+    }
+
+    /// The same, but an equilibrium at which deviations grow by nature only if they do at both.
+    pub(crate) fn calm_point(&self, parameters: &[f64]) -> Point {
+        let mut points = self.points(parameters);
+        let grows = |point: &Point| {
+            let values = eigenvalues(&self.slopes(point)).unwrap_or_default();
+            values.iter().any(|value| value.re > 1e-9 * value.norm())
+        };
+        let calm = points.iter().position(|point| point.rests && !grows(point));
+        points.swap_remove(calm.unwrap_or(0))
+    }
+
+    /// The largest size of an eigenvalue of the equations at the start and at the equilibrium, in 1/s.
+    pub(crate) fn fastest_rate(&self) -> f64 {
+        let inputs = vec![0.0; self.equations.inputs().len()];
+        let start = Point { state: self.start.clone(), inputs, rests: false };
+        fastest(&self.slopes(&start)).max(fastest(&self.slopes(&self.calm_point(&[]))))
+    }
+
+    /// Equilibria, the nearer to the start first; the start if there are none.
+    fn points(&self, parameters: &[f64]) -> Vec<Point> {
         let mut inputs = vec![0.0; self.equations.inputs().len()];
         inputs.extend(parameters);
         let d = self.degrees();
@@ -113,10 +137,15 @@ impl Subject {
         };
         let mut found: Vec<Equilibrium> = found.into_iter().flatten().collect();
         found.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        match found.into_iter().next() {
-            Some(found) => Point { state: found.state[..2 * d].to_vec(), inputs, rests: true },
-            None => Point { state: self.start.clone(), inputs, rests: false },
+        if found.is_empty() {
+            return vec![Point { state: self.start.clone(), inputs, rests: false }];
         }
+        let point = |found: Equilibrium| Point {
+            state: found.state[..2 * d].to_vec(),
+            inputs: inputs.clone(),
+            rests: true,
+        };
+        found.into_iter().map(point).collect()
     }
 
     /// The plant near a point, with all states measured.
@@ -148,6 +177,12 @@ impl Subject {
     pub(crate) fn scale(&self, point: &Point) -> f64 {
         self.unknowns.iter().map(|&i| point.state[i].abs()).fold(1.0, f64::max)
     }
+}
+
+/// The largest size of an eigenvalue.
+pub(crate) fn fastest(matrix: &Matrix) -> f64 {
+    let values = eigenvalues(matrix).unwrap_or_default();
+    values.iter().map(|value| value.norm()).fold(0.0, f64::max)
 }
 
 /// A step, ready to run.

@@ -1,6 +1,7 @@
 //! Records of findings, figures, pages and the HTML report, without any physics.
 
 pub mod figure;
+pub mod live;
 pub mod notation;
 pub mod page;
 pub mod record;

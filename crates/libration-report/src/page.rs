@@ -1,6 +1,7 @@
 //! Descriptions of chapters of the report, without layout.
 
 use crate::figure::Figure;
+use crate::live::LiveSetting;
 use crate::record::{Record, Table};
 
 /// The content of a chapter, from top to bottom.
@@ -14,6 +15,8 @@ pub struct Page {
     pub answer: String,
     /// The key numbers for the head of the report, most important first.
     pub highlights: Vec<Highlight>,
+    /// The settings of the [live section](crate::live) of a single page, below its answer; without any there is none.
+    pub live: Vec<LiveSetting>,
     /// The evidence.
     pub blocks: Vec<Block>,
 }

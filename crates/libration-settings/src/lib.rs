@@ -15,6 +15,7 @@ mod instruction_set;
 pub mod latency_presets;
 pub mod limits;
 pub mod linear_loop;
+pub mod live_settings;
 pub mod optional_path;
 pub mod suggestions;
 pub mod units;

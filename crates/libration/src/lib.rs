@@ -21,4 +21,5 @@ pub use libration_core::{
 pub use libration_equations as equations;
 pub use libration_linear as linear;
 pub use libration_linear_loops as linear_loops;
+pub use libration_live as live;
 pub use libration_replay as replay;

@@ -19,6 +19,7 @@ mod number;
 mod probe;
 mod quoted;
 mod rollout;
+mod serve;
 pub(crate) mod simd;
 mod simulate;
 mod system;
@@ -42,6 +43,7 @@ pub(crate) use bench::BenchArgs;
 pub(crate) use bodies::BodiesArgs;
 pub(crate) use clock::ClockArgs;
 pub(crate) use compare::CompareArgs;
+pub(crate) use serve::ServeArgs;
 pub(crate) use gains::GainsArgs;
 pub(crate) use identify::IdentifyArgs;
 pub(crate) use lab::LabArgs;
@@ -132,6 +134,8 @@ pub(crate) enum Command {
     Verify(VerifyArgs),
     /// Compare the findings of two runs of `lab`: what became worse, better, or differs
     Compare(CompareArgs),
+    /// Show a system in the browser: drag its step, gains and latency, and see what they do
+    Serve(ServeArgs),
     /// Measure the speed of simulations on this machine, and its hardware limits
     Bench(BenchArgs),
     /// Analyze the clocks of a log: rate, jitter, drift, latency between topics, and what they do to a loop

@@ -38,6 +38,7 @@ mod probe;
 mod probe_text;
 mod result_file;
 mod rollout;
+mod serve;
 mod simulate;
 mod temperature;
 mod time_stamps;
@@ -56,6 +57,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::Analyze(args) => analyze::run(&args),
         Command::Simulate(args) => simulate::run(&args, arguments.quiet),
         Command::Compare(args) => compare::run(&args),
+        Command::Serve(args) => serve::run(&args),
         Command::Bodies(args) => bodies::run(&args, arguments.quiet),
         Command::Rollout(args) => rollout::run(&args, arguments.quiet),
         Command::Verify(args) => rollout::verify(&args, arguments.quiet),

@@ -3,6 +3,7 @@
 mod chapter;
 
 use crate::figure;
+use crate::live::{self, LIVE_ID, LiveSetting};
 use crate::page::{Block, Chapter, Page};
 use crate::text::{escape, plain, render_html};
 
@@ -24,6 +25,8 @@ pub struct Cover {
     pub complete: bool,
     /// HTML at the head of the report, above the answers; empty if there is none.
     pub score: String,
+    /// The settings of the [live section](crate::live); without any there is none.
+    pub live: Vec<LiveSetting>,
     /// HTML of a section between answers and chapters; empty if there is none.
     pub ledger: String,
     /// HTML of a section with the heading [`SCOPE_ID`] after the chapters; empty if there is none.
@@ -40,6 +43,7 @@ pub fn render(cover: &Cover, chapters: &[Chapter]) -> String {
         own => own.to_owned(),
     };
     let mut links = String::from("<a href=\"#top\">The answer</a>");
+    links += &live_link(&cover.live);
     if !cover.score.is_empty() {
         links += "<a href=\"#ledger\">Claims</a>";
     }
@@ -58,7 +62,7 @@ pub fn render(cover: &Cover, chapters: &[Chapter]) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
          <title>{name}</title>\n<style>{STYLE}</style></head><body>\n\
          <nav aria-label=\"Chapters\"><b>Libration</b>{links}</nav>\n<main id=\"top\">\n\
-         <h1>{title}</h1>\n<p class=\"sub\">{setting}</p>\n{alarm}{score}{answers}{numbers}{ledger}{body}\
+         <h1>{title}</h1>\n<p class=\"sub\">{setting}</p>\n{alarm}{score}{answers}{numbers}{live}{ledger}{body}\
          {scope}{machine}</main>\n{scripts}<script>{SCRIPT}</script>\n</body></html>\n",
         name = escape(&plain(&headline)),
         title = render_html(&headline),
@@ -67,6 +71,7 @@ pub fn render(cover: &Cover, chapters: &[Chapter]) -> String {
         score = cover.score,
         answers = answers(chapters),
         numbers = numbers(chapters),
+        live = live::section(&cover.live),
         ledger = cover.ledger,
         scope = cover.scope,
         machine = machine(cover),
@@ -77,6 +82,7 @@ pub fn render(cover: &Cover, chapters: &[Chapter]) -> String {
 /// Renders a single page, with its answer first.
 pub fn render_page(page: &Page, sub: &str) -> String {
     let mut links = String::from("<a href=\"#top\">The answer</a>");
+    links += &live_link(&page.live);
     let mut blocks = String::new();
     for (i, block) in page.blocks.iter().enumerate() {
         blocks += &match block {
@@ -93,14 +99,22 @@ pub fn render_page(page: &Page, sub: &str) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
          <title>{name}</title>\n<style>{STYLE}</style></head><body>\n\
          <nav aria-label=\"Chapters\"><b>Libration</b>{links}</nav>\n<main id=\"top\">\n\
-         <h1>{title}</h1>\n<p class=\"sub\">{sub}</p>\n<p class=\"lead\">{answer}</p>\n{blocks}</main>\n\
+         <h1>{title}</h1>\n<p class=\"sub\">{sub}</p>\n<p class=\"lead\">{answer}</p>\n{live}{blocks}</main>\n\
          {scripts}<script>{SCRIPT}</script>\n</body></html>\n",
         name = escape(&plain(&page.title)),
         title = render_html(&page.title),
         sub = render_html(sub),
         answer = render_html(&page.answer),
+        live = live::section(&page.live),
         scripts = figure::scripts(),
     )
+}
+
+fn live_link(settings: &[LiveSetting]) -> String {
+    if settings.is_empty() {
+        return String::new();
+    }
+    format!("<a href=\"#{LIVE_ID}\">What happens if …?</a>")
 }
 
 /// The headline of the report. Later studies build on earlier ones, so it is the last headline of a
