@@ -11,12 +11,12 @@ use libration_report::page::{Chapter, Page};
 use libration_report::record::{DataFile, FigureFile, RecordError, Series};
 use libration_study::StudyError;
 
-use crate::{claims_table, live_page};
 use crate::output::{Output, OutputError};
 use crate::results::{Results, SCHEMA};
 use crate::system_page;
 use crate::system_studies::SystemStudies;
 pub use crate::unjudged_claims::unjudged;
+use crate::{claims_table, live_page};
 use libration_report::notation::{number, plural, seconds};
 use libration_report::report::Cover;
 use libration_report::{Record, figure, report};

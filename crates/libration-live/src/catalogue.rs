@@ -14,10 +14,9 @@ impl Setting {
             AnySystem::DampedOscillator(_) => {
                 (&[("q", "-omega2*q - gamma*q'")], "q'^2/2 + omega2*q^2/2")
             }
-            AnySystem::DrivenOscillator(_) => (
-                &[("q", "-omega2*q - gamma*q' + amplitude*cos(drive*t)")],
-                "q'^2/2 + omega2*q^2/2",
-            ),
+            AnySystem::DrivenOscillator(_) => {
+                (&[("q", "-omega2*q - gamma*q' + amplitude*cos(drive*t)")], "q'^2/2 + omega2*q^2/2")
+            }
             AnySystem::Pendulum(_) => (&[("q", "-omega2*sin(q)")], "q'^2/2 + omega2*(1 - cos(q))"),
             AnySystem::Duffing(_) => {
                 (&[("q", "-alpha*q - beta*q^3")], "q'^2/2 + alpha*q^2/2 + beta*q^4/4")

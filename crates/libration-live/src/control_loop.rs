@@ -11,7 +11,8 @@ use libration_linear::{
     Channels, CostWeights, DiscreteController, LinearLoop, LoopTiming, Matrix, eigenvalues,
 };
 
-use crate::motion::{SMALL, WORK, complex, growth, in_range, radius};
+use crate::growth::Growth;
+use crate::motion::{WORK, complex, radius};
 use crate::setting::Control;
 use crate::subject::{Point, Stepper, Subject, is_finite};
 use crate::{Answer, Setting, SettingError};
@@ -19,8 +20,11 @@ use crate::{Answer, Setting, SettingError};
 /// The longest latency, in periods.
 const MOST_LATENCY: u64 = 64;
 
-/// Loops whose mean square is measured where periods or losses are random.
-const LOOPS: u64 = 64;
+/// Groups of loops, each with a mean square of its own, where periods or losses are random.
+const GROUPS: u64 = 8;
+
+/// Loops in a group.
+const LOOPS: u64 = 16;
 
 /// The most points of a curve.
 const POINTS: usize = 3000;
@@ -75,12 +79,15 @@ impl<'a> ControlLoop<'a> {
             .ok_or_else(|| {
                 let most = MOST_LATENCY as f64 * control.period;
                 let given = control.latency;
-                refused(format!("latency = {given} s; expected at most {MOST_LATENCY} periods, {most} s"))
+                refused(format!(
+                    "latency = {given} s; expected at most {MOST_LATENCY} periods, {most} s"
+                ))
             })?;
         let controller = DiscreteController::gain(gain.scaled(-1.0));
         let cost = Matrix::from_fn(n + m, n + m, |i, j| f64::from(u8::from(i == j && i < n)));
-        let linear = LinearLoop::new(subject.plant(&point)?, controller, control.period, cost, vec![0.0; n])
-            .map_err(|error| refused(error.to_string()))?;
+        let linear =
+            LinearLoop::new(subject.plant(&point)?, controller, control.period, cost, vec![0.0; n])
+                .map_err(|error| refused(error.to_string()))?;
         Ok(ControlLoop { subject, point, control: control.clone(), gain, latency, dt, linear })
     }
 
@@ -108,13 +115,8 @@ impl<'a> ControlLoop<'a> {
 
     /// The same loop with perfect timing.
     fn ideal(&self) -> Self {
-        let control = Control {
-            latency: 0.0,
-            jitter: 0.0,
-            skew: 0.0,
-            loss: 0.0,
-            ..self.control.clone()
-        };
+        let control =
+            Control { latency: 0.0, jitter: 0.0, skew: 0.0, loss: 0.0, ..self.control.clone() };
         let point = Point {
             state: self.point.state.clone(),
             inputs: self.point.inputs.clone(),
@@ -193,7 +195,8 @@ impl<'a> ControlLoop<'a> {
 
     /// The matrix of a period of mean length as the integrator steps it: on the states, the acting commands and those in transit.
     fn period_matrix(&self, step: &StepProgram) -> Matrix {
-        let (n, m, whole) = (self.subject.places.len(), self.gain.rows(), self.latency.whole() as usize);
+        let (n, m, whole) =
+            (self.subject.places.len(), self.gain.rows(), self.latency.whole() as usize);
         let size = n + m * (1 + whole);
         let mut matrix = Matrix::zeros(size, size);
         let mut stepper = Stepper::<Dual<f64>>::new(step, 2 * self.subject.degrees());
@@ -227,30 +230,63 @@ impl<'a> ControlLoop<'a> {
         steps * step.program().operations().max(1) as f64
     }
 
-    /// The rate in 1/s at which the root of the mean square of small deviations grows, measured.
-    fn measured_growth(&self, step: &StepProgram) -> Option<f64> {
-        let random = self.control.jitter > 0.0 || self.control.loss > 0.0;
-        let loops = if random { LOOPS } else { 1 };
+    /// The rate in 1/s at which the root of the mean square of small deviations grows, measured, and the standard error of this number.
+    fn measured_growth(&self, step: &StepProgram) -> Option<[f64; 2]> {
+        if self.control.jitter == 0.0 && self.control.loss == 0.0 {
+            return Some([self.growth_of_loops(step, 0..1, false)?, 0.0]);
+        }
+        let group = |k| self.growth_of_loops(step, k * LOOPS..(k + 1) * LOOPS, true);
+        let rates: Vec<f64> = (0..GROUPS).map(group).collect::<Option<_>>()?;
+        let count = GROUPS as f64;
+        let mean = rates.iter().sum::<f64>() / count;
+        let squares: f64 = rates.iter().map(|rate| (rate - mean).powi(2)).sum();
+        Some([mean, (squares / (count * (count - 1.0))).sqrt()])
+    }
+
+    /// That of the loops with these numbers.
+    fn growth_of_loops(
+        &self,
+        step: &StepProgram,
+        numbers: core::ops::Range<u64>,
+        random: bool,
+    ) -> Option<f64> {
+        let loops = if random { LOOPS * GROUPS } else { 1 };
         let periods = (WORK / loops as f64 / self.work(step)).clamp(40.0, 2000.0) as u64;
-        let small = SMALL * self.subject.scale(&self.point);
+        let scale = self.subject.scale(&self.point);
+        let mut growth = if random { Growth::of_one_range(scale) } else { Growth::new(scale) };
         let mut start = self.point.state.clone();
-        self.subject.places.iter().for_each(|&place| start[place] += small);
+        self.subject.places.iter().for_each(|&place| start[place] += growth.small);
         let mut stepper = Stepper::<f64>::new(step, 2 * self.subject.degrees());
-        let mut all: Vec<LoopState<f64>> = (0..loops).map(|_| self.begin(&start)).collect();
-        let mut sizes = Vec::new();
+        let mut all: Vec<(u64, LoopState<f64>)> =
+            numbers.map(|number| (number, self.begin(&start))).collect();
         for k in 0..periods {
             let mut sum = 0.0;
-            for (number, own) in all.iter_mut().enumerate() {
-                self.advance(&mut stepper, own, self.period(number as u64, k), |_, _| {});
+            for (number, own) in &mut all {
+                self.advance(&mut stepper, own, self.period(*number, k), |_, _| {});
                 let off = |&i: &usize| (own.state[i] - self.point.state[i]).powi(2);
                 sum += self.subject.places.iter().map(off).sum::<f64>();
             }
-            sizes.push(sum / loops as f64);
-            if !in_range(sizes[sizes.len() - 1], small) {
-                break;
+            let Some(factor) = growth.push(sum / all.len() as f64) else { break };
+            if factor != 1.0 {
+                // Over long times the mean square of few loops is that of one of them.
+                if random {
+                    break;
+                }
+                all.iter_mut().for_each(|(_, own)| self.scale(own, factor));
             }
         }
-        growth(&sizes).map(|growth| 0.5 * growth / self.mean_period())
+        growth.rate().map(|rate| rate / self.mean_period())
+    }
+
+    /// Multiplies all deviations from the equilibrium and the commands that hold it.
+    fn scale(&self, own: &mut LoopState<f64>, factor: f64) {
+        let scale = |x: &mut f64, rest: f64| *x = rest + factor * (*x - rest);
+        for &place in &self.subject.places {
+            scale(&mut own.state[place], self.point.state[place]);
+        }
+        for command in own.commands.iter_mut().chain([&mut own.acting]) {
+            command.iter_mut().zip(&self.point.inputs).for_each(|(u, rest)| scale(u, *rest));
+        }
     }
 
     /// The states and commands of loop 0 after each step, at most so many periods.
@@ -324,7 +360,9 @@ pub(crate) fn view(setting: &Setting, control: &Control) -> Result<Answer, Setti
     let exact_growth = own.exact_growth();
     let predicted = exact_growth.zip(shift).map(|(growth, shift)| growth + shift);
     answer.number("growth.predicted", predicted);
-    answer.number("growth.measured", own.measured_growth(&step));
+    let measured = own.measured_growth(&step);
+    answer.number("growth.measured", measured.map(|[rate, _]| rate));
+    answer.number("growth.error", measured.map(|[_, error]| error));
     answer.number("growth.exact", exact_growth);
     answer.number("growth.ideal", ideal.exact_growth());
     Ok(answer)

@@ -10,6 +10,7 @@ mod abi;
 mod answer;
 mod catalogue;
 mod control_loop;
+mod growth;
 mod linear_system;
 mod motion;
 mod request;

@@ -42,7 +42,12 @@ mod tests {
         let setting = Setting::of_plant("plant", &plant);
         let equations = Equations::new(&setting.definitions).unwrap();
         // States of first order are velocities of the program.
-        let rates = equations.dynamics().accelerations().on::<f64>().run(&[0.0, 0.0, 0.5, 4.0, 10.0]).collect::<Vec<_>>();
+        let rates = equations
+            .dynamics()
+            .accelerations()
+            .on::<f64>()
+            .run(&[0.0, 0.0, 0.5, 4.0, 10.0])
+            .collect::<Vec<_>>();
         assert_eq!(rates, [6.0, 29.0]);
         assert_eq!(setting.to_string().parse::<Setting>().unwrap(), setting);
     }

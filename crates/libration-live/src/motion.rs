@@ -6,6 +6,7 @@ use libration_equations::StepProgram;
 use libration_linear::{Matrix, eigenvalues};
 use num_complex::Complex64;
 
+use crate::growth::Growth;
 use crate::subject::{Point, Stepper, Subject, fastest, is_finite};
 use crate::{Answer, Setting, SettingError};
 
@@ -92,10 +93,12 @@ fn energy_by_shorter_steps(
     dt: f64,
     steps: usize,
 ) -> Option<f64> {
-    let [half, quarter] = [2, 4].map(|parts| largest_energy_change(subject, step, dt, steps, parts));
+    let [half, quarter] =
+        [2, 4].map(|parts| largest_energy_change(subject, step, dt, steps, parts));
     let (half, quarter) = (half?, quarter?);
     let ratio = half / quarter;
-    (half.is_finite() && ratio.is_finite() && quarter > 1e-13 && ratio > 1.0).then_some(half * ratio)
+    (half.is_finite() && ratio.is_finite() && quarter > 1e-13 && ratio > 1.0)
+        .then_some(half * ratio)
 }
 
 fn largest_energy_change(
@@ -139,8 +142,7 @@ fn reference(subject: &Subject, interval: f64, points: usize) -> Vec<Vec<f64>> {
     let mut recorded = vec![Vec::new(); subject.places.len()];
     for _ in 0..points {
         recorded.iter_mut().zip(&subject.places).for_each(|(own, &i)| own.push(state[i]));
-        (0..parts as usize)
-            .for_each(|_| stepper.step(&mut state, &inputs, interval / parts));
+        (0..parts as usize).for_each(|_| stepper.step(&mut state, &inputs, interval / parts));
     }
     recorded
 }
@@ -215,41 +217,19 @@ fn measured_growth(
     steps: usize,
 ) -> Option<f64> {
     let mut stepper = Stepper::<f64>::new(step, 2 * subject.degrees());
-    let small = SMALL * subject.scale(point);
+    let mut growth = Growth::new(subject.scale(point));
     let mut state = point.state.clone();
-    subject.places.iter().for_each(|&place| state[place] += small);
-    let mut sizes = Vec::with_capacity(steps);
+    subject.places.iter().for_each(|&place| state[place] += growth.small);
     for _ in 0..steps {
         stepper.step(&mut state, &point.inputs, dt);
         let square = |&i: &usize| (state[i] - point.state[i]).powi(2);
-        sizes.push(subject.places.iter().map(square).sum());
-        if !in_range(sizes[sizes.len() - 1], small) {
-            break;
+        let Some(factor) = growth.push(subject.places.iter().map(square).sum()) else { break };
+        if factor != 1.0 {
+            let places = subject.places.iter();
+            places.for_each(|&i| state[i] = point.state[i] + factor * (state[i] - point.state[i]));
         }
     }
-    growth(&sizes).map(|growth| 0.5 * growth / dt)
-}
-
-/// The deviation whose growth is measured.
-pub(crate) const SMALL: f64 = 1e-5;
-
-/// Whether the square of a deviation is neither lost in rounding nor too large for a linear system.
-pub(crate) fn in_range(square: f64, small: f64) -> bool {
-    let relative = (square / (small * small)).sqrt();
-    relative > 1e-6 && relative < 1e3
-}
-
-/// The growth of the logarithm per entry, from the largest of the second and of the last quarter; none of fewer than eight entries.
-pub(crate) fn growth(squares: &[f64]) -> Option<f64> {
-    let n = squares.len();
-    if n < 8 {
-        return None;
-    }
-    let largest = |from: usize, to: usize| squares[from..to].iter().copied().fold(0.0, f64::max);
-    let quarter = n / 4;
-    let (early, late) = (largest(quarter, 2 * quarter), largest(n - quarter, n));
-    let between = (n - quarter) - quarter;
-    Some((late / early).ln() / between as f64)
+    growth.rate().map(|rate| rate / dt)
 }
 
 /// The largest stable time step: where deviations first grow though those of the exact motion do not, on a grid of steps that are
@@ -261,7 +241,8 @@ pub(crate) fn largest_stable_step(
 ) -> Option<f64> {
     let rate = fastest(&subject.slopes(point));
     let is_stable = |dt: f64| {
-        radius(&step_matrix(subject, step, point, dt)).is_some_and(|radius| radius <= 1.0 + ROUNDING)
+        radius(&step_matrix(subject, step, point, dt))
+            .is_some_and(|radius| radius <= 1.0 + ROUNDING)
     };
     let mut below = 0.0;
     let mut dt = 1e-3 / rate;

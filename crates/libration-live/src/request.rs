@@ -49,7 +49,8 @@ fn read(kind: &str, setting: &str) -> Result<Answer, SettingError> {
 /// The names of all integrators, those with code of their own first.
 fn methods() -> Answer {
     let mut answer = Answer::default();
-    let names: Vec<&str> = AnyMethod::all().chain(AnyMethod::tables()).map(AnyMethod::name).collect();
+    let names: Vec<&str> =
+        AnyMethod::all().chain(AnyMethod::tables()).map(AnyMethod::name).collect();
     answer.text("methods", names.join(" "));
     answer
 }

@@ -103,11 +103,7 @@ impl Default for Control {
 impl Setting {
     /// Free motion of a system by its equations: in steps of a fifth of a radian of the fastest mode, over sixty radians; by velocity
     /// Verlet where accelerations depend on positions alone, else by RK4.
-    pub fn of_equations(
-        system: &str,
-        definitions: Definitions,
-        start: Vec<(String, f64)>,
-    ) -> Self {
+    pub fn of_equations(system: &str, definitions: Definitions, start: Vec<(String, f64)>) -> Self {
         let mut setting =
             Setting { system: system.to_owned(), definitions, start, ..Setting::empty() };
         let Ok(subject) = Subject::new(&setting) else { return setting };
@@ -145,7 +141,8 @@ impl Setting {
             _ => Err(refused(key, value, expected)),
         };
         let positive = |x: f64| x > 0.0;
-        let names = || value.split(',').map(|name| name.trim().to_owned()).filter(|n| !n.is_empty());
+        let names =
+            || value.split(',').map(|name| name.trim().to_owned()).filter(|n| !n.is_empty());
         if let Some((table, name)) = key.split_once('.') {
             let text = || (name.to_owned(), value.to_owned());
             let own = &mut self.definitions;
@@ -181,9 +178,11 @@ impl Setting {
                 let part = |x: f64| (0.0..=1.0 / 3.0).contains(&x);
                 let below_one = |x: f64| (0.0..1.0).contains(&x);
                 match key {
-                    "gain" => own.gain = rows(value).ok_or_else(|| {
-                        refused(key, value, "rows of numbers, such as 10,2;0,1")
-                    })?,
+                    "gain" => {
+                        own.gain = rows(value).ok_or_else(|| {
+                            refused(key, value, "rows of numbers, such as 10,2;0,1")
+                        })?
+                    }
                     "gain-factor" => own.gain_factor = number(|_| true, "a number")?,
                     "period" => own.period = number(positive, "seconds above 0")?,
                     "latency" => own.latency = number(|x| x >= 0.0, "seconds, at least 0")?,
@@ -223,8 +222,16 @@ impl FromStr for Setting {
 impl Display for Setting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Setting { system, definitions, start, integrator, dt, horizon, control } = self;
-        let Definitions { coordinates, accelerations, rates, parts, parameters, inputs, energy, .. } =
-            definitions;
+        let Definitions {
+            coordinates,
+            accelerations,
+            rates,
+            parts,
+            parameters,
+            inputs,
+            energy,
+            ..
+        } = definitions;
         writeln!(f, "system={system}")?;
         for (key, names) in [("coordinates", coordinates), ("inputs", inputs)] {
             if !names.is_empty() {

@@ -27,7 +27,11 @@ impl MapAxis {
 ///
 /// # Errors
 /// [`SettingError`]: a setting or an axis that is wrong.
-pub fn map_row(setting: &Setting, x: &MapAxis, (key, y): (&str, f64)) -> Result<Answer, SettingError> {
+pub fn map_row(
+    setting: &Setting,
+    x: &MapAxis,
+    (key, y): (&str, f64),
+) -> Result<Answer, SettingError> {
     let mut setting = setting.clone();
     setting.set(key, &y.to_string())?;
     // A parameter of the axis becomes an input of the programs, which are made once.
@@ -53,11 +57,9 @@ pub fn map_row(setting: &Setting, x: &MapAxis, (key, y): (&str, f64)) -> Result<
         let moved = varied.map(|value| point(&[value]));
         let Some(point) = moved.as_ref().or(fixed.as_ref()) else { continue };
         let rate = match &setting.control {
-            Some(control) => {
-                ControlLoop::new(&subject, point.clone(), control, setting.dt)
-                    .ok()
-                    .and_then(|own| own.exact_growth())
-            }
+            Some(control) => ControlLoop::new(&subject, point.clone(), control, setting.dt)
+                .ok()
+                .and_then(|own| own.exact_growth()),
             None => {
                 let matrix = step_matrix(&subject, &step, point, setting.dt);
                 radius(&matrix).map(|radius| radius.ln() / setting.dt)

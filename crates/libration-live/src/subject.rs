@@ -153,7 +153,8 @@ impl Subject {
         let at = [point.state.clone(), point.inputs.clone()].concat();
         let slopes = jacobian(self.equations.dynamics(), &at);
         let (n, m, d) = (self.places.len(), self.equations.inputs().len(), self.degrees());
-        let a = Matrix::from_fn(n, n, |i, j| rate_derivative(&slopes, self.places[i], self.places[j]));
+        let a =
+            Matrix::from_fn(n, n, |i, j| rate_derivative(&slopes, self.places[i], self.places[j]));
         let b = Matrix::from_fn(n, m, |i, j| rate_derivative(&slopes, self.places[i], 2 * d + j));
         LinearPlant::new(a, b, Matrix::identity(n), Matrix::zeros(n, m))
             .map_err(|error| SettingError::Subject(error.to_string()))

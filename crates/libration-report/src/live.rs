@@ -95,7 +95,7 @@ fn figures() -> String {
             "map",
             " drag",
             format!(
-                "<b>Map of stability</b> over {} and {}: blue stable, orange unstable.",
+                "<b>Map of stability</b> over {} and {}: blue stable, orange unstable, blank not computed.",
                 select("x-axis", "Horizontal axis of the map"),
                 select("y-axis", "Vertical axis of the map")
             ),

@@ -34,7 +34,10 @@ pub(crate) fn run(args: &ServeArgs) -> Result<(), Failure> {
         return Ok(());
     }
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, args.port)).map_err(|error| {
-        Failure::run(format!("cannot listen on port {}: {error}; help: use another --port, or 0", args.port))
+        Failure::run(format!(
+            "cannot listen on port {}: {error}; help: use another --port, or 0",
+            args.port
+        ))
     })?;
     let address = listener.local_addr().map_err(Failure::run)?;
     terminal::print(&format!("http://{address}/\n"))?;
@@ -66,7 +69,10 @@ fn page(options: &SystemArgs) -> Result<String, Failure> {
         .into_iter()
         .map(|own| LiveSetting { title: own.system.clone(), text: own.to_string() })
         .collect();
-    Ok(live::page(&settings, "What an integrator, a time step, latency, jitter and skew do to a system"))
+    Ok(live::page(
+        &settings,
+        "What an integrator, a time step, latency, jitter and skew do to a system",
+    ))
 }
 
 fn open(address: &str) {

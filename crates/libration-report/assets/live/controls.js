@@ -13,17 +13,17 @@ const LABELS = {
 };
 const labelOf = (key) => LABELS[key] || key.replace(/^parameter\.|^start\./, "");
 
-/** The range of a slider, around the number with which the page began. */
-const rangeOf = (key, number, period) => {
+/** The range of a slider, around the number with which the page began; of a latency up to `latest`. */
+const rangeOf = (key, number, latest) => {
   switch (key) {
     case "jitter": return new Scale([0, 1 / 3]);
     case "skew": return new Scale([-0.2, 0.2]);
     case "loss": return new Scale([0, 0.9]);
-    case "latency": return new Scale([0, Math.max(10 * period, 2 * number)]);
+    case "latency": return new Scale([0, Math.max(latest, 1.5 * number)]);
     case "gain-factor": return new Scale([0, 4]);
     case "seed": return new Scale([0, 100]);
   }
-  if (SECONDS.has(key)) return new Scale([number / 50, number * 50], true);
+  if (SECONDS.has(key)) return new Scale([number / 30, number * 30], true);
   if (key.startsWith("start.")) return new Scale([-2, 2].map((part) => part * Math.max(1, Math.abs(number))));
   if (key.startsWith("parameter.") && number > 0) return new Scale([number / 20, number * 20], true);
   return new Scale([-3, 3].map((part) => part * (Math.abs(number) || 1)));

@@ -4,7 +4,7 @@
 const loadEngine = async () => {
   const text = document.getElementById("live-engine").textContent.trim();
   const packed = Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
-  const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
   const bytes = await new Response(unpacked).arrayBuffer();
   const { instance } = await WebAssembly.instantiate(bytes, {});
   const { memory, request, answer } = instance.exports;

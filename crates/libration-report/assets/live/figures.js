@@ -76,7 +76,7 @@ const drawCircle = (live) => {
   const own = view["eigenvalues.re"].map((re, i) => Math.hypot(re, view["eigenvalues.im"][i]));
   const most = Math.min(3, Math.max(1.25, 1.15 * Math.max(...own, 0)));
   const { clientWidth: width, clientHeight: height } = plot.canvas;
-  const wide = (most * Math.max(1, width - 62)) / Math.max(1, height - 44);
+  const wide = (most * Math.max(1, width - 62)) / Math.max(1, height - 58);
   plot.begin(new Scale([-wide, wide]), new Scale([-most, most]), ["Re λ", "Im λ"]);
   const turn = Array.from({ length: 121 }, (_, i) => (i * Math.PI) / 60);
   plot.line(turn.map(Math.cos), turn.map(Math.sin), "--theory", 1.2);
@@ -86,8 +86,9 @@ const drawCircle = (live) => {
   });
   const radius = Math.max(...own, 0);
   plot.canvas.setAttribute("aria-label", `Eigenvalues in the unit circle; the largest has size ${format(radius)}.`);
-  live.find("circle-caption").textContent =
-    `Eigenvalues of a ${view.kind === "loop" ? "period" : "step"}; rings: exact ${view.kind === "loop" ? "steps" : "flow"}. Spectral radius 1 ${radius < 1 ? "−" : "+"} ${format(Math.abs(radius - 1))}.`;
+  const beside = Math.abs(radius - 1) < 1e-12 ? "1" : `1 ${radius < 1 ? "−" : "+"} ${format(Math.abs(radius - 1))}`;
+  const [of, exact] = view.kind === "loop" ? ["period", "steps"] : ["step", "flow"];
+  live.find("circle-caption").textContent = `Eigenvalues of a ${of}; rings: exact ${exact}. Spectral radius ${beside}.`;
 };
 
 const MAP = { columns: 48, rows: 32, chunk: 12 };
@@ -155,7 +156,9 @@ const paintMap = (live) => {
   const [x, y] = live.axes;
   plot.begin(map.x, map.y, [labelOf(x), labelOf(y)]);
   const { left, top, right, bottom } = plot.box;
-  const [width, height] = [(right - left) / MAP.columns, (bottom - top) / MAP.rows];
+  // Whole pixels, so that cells neither overlap nor leave seams.
+  const lines = (count, begin, end) => Array.from({ length: count + 1 }, (_, i) => Math.round(begin + ((end - begin) * i) / count));
+  const [lefts, bottoms] = [lines(MAP.columns, left, right), lines(MAP.rows, bottom, top)];
   const inks = { stable: plot.ink("--accent-3"), unstable: plot.ink("--accent-4") };
   // A row that is not there yet looks like the one below it that is.
   const known = new Set(map.order.slice(0, Math.ceil((map.done * MAP.chunk) / MAP.columns)));
@@ -169,7 +172,8 @@ const paintMap = (live) => {
         const stable = growth <= 1e-9;
         plot.context.fillStyle = stable ? inks.stable : inks.unstable;
         plot.context.globalAlpha = stable ? 0.22 + 0.4 * Math.min(1, Math.log10(1 + Math.abs(growth)) / 2) : 0.85;
-        plot.context.fillRect(left + column * width, bottom - (row + 1) * height, width + 0.5, height + 0.5);
+        const [x, y] = [lefts[column], bottoms[row + 1]];
+        plot.context.fillRect(x, y, lefts[column + 1] - x, bottoms[row] - y);
       }
     }
     plot.context.globalAlpha = 1;
@@ -208,7 +212,9 @@ const judge = (view, limits, setting) => {
 /** Rows of a quantity with its prediction and its measurement. */
 const numberRows = (view, limits, setting) => {
   const get = (name) => format(single(view, name));
-  const rows = [["growth of small deviations (1/s)", get("growth.predicted"), get("growth.measured")]];
+  const error = single(view, "growth.error");
+  const measured = get("growth.measured") + (error > 0 ? ` ± ${error.toPrecision(1)}` : "");
+  const rows = [["growth of small deviations (1/s)", get("growth.predicted"), measured]];
   if (view.kind === "motion") {
     rows.push(["largest change of the energy", get("energy.predicted"), get("energy.largest")]);
     if (limits["dt.stable"]) rows.push(["largest stable step (s)", format(single(limits, "dt.stable")), "—"]);

@@ -6,7 +6,8 @@ class Live {
     this.presets = JSON.parse(document.getElementById("live-settings").textContent);
     this.find = (name) => section.querySelector(`[data-live="${name}"]`);
     this.plots = {};
-    for (const name of ["phase", "curve", "circle", "map"]) this.plots[name] = new Plot(this.find(name));
+    this.palette = new Palette(section);
+    for (const name of ["phase", "curve", "circle", "map"]) this.plots[name] = new Plot(this.find(name), this.palette);
     this.frames = [];
     this.dirty = false;
   }
@@ -20,7 +21,10 @@ class Live {
       const linked = settingOfLink(location.hash);
       if (linked && linkOfSetting(linked) !== linkOfSetting(this.setting)) this.choose(linked);
     });
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.change());
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+      this.palette.clear();
+      this.change();
+    });
     new ResizeObserver(() => this.change()).observe(this.section);
     this.listen();
     this.section.dataset.state = "ready";
@@ -114,9 +118,12 @@ class Live {
   fill() {
     const { setting } = this;
     this.rows = [];
+    // Latencies up to twice the largest stable one, or ten periods.
+    const limit = hasLoop(setting) ? single(this.ask("limits"), "latency.stable") : NaN;
+    const latest = limit > 0 && limit < Infinity ? 2 * limit : 10 * Number(setting.get("period"));
     const numberRow = (key, holder) => {
       const number = Number(setting.get(key));
-      const scale = rangeOf(key, number, Number(setting.get("period")));
+      const scale = rangeOf(key, number, latest);
       const row = new NumberRow(key.replace(/[^A-Za-z0-9]/g, "-") + this.rows.length, key, labelOf(key), scale, (x) => {
         this.touched = true;
         this.set(key, x);
@@ -203,7 +210,7 @@ class Live {
 
   /** Gains of a linear-quadratic regulator with weights of 1. */
   design(setting) {
-    if (!setting.get("period")) setting.set("period", String(Number(setting.get("dt")) * 4));
+    if (!setting.get("period")) setting.set("period", setting.get("dt"));
     const designed = this.ask("design", new Map([...setting].filter(([key]) => key !== "gain").concat([["gain", "0"]])));
     this.showError(designed.error);
     if (designed.error) return;

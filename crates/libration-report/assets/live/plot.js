@@ -1,6 +1,24 @@
 // Plots on a canvas.
 
-const color = (element, name) => getComputedStyle(element).getPropertyValue(name).trim();
+/** Colors of the page by the names of its properties, as a canvas can read them: those of light or of dark. */
+class Palette {
+  constructor(holder) {
+    this.probe = holder.appendChild(document.createElement("span"));
+    this.probe.hidden = true;
+    this.known = new Map();
+  }
+  /** Forgets the colors, which change with the appearance of the page. */
+  clear() {
+    this.known.clear();
+  }
+  ink(name) {
+    if (!this.known.has(name)) {
+      this.probe.style.color = `var(${name})`;
+      this.known.set(name, getComputedStyle(this.probe).color);
+    }
+    return this.known.get(name);
+  }
+}
 
 /** A range that contains all numbers, with a margin. */
 const extent = (columns, margin = 0.06) => {
@@ -52,8 +70,8 @@ class Scale {
 
 /** A canvas with axes. Colors are those of the page. */
 class Plot {
-  constructor(canvas) {
-    this.canvas = canvas;
+  constructor(canvas, palette) {
+    [this.canvas, this.palette] = [canvas, palette];
     this.context = canvas.getContext("2d");
   }
   begin(x, y, labels) {
@@ -67,12 +85,12 @@ class Plot {
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, width, height);
     context.font = "12px system-ui, sans-serif";
-    this.box = { left: 52, top: 8, right: width - 10, bottom: height - 36 };
+    this.box = { left: 52, top: 22, right: width - 10, bottom: height - 36 };
     [this.x, this.y] = [x, y];
     this.axes(labels);
   }
   ink(name) {
-    return color(this.canvas, name);
+    return this.palette.ink(name);
   }
   at(x, y) {
     const { left, top, right, bottom } = this.box;
@@ -112,7 +130,7 @@ class Plot {
     context.textAlign = "right";
     context.fillText(xLabel, box.right, box.bottom + 31);
     context.textAlign = "left";
-    context.fillText(yLabel, box.left + 6, box.top + 14);
+    context.fillText(yLabel, 6, 13);
   }
   clip(draw) {
     const { context, box } = this;
