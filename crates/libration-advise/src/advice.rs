@@ -3,11 +3,13 @@
 use std::collections::BTreeMap;
 
 use libration::Method;
+use libration::live::Setting;
 use serde::Serialize;
 
 use super::budget::{Budget, FirstFailure};
 use super::combined_effect::CombinedEffect;
 use super::integrator_choice::{IntegratorChoice, evaluations, sort_by_cost};
+use super::live_setting;
 use super::request::{Measure, Request, Tolerance};
 use super::stabilising_changes::StabilisingChanges;
 use super::stability_map::StabilityMap;
@@ -52,6 +54,9 @@ pub struct Advice {
     /// The stability map of the loop, if the request asks for it.
     #[serde(skip)]
     pub map: Option<StabilityMap>,
+    /// The setting of the live section of the page; none where the loop has none.
+    #[serde(skip)]
+    pub live: Option<Setting>,
 }
 
 /// A tolerance.
@@ -150,6 +155,7 @@ impl Advice {
             throughput: None,
             repeat_command: request.invocation.clone(),
             map: None,
+            live: live_setting::of_request(request),
         }
     }
 

@@ -16,6 +16,7 @@ mod imperfection;
 mod integrator_choice;
 pub mod jitter_measurement;
 mod limits;
+mod live_setting;
 pub mod linear;
 mod loop_check;
 mod loop_command;

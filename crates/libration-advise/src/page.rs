@@ -8,6 +8,7 @@ use libration_report::report;
 
 use super::advice::{Advice, LoopAdvice};
 use super::budget::Budget;
+use super::live_setting;
 use super::stability_map::StabilityMap;
 use super::summary::{ANY_PROBABILITY, is_any_probability};
 
@@ -16,6 +17,7 @@ pub fn page(advice: &Advice) -> String {
     let mut page =
         Page { title: "Budget of a simulation or a control loop".into(), ..Page::default() };
     page.answer.clone_from(&advice.answer);
+    page.live = live_setting::of_advice(advice);
     for warning in &advice.warnings {
         page.note(format!("Warning: {warning}."));
     }

@@ -1,5 +1,7 @@
 //! An audit as an HTML page.
 
+use libration::live::{MOST_DEGREES, Setting};
+use libration_report::live::LiveSetting;
 use libration_report::notation::{number, plural};
 use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
@@ -14,6 +16,7 @@ use crate::summary::{capitalised, error_in_words};
 pub fn page(audit: &ProbeReport) -> String {
     let mut page = Page { title: format!("Audit of a step: {}", audit.title), ..Page::default() };
     page.answer.clone_from(&audit.answer);
+    page.live = live(audit);
     findings(&mut page, audit);
     modes(&mut page, audit);
     latency(&mut page, audit);
@@ -36,6 +39,22 @@ pub fn page(audit: &ProbeReport) -> String {
         audit.libration_version,
     );
     report::render_page(&page, &sub)
+}
+
+/// The linearised simulator in steps of its length, from which a reader may change gains and timing; none of a simulator whose steps have
+/// one length only, or that is too large.
+fn live(audit: &ProbeReport) -> Vec<LiveSetting> {
+    let Some(flow) = audit.flow.as_ref().filter(|flow| flow.a.rows() <= MOST_DEGREES) else {
+        return Vec::new();
+    };
+    let names = |given: &[String]| {
+        given.iter().map(|name| name.split(' ').next().unwrap_or_default().to_owned()).collect()
+    };
+    let names = [names(&audit.states), names(&audit.inputs)];
+    let mut setting = Setting::of_plant("the simulator, linearised", &flow.a, &flow.b, names);
+    setting.dt = audit.dt;
+    setting.horizon = setting.horizon.max(100.0 * audit.dt);
+    vec![LiveSetting { title: setting.system.clone(), text: setting.to_string() }]
 }
 
 fn findings(page: &mut Page, audit: &ProbeReport) {

@@ -1,6 +1,7 @@
 //! The results of advice on loops around linear plants.
 
 use libration::linear::{DiscreteController, Matrix, Signal};
+use libration::live::Setting;
 use libration_settings::linear_loop::OperatingPoint;
 use serde::{Serialize, Serializer};
 
@@ -80,6 +81,9 @@ pub struct LinearAdvice {
     /// The stability map, if the request asks for it.
     #[serde(skip)]
     pub map: Option<StabilityMap>,
+    /// The setting of the live section of the page; none where the loop has none.
+    #[serde(skip)]
+    pub live: Option<Setting>,
 }
 
 /// The name and unit of a signal.

@@ -4,6 +4,7 @@ use libration::linear::Signal;
 use libration_settings::linear_loop::Part;
 use libration_work::Work;
 
+use super::live_setting::live_setting;
 use super::margins::margins;
 use super::{Deviation, LinearAdvice, LinearRequest, SignalName};
 use crate::AdviseError;
@@ -100,6 +101,7 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
         redesign,
         repeat_command: request.invocation.clone(),
         map,
+        live: live_setting(request),
     };
     advice.warnings = advice.warnings_of();
     advice.warnings.extend(request.stiffness_warning());

@@ -7,6 +7,7 @@ mod clock;
 mod deadlines;
 mod deadlines_page;
 mod latency_chain;
+mod live_setting;
 mod loop_of_request;
 mod margins;
 mod mode;

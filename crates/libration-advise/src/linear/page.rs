@@ -7,6 +7,7 @@ use libration_report::report;
 
 use super::deadlines_page::deadlines;
 use super::{ChainLink, InputMargins, LinearAdvice, redesign_page};
+use crate::live_setting::shown;
 use crate::page::{budget_row, figure};
 use crate::{Budget, StabilityWindow};
 
@@ -17,6 +18,7 @@ pub const NO_MARGINS: &str = "Gain and phase margins are not available for a cas
 pub fn page(advice: &LinearAdvice) -> String {
     let mut page = Page { title: "Budget of a control loop".into(), ..Page::default() };
     page.answer.clone_from(&advice.answer);
+    page.live = advice.live.as_ref().map(shown).unwrap_or_default();
     for warning in &advice.warnings {
         page.note(format!("Warning: {warning}."));
     }

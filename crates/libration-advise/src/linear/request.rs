@@ -8,9 +8,10 @@ use libration::control::clock::{Recorded, RecordedError};
 use libration::linear::{
     CostWeights, LinearLoop, LinearLoopError, LinearPlant, Matrix, MissingCommand,
 };
+use libration::live::Setting;
 use libration_logs::{StampOptions, read_time_stamps};
 use libration_settings::linear_loop::{Design, LinearLoopTable, OperatingPoint, Part};
-use libration_settings::{Document, Fault, Number, SettingsError, suggestions};
+use libration_settings::{Document, Fault, Number, SettingsError, live_settings, suggestions};
 
 use super::clock::clocked;
 use super::redesign_toml::RedesignToml;
@@ -26,6 +27,8 @@ pub struct LinearRequest {
     pub(super) plant: LinearPlant,
     /// The equilibrium at which a system of the catalogue was linearised.
     pub(super) operating_point: Option<OperatingPoint>,
+    /// The equations that the plant is linearised from.
+    pub(super) equations: Option<Setting>,
     pub(super) parts: Vec<Part>,
     pub(super) design: Design,
     pub(super) timed: TimedLoop,
@@ -85,6 +88,7 @@ impl LinearRequest {
     pub fn new(file: RequestFile) -> Result<Self, Fault> {
         let plant = file.system.linear.plant()?;
         let operating_point = file.system.linear.operating_point()?;
+        let equations = live_settings::of_plant_table(&file.system.linear);
         let period = file.period();
         let Some(controller) = file.controller else {
             let message = "there is no controller; expected a table, as [controller.lqr]";
@@ -135,6 +139,7 @@ impl LinearRequest {
         Ok(LinearRequest {
             plant,
             operating_point,
+            equations,
             parts,
             design,
             timed,

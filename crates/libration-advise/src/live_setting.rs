@@ -1,0 +1,72 @@
+//! The settings of the live sections of pages.
+
+use libration::AnyMethod;
+use libration::catalog::Actuation;
+use libration::control::Jitter;
+use libration::live::{Control as LiveControl, Setting};
+use libration_report::live::LiveSetting;
+use libration_settings::live_settings;
+
+use super::advice::Advice;
+use super::advised_system::AdvisedSystem;
+use super::control::{Control, Law};
+use super::request::Request;
+
+/// The system of a request, with its loop; none where the loop is no feedback of position and velocity around an equilibrium.
+pub(super) fn of_request(request: &Request) -> Option<Setting> {
+    let mut setting = match &request.system {
+        AdvisedSystem::Equations { system, .. } => live_settings::of_equations(system),
+        AdvisedSystem::Catalogued { system, actuation } => {
+            let mass = matches!(actuation, Actuation::Force { .. }).then(|| actuation.mass());
+            Setting::of_system(*system, mass)
+        }
+    };
+    let names = setting.definitions.coordinates.clone();
+    if let AdvisedSystem::Catalogued { .. } = request.system {
+        let states = names.iter().cloned().zip(request.q.iter().copied());
+        let velocities = names.iter().map(|name| format!("{name}'")).zip(request.v.iter().copied());
+        setting.start = states.chain(velocities).collect();
+        setting.horizon = request.horizon;
+    }
+    let Some(control) = &request.control else { return Some(setting) };
+    let Control { law, period, latency, jitter, skew, loss, record, deviation, .. } = control;
+    let (Law::Pd(gains), None) = (law, record) else { return None };
+    setting.start = vec![(names.first()?.clone(), request.q.first()? + deviation)];
+    setting.dt = *period;
+    setting.control = Some(LiveControl {
+        gain: vec![vec![gains.position, gains.velocity]],
+        period: *period,
+        latency: *latency,
+        jitter: gaussian(*jitter)?,
+        skew: *skew,
+        loss: *loss,
+        ..LiveControl::default()
+    });
+    Some(setting)
+}
+
+/// The rms of a Gaussian law within what a page draws; none of other laws.
+pub(super) fn gaussian(law: Jitter) -> Option<f64> {
+    match law {
+        law if law.rms() == 0.0 => Some(0.0),
+        Jitter::Gaussian(rms) => Some(rms).filter(|rms| *rms <= law.largest_rms()),
+        Jitter::Uniform(_) => None,
+    }
+}
+
+/// The setting of a page about this advice, in the advised steps.
+pub(super) fn of_advice(advice: &Advice) -> Vec<LiveSetting> {
+    let Some(mut setting) = advice.live.clone() else { return Vec::new() };
+    let chosen = advice.chosen().and_then(|(choice, dt)| {
+        Some((AnyMethod::from_name(choice.integrator)?, dt))
+    });
+    if let Some((method, dt)) = chosen {
+        (setting.integrator, setting.dt) = (method, dt);
+    }
+    shown(&setting)
+}
+
+/// The list of one setting.
+pub(super) fn shown(setting: &Setting) -> Vec<LiveSetting> {
+    vec![LiveSetting { title: setting.system.clone(), text: setting.to_string() }]
+}
