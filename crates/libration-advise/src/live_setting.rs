@@ -57,9 +57,9 @@ pub(super) fn gaussian(law: Jitter) -> Option<f64> {
 /// The setting of a page about this advice, in the advised steps.
 pub(super) fn of_advice(advice: &Advice) -> Vec<LiveSetting> {
     let Some(mut setting) = advice.live.clone() else { return Vec::new() };
-    let chosen = advice.chosen().and_then(|(choice, dt)| {
-        Some((AnyMethod::from_name(choice.integrator)?, dt))
-    });
+    let chosen = advice
+        .chosen()
+        .and_then(|(choice, dt)| Some((AnyMethod::from_name(choice.integrator)?, dt)));
     if let Some((method, dt)) = chosen {
         (setting.integrator, setting.dt) = (method, dt);
     }

@@ -14,7 +14,8 @@ impl Setting {
         b: &Matrix,
         [states, inputs]: [Vec<String>; 2],
     ) -> Self {
-        let own = |names: Vec<String>| names.iter().map(|name| name.replace('\'', "_dot")).collect();
+        let own =
+            |names: Vec<String>| names.iter().map(|name| name.replace('\'', "_dot")).collect();
         let named = definitions(a, b, &[own(states), own(inputs)]);
         let numbered = |letter: &str, count: usize| {
             (1..=count).map(|i| format!("{letter}{i}")).collect::<Vec<_>>()
@@ -62,7 +63,8 @@ mod tests {
             (["x", "sin", "u"], ["x1", "x2", "u1"]),
         ] {
             let setting = Setting::of_plant("plant", &a, &b, names(given));
-            let found: Vec<&str> = setting.definitions.rates.iter().map(|(x, _)| x.as_str()).collect();
+            let found: Vec<&str> =
+                setting.definitions.rates.iter().map(|(x, _)| x.as_str()).collect();
             assert_eq!((found, &*setting.definitions.inputs[0]), (own[..2].to_vec(), own[2]));
             let equations = Equations::new(&setting.definitions).unwrap();
             // States of first order are velocities of the program.

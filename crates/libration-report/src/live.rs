@@ -48,29 +48,29 @@ pub fn section(settings: &[LiveSetting]) -> String {
         .map(|(i, own)| format!("<option value=\"{i}\">{}</option>", escape(&own.title)))
         .collect();
     format!(
-        "<section id=\"{LIVE_ID}\" class=\"live\" aria-labelledby=\"live-title\">\
+        "<section id=\"{LIVE_ID}\" class=\"live-section\" aria-labelledby=\"live-title\">\
          <style>{STYLE}</style>\n\
          <h2 id=\"live-title\">What happens if …?</h2>\n\
          <p class=\"sub\">Change anything: the engine runs in this page. Drag the start in the phase portrait and the point in the map.</p>\n\
          <noscript><p class=\"note\">This section requires JavaScript.</p></noscript>\n\
          <p class=\"live-verdict\" data-live=\"verdict\" role=\"status\"></p>\n\
          <p class=\"live-error\" data-live=\"error\" role=\"alert\"></p>\n\
-         <div class=\"live-grid\"><form class=\"live-controls\" autocomplete=\"off\" onsubmit=\"return false\">\
+         <div class=\"live-grid\"><div class=\"live-figures\">{figures}</div>\n\
+         <form class=\"live-controls\" autocomplete=\"off\" onsubmit=\"return false\">\
          <fieldset><legend>System</legend><label for=\"live-system\">Example</label>\
          <select id=\"live-system\" data-live=\"system\"><option value=\"-1\">own equations</option>{options}</select>\
          <details><summary>Equations</summary><label for=\"live-equations\">One entry per line, such as <code>acceleration.q=-k*q</code></label>\
          <textarea id=\"live-equations\" data-live=\"equations\" spellcheck=\"false\" wrap=\"off\"></textarea></details></fieldset>\
-         <div data-live=\"numbers-form\"></div></form>\n<div>\
-         <div class=\"live-figures\">{figures}</div>\
-         <table class=\"live-numbers\"><thead><tr><th>quantity</th><th class=\"num\">predicted</th><th class=\"num\">measured</th></tr></thead>\
+         <div data-live=\"numbers-form\"></div></form>\n\
+         <div class=\"live-results\"><table class=\"live-numbers\"><thead><tr><th>quantity</th><th class=\"num\">predicted</th><th class=\"num\">measured</th></tr></thead>\
          <tbody data-live=\"numbers\"></tbody></table>\
          <div class=\"live-copy\"><button type=\"button\" data-live=\"copy-command\">Copy as command</button>\
          <button type=\"button\" data-live=\"copy-python\">Copy as Python</button>\
          <button type=\"button\" data-live=\"copy-link\">Copy link</button>\
          <span class=\"live-copied\" data-live=\"copied\" role=\"status\"></span></div>\
          <details><summary>Commands: what this page computes, in a terminal and in Python</summary>\
-         <pre class=\"live-code\" tabindex=\"0\"><code data-live=\"command-code\"></code></pre>\
-         <pre class=\"live-code\" tabindex=\"0\"><code data-live=\"python-code\"></code></pre></details>\
+         <pre class=\"live-code\" tabindex=\"0\" role=\"group\" aria-label=\"Commands\"><code data-live=\"command-code\"></code></pre>\
+         <pre class=\"live-code\" tabindex=\"0\" role=\"group\" aria-label=\"Python\"><code data-live=\"python-code\"></code></pre></details>\
          </div></div>\n\
          <script type=\"application/json\" id=\"live-settings\">{settings}</script>\n\
          <script type=\"application/octet-stream+base64\" id=\"live-engine\">{engine}</script>\n\
@@ -116,7 +116,7 @@ pub fn page(settings: &[LiveSetting], sub: &str) -> String {
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
          <title>Libration</title>\n<style>{colors}{PAGE_STYLE}\
-         body{{display:block;max-width:1240px}}main{{max-width:none;padding:28px 0 64px}}.live h2{{margin-top:18px}}</style></head><body>\n\
+         body{{display:block;max-width:1240px}}main{{max-width:none;padding:28px 0 64px}}.live-section h2{{margin-top:18px}}</style></head><body>\n\
          <main id=\"top\">\n<h1>Libration</h1>\n<p class=\"sub\">{sub}</p>\n{section}</main>\n</body></html>\n",
         colors = figure::STYLESHEET,
         sub = render_html(sub),

@@ -9,6 +9,7 @@
 mod chromium;
 mod devtools;
 mod figures;
+mod live;
 mod loading;
 mod page;
 mod reading;

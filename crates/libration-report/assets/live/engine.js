@@ -59,17 +59,27 @@ const settingOfLink = (fragment) => {
 
 const linkOfSetting = (setting) => `#live&${new URLSearchParams([...setting])}`;
 
+/** The names of the states: coordinates, velocities, and states of first order. */
+const statesOf = (setting) => {
+  const coordinates = (setting.get("coordinates") || "").split(",").map((name) => name.trim()).filter(Boolean);
+  const rates = [...setting.keys()].filter((key) => key.startsWith("rate.")).map((key) => key.slice(5));
+  return [...coordinates, ...coordinates.map((name) => `${name}'`), ...rates];
+};
+
 const LOOP_KEYS = ["gain", "gain-factor", "period", "latency", "jitter", "skew", "loss", "seed"];
 const SECONDS = new Set(["dt", "horizon", "period", "latency"]);
 const isSystemKey = (key) => /^(system|coordinates|inputs|energy)$|^(acceleration|rate|let|parameter|start)\./.test(key);
 
-/** A number with four digits. */
-const format = (x) => {
+/** A number with three digits, for sentences. */
+const short = (x) => format(x, 3);
+
+/** A number with so many digits. */
+const format = (x, digits = 4) => {
   if (Number.isNaN(x)) return "—";
   if (x === Infinity) return "∞";
   const size = Math.abs(x);
   if (x !== 0 && (size < 1e-3 || size >= 1e5)) return x.toExponential(2).replace("e+", "e");
-  return String(Number(x.toPrecision(4)));
+  return String(Number(x.toPrecision(digits)));
 };
 
 /** A number, of seconds also with a unit as in 2ms or 500Hz; NaN if it is none. */

@@ -183,7 +183,7 @@ const paintMap = (live) => {
   plot.canvas.setAttribute("aria-label", `Map of stability over ${labelOf(x)} and ${labelOf(y)}; the point is at ${format(Number(setting.get(x)))}, ${format(Number(setting.get(y)))}.`);
 };
 
-const times = (rate) => (rate < 0 ? `halve every ${format(Math.LN2 / -rate)} s` : `double every ${format(Math.LN2 / rate)} s`);
+const times = (rate) => (rate < 0 ? `halve every ${short(Math.LN2 / -rate)} s` : `double every ${short(Math.LN2 / rate)} s`);
 
 /** The verdict on a setting, in a sentence or two. */
 const judge = (view, limits, setting) => {
@@ -191,7 +191,7 @@ const judge = (view, limits, setting) => {
   if (Number.isNaN(growth)) return { verdict: "No growth is predicted: the step or the plant is not finite here.", good: false };
   if (view.kind === "loop") {
     const limit = single(limits, "latency.stable");
-    const more = Number.isNaN(limit) ? "" : limit > 0 ? ` Without jitter and losses it is stable up to a latency of ${format(limit)} s.` : " Without jitter and losses it is unstable without any latency.";
+    const more = Number.isNaN(limit) ? "" : limit > 0 ? ` Without jitter and losses it is stable up to a latency of ${short(limit)} s.` : " Without jitter and losses it is unstable without any latency.";
     const state = growth < 0 ? `Stable: deviations ${times(growth)}` : `Unstable: deviations ${times(growth)}`;
     const ideal = single(view, "growth.ideal");
     const beside = Number.isNaN(ideal) ? "." : `; with perfect timing they ${times(ideal)}.`;
@@ -204,7 +204,7 @@ const judge = (view, limits, setting) => {
     return { verdict: `Deviations from ${where} grow by nature: they ${times(exact)}; in these steps they ${times(growth)}.`, good: true };
   }
   const limit = single(limits, "dt.stable");
-  const share = limit === Infinity ? " No step up to 100 radians is unstable." : limit > 0 ? ` The largest stable step is ${format(limit)} s; this is ${format((100 * dt) / limit)} % of it.` : limit === 0 ? " No step of this integrator is stable here." : "";
+  const share = limit === Infinity ? " No step up to 100 radians is unstable." : limit > 0 ? ` The largest stable step is ${short(limit)} s; this is ${short((100 * dt) / limit)} % of it.` : limit === 0 ? " No step of this integrator is stable here." : "";
   if (grows) return { verdict: `Unstable: deviations from ${where} ${times(growth)}, though those of the exact motion do not grow.${share}`, good: false };
   return { verdict: `Stable: no deviation from ${where} grows.${share}`, good: true };
 };

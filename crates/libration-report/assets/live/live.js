@@ -5,22 +5,27 @@ class Live {
     this.section = section;
     this.presets = JSON.parse(document.getElementById("live-settings").textContent);
     this.find = (name) => section.querySelector(`[data-live="${name}"]`);
+    // For scripts of readers and tests.
+    section.live = this;
     this.plots = {};
     this.palette = new Palette(section);
     for (const name of ["phase", "curve", "circle", "map"]) this.plots[name] = new Plot(this.find(name), this.palette);
     this.frames = [];
     this.dirty = false;
-  }
-
-  async begin() {
-    if (this.engine) return;
-    this.engine = await loadEngine();
-    this.methods = this.engine("methods\n").methods.split(" ");
+    this.methods = null;
+    // The form is there before the engine, so that nothing moves when it comes.
     this.choose(settingOfLink(location.hash) || parseSetting(this.presets[0].text));
     addEventListener("hashchange", () => {
       const linked = settingOfLink(location.hash);
       if (linked && linkOfSetting(linked) !== linkOfSetting(this.setting)) this.choose(linked);
     });
+  }
+
+  async begin() {
+    this.engine = await loadEngine();
+    this.methods = this.engine("methods\n").methods.split(" ");
+    this.listMethods();
+    this.change();
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
       this.palette.clear();
       this.change();
@@ -36,6 +41,8 @@ class Live {
     this.map = null;
     this.axes = null;
     this.columns = null;
+    this.limits = {};
+    this.fitted = false;
     this.fill();
     this.change();
   }
@@ -83,11 +90,25 @@ class Live {
   rest() {
     this.limits = this.ask("limits");
     this.limitsOf = settingText(this.setting);
+    this.fit();
     this.numbers();
     drawCircle(this);
     this.linked();
     const fragment = linkOfSetting(this.setting);
     if (this.touched && location.hash !== fragment) history.replaceState(null, "", fragment);
+  }
+
+  /** Lets the latency reach twice the largest stable one, once for each choice of a setting. */
+  fit() {
+    const limit = single(this.limits, "latency.stable");
+    const row = this.rows.find((row) => row.key === "latency");
+    if (this.fitted || !row || !(limit > 0 && limit < Infinity)) return;
+    this.fitted = true;
+    const latency = Number(this.setting.get("latency"));
+    row.scale = rangeOf("latency", latency, 2 * limit);
+    row.place(latency);
+    this.map = null;
+    drawMap(this);
   }
 
   showError(error) {
@@ -103,7 +124,8 @@ class Live {
 
   /** Verdict and numbers. */
   numbers() {
-    const limits = this.limitsOf === settingText(this.setting) ? this.limits : {};
+    // Until the setting rests, the limits are those of a moment ago.
+    const { limits } = this;
     const { verdict, good } = judge(this.view, limits, this.setting);
     const line = this.find("verdict");
     if (line.textContent !== verdict) line.textContent = verdict;
@@ -118,12 +140,9 @@ class Live {
   fill() {
     const { setting } = this;
     this.rows = [];
-    // Latencies up to twice the largest stable one, or ten periods.
-    const limit = hasLoop(setting) ? single(this.ask("limits"), "latency.stable") : NaN;
-    const latest = limit > 0 && limit < Infinity ? 2 * limit : 10 * Number(setting.get("period"));
     const numberRow = (key, holder) => {
       const number = Number(setting.get(key));
-      const scale = rangeOf(key, number, latest);
+      const scale = rangeOf(key, number, 10 * Number(setting.get("period")));
       const row = new NumberRow(key.replace(/[^A-Za-z0-9]/g, "-") + this.rows.length, key, labelOf(key), scale, (x) => {
         this.touched = true;
         this.set(key, x);
@@ -144,8 +163,9 @@ class Live {
     keys("start.").forEach((key) => numberRow(key, start));
     if (start.children.length > 1) parts.push(start);
     const step = group("Step");
-    const select = make("select", { id: "live-integrator" }, ...this.methods.map((name) => make("option", { value: name, textContent: name })));
-    select.value = setting.get("integrator");
+    const select = make("select", { id: "live-integrator" });
+    this.integrator = select;
+    this.listMethods();
     select.addEventListener("change", () => {
       this.touched = true;
       this.map = null;
@@ -160,6 +180,13 @@ class Live {
     this.find("equations").value = settingText(system);
     const chosen = this.presets.findIndex((preset) => parseSetting(preset.text).get("system") === setting.get("system"));
     this.find("system").value = String(chosen);
+  }
+
+  /** The names of the integrators; before the engine is there, that of the setting. */
+  listMethods() {
+    const own = this.setting.get("integrator");
+    this.integrator.replaceChildren(...(this.methods || [own]).map((name) => make("option", { value: name, textContent: name })));
+    this.integrator.value = own;
   }
 
   loopGroup(numberRow) {
@@ -183,7 +210,7 @@ class Live {
       if (!setting.has(key)) setting.set(key, String(value));
     }
     const rows = setting.get("gain").split(";").map((row) => row.split(",").map(Number));
-    const names = this.engine(`view\n${settingText(setting)}`).states?.split(" ") || [];
+    const names = statesOf(setting);
     rows.forEach((row, i) =>
       row.forEach((gain, j) => {
         const label = `Gain of ${names[j] || j + 1}${rows.length > 1 ? ` on input ${i + 1}` : ""}`;
