@@ -3,7 +3,7 @@
 use crate::{Outcome, command};
 
 /// The engine, and what it depends on directly.
-const ALLOWED: [&str; 23] = [
+const ALLOWED: [&str; 24] = [
     "libration",
     "libration-analysis",
     "libration-batch",
@@ -12,6 +12,7 @@ const ALLOWED: [&str; 23] = [
     "libration-equations",
     "libration-linear",
     "libration-linear-loops",
+    "libration-live",
     "libration-replay",
     "bnum",
     "bytemuck",

@@ -8,16 +8,14 @@ use libration_study::Config;
 
 use crate::results::StudiedSystem;
 
-/// The system of the report first, then all examples.
+/// The system of a reader alone; the oscillator of the report, and behind it all examples.
 pub(crate) fn settings(config: &Config, system: Option<&StudiedSystem>) -> Vec<LiveSetting> {
-    let own = match system {
-        Some(system) => Some(system.live.clone()),
-        None => oscillator(config),
+    let all: Vec<Setting> = match system {
+        Some(system) => vec![system.live.clone()],
+        None => oscillator(config).into_iter().chain(live_settings::examples()).collect(),
     };
-    own.into_iter()
-        .chain(live_settings::examples())
-        .map(|own| LiveSetting { title: own.system.clone(), text: own.to_string() })
-        .collect()
+    let shown = |own: Setting| LiveSetting { title: own.system.clone(), text: own.to_string() };
+    all.into_iter().map(shown).collect()
 }
 
 /// The oscillator of a configuration, whose commands are forces.

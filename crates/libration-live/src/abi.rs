@@ -13,6 +13,7 @@ thread_local! {
 }
 
 /// Memory for a request of `length` bytes.
+// SAFETY: no other function of the module has this name.
 #[unsafe(no_mangle)]
 pub extern "C" fn request(length: usize) -> *mut u8 {
     REQUEST.with_borrow_mut(|request| {
@@ -23,6 +24,7 @@ pub extern "C" fn request(length: usize) -> *mut u8 {
 }
 
 /// The answer to the request in memory, as of [`Answer::to_bytes`](crate::Answer::to_bytes) after its length in four bytes.
+// SAFETY: no other function of the module has this name.
 #[unsafe(no_mangle)]
 pub extern "C" fn answer() -> *const u8 {
     let request = REQUEST.with_borrow(|bytes| String::from_utf8_lossy(bytes).into_owned());

@@ -7,47 +7,37 @@ use libration_core::control::{Jitter, Latency};
 use libration_core::number::Dual;
 use libration_core::random::{Address, Purpose};
 use libration_equations::StepProgram;
-use libration_linear::{
-    Channels, CostWeights, DiscreteController, LinearLoop, LoopTiming, Matrix, eigenvalues,
-};
+use libration_linear::{DiscreteController, LinearLoop, LoopTiming, Matrix};
 
-use crate::growth::Growth;
-use crate::motion::{WORK, complex, radius};
+use crate::SettingError;
 use crate::setting::Control;
 use crate::subject::{Point, Stepper, Subject, is_finite};
-use crate::{Answer, Setting, SettingError};
 
 /// The longest latency, in periods.
-const MOST_LATENCY: u64 = 64;
-
-/// Groups of loops, each with a mean square of its own, where periods or losses are random.
-const GROUPS: u64 = 8;
-
-/// Loops in a group.
-const LOOPS: u64 = 16;
+pub(crate) const MOST_LATENCY: u64 = 64;
 
 /// The most points of a curve.
 const POINTS: usize = 3000;
 
 /// The loop of a setting.
 pub(crate) struct ControlLoop<'a> {
-    subject: &'a Subject,
-    point: Point,
-    control: Control,
+    pub(crate) subject: &'a Subject,
+    pub(crate) point: Point,
+    pub(crate) control: Control,
     /// Rows: inputs. Columns: states.
-    gain: Matrix,
+    pub(crate) gain: Matrix,
     latency: Latency,
     dt: f64,
-    linear: LinearLoop,
+    pub(crate) linear: LinearLoop,
 }
 
 /// A loop at the beginning of a period.
-struct LoopState<S> {
+pub(crate) struct LoopState<S> {
     /// Positions and velocities.
-    state: Vec<S>,
+    pub(crate) state: Vec<S>,
     /// The latest command first.
-    commands: VecDeque<Vec<S>>,
-    acting: Vec<S>,
+    pub(crate) commands: VecDeque<Vec<S>>,
+    pub(crate) acting: Vec<S>,
 }
 
 impl<'a> ControlLoop<'a> {
@@ -92,7 +82,7 @@ impl<'a> ControlLoop<'a> {
     }
 
     /// The timing of the setting.
-    fn timing(&self) -> LoopTiming {
+    pub(crate) fn timing(&self) -> LoopTiming {
         LoopTiming {
             input_latency: vec![self.latency; self.gain.rows()],
             jitter: Jitter::Gaussian(self.control.jitter),
@@ -103,7 +93,7 @@ impl<'a> ControlLoop<'a> {
     }
 
     /// The mean length of a period, in s.
-    fn mean_period(&self) -> f64 {
+    pub(crate) fn mean_period(&self) -> f64 {
         self.control.period * (1.0 + self.control.skew)
     }
 
@@ -114,7 +104,7 @@ impl<'a> ControlLoop<'a> {
     }
 
     /// The same loop with perfect timing.
-    fn ideal(&self) -> Self {
+    pub(crate) fn ideal(&self) -> Self {
         let control =
             Control { latency: 0.0, jitter: 0.0, skew: 0.0, loss: 0.0, ..self.control.clone() };
         let point = Point {
@@ -133,7 +123,7 @@ impl<'a> ControlLoop<'a> {
     }
 
     /// A loop whose commands hold the equilibrium until others arrive.
-    fn begin<S: Elementary>(&self, state: &[f64]) -> LoopState<S> {
+    pub(crate) fn begin<S: Elementary>(&self, state: &[f64]) -> LoopState<S> {
         let number = |x: &f64| S::from_f64(*x);
         let acting: Vec<S> = self.point.inputs.iter().map(number).collect();
         LoopState {
@@ -144,7 +134,7 @@ impl<'a> ControlLoop<'a> {
     }
 
     /// Period `k` of loop `number`: its length in s, and whether its command is lost.
-    fn period(&self, number: u64, k: u64) -> (f64, bool) {
+    pub(crate) fn period(&self, number: u64, k: u64) -> (f64, bool) {
         let Control { jitter, loss, seed, .. } = self.control;
         let address = |purpose| Address { seed, trajectory: number, step: k, purpose };
         let longer = match jitter {
@@ -156,7 +146,7 @@ impl<'a> ControlLoop<'a> {
     }
 
     /// Moves a loop by a period of so many seconds, and shows it with the time since the beginning of the period after each step.
-    fn advance<S: Elementary>(
+    pub(crate) fn advance<S: Elementary>(
         &self,
         stepper: &mut Stepper<'_, S>,
         own: &mut LoopState<S>,
@@ -194,7 +184,7 @@ impl<'a> ControlLoop<'a> {
     }
 
     /// The matrix of a period of mean length as the integrator steps it: on the states, the acting commands and those in transit.
-    fn period_matrix(&self, step: &StepProgram) -> Matrix {
+    pub(crate) fn period_matrix(&self, step: &StepProgram) -> Matrix {
         let (n, m, whole) =
             (self.subject.places.len(), self.gain.rows(), self.latency.whole() as usize);
         let size = n + m * (1 + whole);
@@ -225,72 +215,13 @@ impl<'a> ControlLoop<'a> {
     }
 
     /// Operations of the programs in a period.
-    fn work(&self, step: &StepProgram) -> f64 {
+    pub(crate) fn work(&self, step: &StepProgram) -> f64 {
         let steps = (self.control.period / self.dt).ceil() + 1.0;
         steps * step.program().operations().max(1) as f64
     }
 
-    /// The rate in 1/s at which the root of the mean square of small deviations grows, measured, and the standard error of this number.
-    fn measured_growth(&self, step: &StepProgram) -> Option<[f64; 2]> {
-        if self.control.jitter == 0.0 && self.control.loss == 0.0 {
-            return Some([self.growth_of_loops(step, 0..1, false)?, 0.0]);
-        }
-        let group = |k| self.growth_of_loops(step, k * LOOPS..(k + 1) * LOOPS, true);
-        let rates: Vec<f64> = (0..GROUPS).map(group).collect::<Option<_>>()?;
-        let count = GROUPS as f64;
-        let mean = rates.iter().sum::<f64>() / count;
-        let squares: f64 = rates.iter().map(|rate| (rate - mean).powi(2)).sum();
-        Some([mean, (squares / (count * (count - 1.0))).sqrt()])
-    }
-
-    /// That of the loops with these numbers.
-    fn growth_of_loops(
-        &self,
-        step: &StepProgram,
-        numbers: core::ops::Range<u64>,
-        random: bool,
-    ) -> Option<f64> {
-        let loops = if random { LOOPS * GROUPS } else { 1 };
-        let periods = (WORK / loops as f64 / self.work(step)).clamp(40.0, 2000.0) as u64;
-        let scale = self.subject.scale(&self.point);
-        let mut growth = if random { Growth::of_one_range(scale) } else { Growth::new(scale) };
-        let mut start = self.point.state.clone();
-        self.subject.places.iter().for_each(|&place| start[place] += growth.small);
-        let mut stepper = Stepper::<f64>::new(step, 2 * self.subject.degrees());
-        let mut all: Vec<(u64, LoopState<f64>)> =
-            numbers.map(|number| (number, self.begin(&start))).collect();
-        for k in 0..periods {
-            let mut sum = 0.0;
-            for (number, own) in &mut all {
-                self.advance(&mut stepper, own, self.period(*number, k), |_, _| {});
-                let off = |&i: &usize| (own.state[i] - self.point.state[i]).powi(2);
-                sum += self.subject.places.iter().map(off).sum::<f64>();
-            }
-            let Some(factor) = growth.push(sum / all.len() as f64) else { break };
-            if factor != 1.0 {
-                // Over long times the mean square of few loops is that of one of them.
-                if random {
-                    break;
-                }
-                all.iter_mut().for_each(|(_, own)| self.scale(own, factor));
-            }
-        }
-        growth.rate().map(|rate| rate / self.mean_period())
-    }
-
-    /// Multiplies all deviations from the equilibrium and the commands that hold it.
-    fn scale(&self, own: &mut LoopState<f64>, factor: f64) {
-        let scale = |x: &mut f64, rest: f64| *x = rest + factor * (*x - rest);
-        for &place in &self.subject.places {
-            scale(&mut own.state[place], self.point.state[place]);
-        }
-        for command in own.commands.iter_mut().chain([&mut own.acting]) {
-            command.iter_mut().zip(&self.point.inputs).for_each(|(u, rest)| scale(u, *rest));
-        }
-    }
-
     /// The states and commands of loop 0 after each step, at most so many periods.
-    fn record(&self, step: &StepProgram, periods: usize) -> [Vec<Vec<f64>>; 2] {
+    pub(crate) fn record(&self, step: &StepProgram, periods: usize) -> [Vec<Vec<f64>>; 2] {
         let mut stepper = Stepper::<f64>::new(step, 2 * self.subject.degrees());
         let mut own = self.begin::<f64>(&self.subject.start);
         let steps = periods as f64 * (self.control.period / self.dt).max(1.0);
@@ -318,89 +249,4 @@ impl<'a> ControlLoop<'a> {
         }
         [rows, commands]
     }
-}
-
-/// The loop of a setting.
-pub(crate) fn view(setting: &Setting, control: &Control) -> Result<Answer, SettingError> {
-    let subject = Subject::new(setting)?;
-    let step = StepProgram::of(setting.integrator, subject.equations.dynamics());
-    let own = ControlLoop::new(&subject, subject.point(&[]), control, setting.dt)?;
-    let most = (WORK / 2.0 / own.work(&step)).max(20.0);
-    let periods = (setting.horizon / control.period).round().clamp(1.0, most) as usize;
-    let mut answer = Answer::default();
-    answer.text("kind", "loop");
-    answer.text("states", subject.names.join(" "));
-    answer.text("inputs", subject.equations.inputs().join(" "));
-    answer.number("periods", periods as f64);
-    answer.number("horizon", periods as f64 * own.mean_period());
-    let parts = (control.period / setting.dt - 1e-9).ceil().max(1.0);
-    answer.number("evaluations", parts * step.evaluations() as f64 / control.period);
-    let ideal = own.ideal();
-    for (of, own) in [("", &own), ("ideal.", &ideal)] {
-        let [rows, commands] = own.record(&step, periods);
-        answer.column(format!("{of}time"), rows.iter().map(|row| row[0]).collect());
-        for (i, name) in subject.names.iter().enumerate() {
-            let column = rows.iter().map(|row| row[i + 1]).collect();
-            answer.column(format!("{of}x.{name}"), column);
-        }
-        for (i, name) in subject.equations.inputs().iter().enumerate() {
-            let column = commands.iter().map(|command| command[i]).collect();
-            answer.column(format!("{of}command.{name}"), column);
-        }
-    }
-    let matrix = own.period_matrix(&step);
-    complex(&mut answer, "eigenvalues", &eigenvalues(&matrix).unwrap_or_default());
-    let exact = own.linear.period_matrix(&own.timing()).ok();
-    let of_exact = exact.as_ref().and_then(eigenvalues).unwrap_or_default();
-    complex(&mut answer, "exact", &of_exact);
-    answer.text("point", "equilibrium");
-    // What the steps of the integrator change, in a period of mean length, is added to the growth of the exact loop.
-    let shift = radius(&matrix).zip(exact.as_ref().and_then(radius));
-    let shift = shift.map(|(stepped, exact)| (stepped / exact).ln() / own.mean_period());
-    let exact_growth = own.exact_growth();
-    let predicted = exact_growth.zip(shift).map(|(growth, shift)| growth + shift);
-    answer.number("growth.predicted", predicted);
-    let measured = own.measured_growth(&step);
-    answer.number("growth.measured", measured.map(|[rate, _]| rate));
-    answer.number("growth.error", measured.map(|[_, error]| error));
-    answer.number("growth.exact", exact_growth);
-    answer.number("growth.ideal", ideal.exact_growth());
-    Ok(answer)
-}
-
-/// The limits of a loop, which take longer than a frame.
-pub(crate) fn limits(setting: &Setting, control: &Control) -> Result<Answer, SettingError> {
-    let subject = Subject::new(setting)?;
-    let own = ControlLoop::new(&subject, subject.point(&[]), control, setting.dt)?;
-    let mut answer = Answer::default();
-    let none = LoopTiming { input_latency: own.linear.ideal().input_latency, ..own.timing() };
-    let channels = Channels::Inputs((0..own.gain.rows()).collect());
-    let windows = own.linear.latency_windows(&none, &channels, [MOST_LATENCY as f64; 2]);
-    let first = windows.ok().and_then(|windows| windows.into_iter().next());
-    let largest = match first {
-        Some(window) if window.from == 0.0 => window.to.unwrap_or(f64::INFINITY),
-        _ => 0.0,
-    };
-    answer.number("latency.stable", largest * own.mean_period());
-    let cost = |timing: &LoopTiming| own.linear.stationary(timing).ok().flatten();
-    let rise = cost(&own.timing()).zip(cost(&own.linear.ideal()));
-    let rise = rise.map(|(own, ideal)| own.cost / ideal.cost - 1.0);
-    answer.number("cost.rise", rise);
-    Ok(answer)
-}
-
-/// The gain of the linear-quadratic regulator with weights of 1, row by row.
-pub(crate) fn design(setting: &Setting, control: &Control) -> Result<Answer, SettingError> {
-    let subject = Subject::new(setting)?;
-    let point = subject.point(&[]);
-    let plant = subject.plant(&point)?;
-    let weights = CostWeights {
-        states: Matrix::identity(plant.states.len()),
-        inputs: Matrix::identity(plant.inputs.len()),
-    };
-    let regulator = plant.design_regulator(&weights, control.period);
-    let regulator = regulator.map_err(|error| SettingError::Subject(error.to_string()))?;
-    let mut answer = Answer::default();
-    answer.column("gain", regulator.gain.entries().to_vec());
-    Ok(answer)
 }

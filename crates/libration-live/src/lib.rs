@@ -12,6 +12,8 @@ mod catalogue;
 mod control_loop;
 mod growth;
 mod linear_system;
+mod loop_growth;
+mod loop_view;
 mod motion;
 mod request;
 mod setting;

@@ -5,7 +5,7 @@ use libration_equations::StepProgram;
 
 use crate::stability_map::MapAxis;
 use crate::subject::Subject;
-use crate::{Answer, Setting, SettingError, control_loop, map_row, motion};
+use crate::{Answer, Setting, SettingError, loop_view, map_row, motion};
 
 /// The answer to a request, whose first line has its kind: `view`, `limits`, `design` for the gains of a linear-quadratic regulator with
 /// weights of 1, `map KEY VALUE,… KEY VALUE` for a row of a map of stability, or `methods` for the names of all integrators. A
@@ -27,10 +27,10 @@ fn read(kind: &str, setting: &str) -> Result<Answer, SettingError> {
     let words: Vec<&str> = kind.split(' ').collect();
     match (words.as_slice(), &setting.control) {
         (["view"], None) => motion::view(&setting),
-        (["view"], Some(control)) => control_loop::view(&setting, control),
-        (["design"], Some(control)) => control_loop::design(&setting, control),
+        (["view"], Some(control)) => loop_view::view(&setting, control),
+        (["design"], Some(control)) => loop_view::design(&setting, control),
         (["limits"], None) => limits(&setting),
-        (["limits"], Some(control)) => control_loop::limits(&setting, control),
+        (["limits"], Some(control)) => loop_view::limits(&setting, control),
         (["map", x, values, y, value], _) => {
             let number = |text: &str| {
                 text.parse().map_err(|_| SettingError::Value {

@@ -48,6 +48,7 @@ mod replaced_file;
 #[cfg(unix)]
 mod report_folder;
 mod rollout;
+mod serve;
 mod simulate;
 mod stability;
 mod steps;
