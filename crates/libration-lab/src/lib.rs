@@ -4,6 +4,7 @@ mod claims_table;
 pub mod claims_without_study;
 mod live_page;
 pub mod output;
+mod report_check;
 pub mod results;
 mod results_comparison;
 mod run_manifest;
@@ -14,6 +15,7 @@ mod system_page;
 mod system_studies;
 mod unjudged_claims;
 
+pub use report_check::{CheckedStudy, ReportCheck};
 pub use results_comparison::{Change, ComparedResults, Condition, NOISE, ResultsComparison};
 pub use studies::STUDIES;
 pub use system_studies::{NotApplicable, SystemStudies};

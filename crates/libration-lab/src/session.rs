@@ -20,7 +20,7 @@ use crate::{claims_table, live_page};
 use libration_report::notation::{number, plural, seconds};
 use libration_report::report::Cover;
 use libration_report::{Record, figure, report};
-use libration_study::{Lab, Machine, Study};
+use libration_study::{Effort, Lab, Machine, Study};
 
 use crate::claims_without_study::CLAIMS_WITHOUT_STUDY;
 
@@ -190,10 +190,14 @@ fn cover(results: &Results, chapters: &[Chapter]) -> Cover {
     let Results { config, machine, .. } = results;
     let (spring, start) = (config.oscillator, config.start);
     let (subject, command) = match &results.system {
-        Some(system) => (system_page::subject(&system.summary), system.command.as_str()),
+        Some(system) => (system_page::subject(&system.summary), system.command.clone()),
         None => {
             let [m, k, q, v] = [spring.m, spring.k, start.q, start.v].map(|x| number(x, 6));
-            (format!("Oscillator, m = {m} kg, k = {k} N/m, from ({q}, {v})"), "libration lab")
+            let command = match config.effort {
+                Effort::Standard => "libration lab".to_owned(),
+                effort => format!("libration lab --effort {}", effort.name()),
+            };
+            (format!("Oscillator, m = {m} kg, k = {k} N/m, from ({q}, {v})"), command)
         }
     };
     let setting = format!(
@@ -214,7 +218,7 @@ fn cover(results: &Results, chapters: &[Chapter]) -> Cover {
     let system = results.system.as_ref();
     Cover {
         headline: system.map(|system| system.summary.name.clone()).unwrap_or_default(),
-        command: command.to_owned(),
+        command,
         setting,
         machine: host,
         complete: results.complete,

@@ -94,6 +94,15 @@ impl Registry {
         }
     }
 
+    /// Parses the configuration in `results.json`, which has all keys.
+    ///
+    /// # Errors
+    /// As [`parse`](Self::parse), without a position.
+    pub fn parse_json(&self, config: &Value) -> Result<Config, String> {
+        let text = toml::to_string(config).map_err(|error| error.to_string())?;
+        self.parse(&text, "results.json").map_err(|error| error.sentence())
+    }
+
     /// Returns the JSON schema of a configuration file.
     pub fn schema(&self) -> Value {
         let settings = SchemaSettings::draft2020_12().with(|s| s.inline_subschemas = true);

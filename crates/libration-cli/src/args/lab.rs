@@ -44,6 +44,9 @@ pub(crate) struct LabArgs {
     /// Instruction set of the kernels [default: that of the configuration, or LIBRATION_SIMD]
     #[arg(long, value_name = "SET", value_parser = simd::instruction_sets())]
     pub(crate) simd: Option<InstructionSet>,
+    /// Recompute one finding by its identifier and print it, without a report
+    #[arg(long, value_name = "FINDING", conflicts_with_all = ["studies", "all", "out", "open"])]
+    pub(crate) only: Option<String>,
     /// Open the report in the browser
     #[arg(long)]
     pub(crate) open: bool,
@@ -62,6 +65,7 @@ Examples:
   libration lab spectrum drift --out my-report
   libration lab --config mine.toml --effort thorough
   libration lab --system pendulum.toml --set length=0.5 --effort quick
+  libration lab --only stability.velocity-verlet.window-1-to
 
 The output folder contains report.html, results.json, figures/*.svg and data/*.parquet.
 During a run the files are in the subfolder libration-unfinished. At the end they replace the files

@@ -130,7 +130,7 @@ pub(crate) enum Command {
     Bodies(BodiesArgs),
     /// Write a data set of rollouts, or resume an interrupted one
     Rollout(RolloutArgs),
-    /// Check the files of a data set, recompute it or repair it
+    /// Check the files of a data set, recompute it or repair it; recompute a report
     Verify(VerifyArgs),
     /// Compare the findings of two runs of `lab`: what became worse, better, or differs
     Compare(CompareArgs),

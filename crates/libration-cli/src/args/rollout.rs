@@ -73,7 +73,7 @@ The settings determine every byte: a resumed data set equals one without interru
     group(ArgGroup::new("computing").args(["replay", "repair"]).multiple(true))
 )]
 pub(crate) struct VerifyArgs {
-    /// Folder of the data set
+    /// Folder of the data set, or of a report of `lab`: its studies are recomputed and all bits compared
     pub(crate) folder: PathBuf,
     /// Recompute the data set and compare all bits
     #[arg(long)]

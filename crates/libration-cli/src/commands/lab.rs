@@ -12,7 +12,7 @@ use libration_study::{Config, Lab};
 use libration_study_motion::Problem;
 
 use super::disagreements::check_findings;
-use super::equation_file;
+use super::{equation_file, finding};
 use crate::args::{LabArgs, simd};
 use crate::error::Failure;
 use crate::progress::Reporter;
@@ -27,6 +27,9 @@ pub(crate) fn run(args: &LabArgs, quiet: bool) -> Result<(), Failure> {
         return Ok(terminal::print(&format!("{:#}\n", STUDIES.schema()))?);
     }
     let config = configure(args)?;
+    if let Some(id) = &args.only {
+        return finding::run(id, args, config, quiet);
+    }
     let reporter = Reporter::new(quiet);
     let open = || Output::open(&args.out).map_err(|error| unwritable(&args.out, &error));
     let (results, output) = match &args.system {

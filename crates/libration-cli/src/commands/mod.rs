@@ -25,6 +25,7 @@ mod digits;
 mod disagreements;
 mod equation_file;
 mod equation_loop;
+mod finding;
 mod gains;
 mod identify;
 mod lab;
@@ -42,6 +43,7 @@ mod serve;
 mod simulate;
 mod temperature;
 mod time_stamps;
+mod verify_report;
 mod watched;
 
 use crate::args::{Arguments, Command};

@@ -11,8 +11,9 @@ use libration_env::dataset;
 use libration_env::dataset::{
     Dataset, DatasetError, EquationSource, Flaw, Monitor, VerifyOptions, WriteJob,
 };
+use libration_lab::ReportCheck;
 
-use super::config_file;
+use super::{config_file, verify_report};
 use crate::args::{RolloutArgs, VerifyArgs};
 use crate::error::{Failure, is_unusable};
 use crate::{interrupt, progress, terminal};
@@ -77,6 +78,14 @@ pub(crate) fn run(args: &RolloutArgs, quiet: bool) -> Result<(), Failure> {
 
 /// Checks a data set; recomputes all of it with `--replay`, and broken chunks with `--repair`.
 pub(crate) fn verify(args: &VerifyArgs, quiet: bool) -> Result<(), Failure> {
+    if ReportCheck::is_report(&args.folder) {
+        if args.replay || args.repair {
+            return Err(Failure::usage(
+                "--replay and --repair are for data sets; a report is always recomputed",
+            ));
+        }
+        return verify_report::run(&args.folder, quiet);
+    }
     let execution = if args.replay || args.repair { Some(threads(args.threads)?) } else { None };
     let how = VerifyOptions {
         replay: execution.as_ref().filter(|_| args.replay),

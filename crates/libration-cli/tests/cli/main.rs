@@ -45,6 +45,7 @@ mod probe_programs;
 mod readers;
 #[cfg(unix)]
 mod replaced_file;
+mod report_check;
 #[cfg(unix)]
 mod report_folder;
 mod rollout;

@@ -24,7 +24,7 @@ pub(super) fn render(chapter: &Chapter, command: &str) -> String {
     format!(
         "<section>\n<h2 id=\"{name}\">{title}</h2>\n<p class=\"q\">{question}</p>\n{blocks}\
          {findings}<p class=\"sub\">Recompute this chapter alone: <code>{command} \
-         {name}</code>{shown}</p>\n</section>\n",
+         {name}</code>; one finding: <code>{command} --only FINDING</code>{shown}</p>\n</section>\n",
         command = escape(command),
         title = render_html(&page.title),
         question = render_html(&record.question),

@@ -1,0 +1,57 @@
+//! `verify` of a report, and `lab --only`.
+
+use std::fs;
+
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::contains;
+use serde_json::Value;
+
+use super::advise::libration;
+
+#[test]
+fn verify_recomputes_a_report_and_names_what_differs() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let folder = out.to_str().unwrap();
+    libration(&["lab", "spectrum", "drift", "--effort", "quick", "--out", folder]).success();
+    libration(&["verify", folder])
+        .success()
+        .stdout(contains("spectrum: ").and(contains("drift: ")).and(contains("same bits")));
+    let file = out.join("results.json");
+    let mut results: Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
+    let measured = &mut results["studies"][1]["findings"][0]["measured"];
+    // One unit in the last place.
+    let other = f64::from_bits(measured.as_f64().unwrap().to_bits() + 1);
+    *measured = other.into();
+    let id = results["studies"][1]["findings"][0]["id"].as_str().unwrap().to_owned();
+    fs::write(&file, results.to_string()).unwrap();
+    let series = results["studies"][1]["data"][0]["file"].as_str().unwrap().to_owned();
+    let mut bytes = fs::read(out.join(&series)).unwrap();
+    bytes[40] ^= 1;
+    fs::write(out.join(&series), bytes).unwrap();
+    libration(&["verify", folder])
+        .code(1)
+        .stdout(contains("2 differences"))
+        .stderr(contains(format!("the finding `{id}` differs: measured {other:?}, recomputed")))
+        .stderr(contains(format!("the file `{series}` differs")));
+    libration(&["verify", folder, "--repair"]).code(2);
+    fs::write(&file, "{}").unwrap();
+    libration(&["verify", folder]).code(2).stderr(contains("results.json`: missing field"));
+}
+
+#[test]
+fn only_recomputes_one_finding_with_all_digits_and_writes_no_report() {
+    let folder = tempfile::tempdir().unwrap();
+    let lab = |id: &str| {
+        let mut command = assert_cmd::Command::cargo_bin("libration").unwrap();
+        command.current_dir(&folder).args(["lab", "--effort", "quick", "--only", id]).assert()
+    };
+    lab("stability.velocity-verlet.window-1-to")
+        .success()
+        .stdout(contains("predicted  2.0\n").and(contains("verdict    agrees\n")));
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
+    lab("stability.velocity-verlet.window-1")
+        .code(2)
+        .stderr(contains("did you mean `stability.velocity-verlet.window-1-to`?"));
+    lab("stabilty.x").code(2).stderr(contains("did you mean `stability`?"));
+}
