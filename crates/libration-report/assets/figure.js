@@ -3,13 +3,16 @@
   "use strict";
   let ready;
 
-  // Plotly travels in the page, packed, and is unpacked once.
+  // The text of an element that holds it compressed, in base64.
+  const decompressed = (id, format) => {
+    const bytes = Uint8Array.from(atob(document.getElementById(id).textContent), (c) => c.charCodeAt(0));
+    return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream(format))).text();
+  };
+
+  // Plotly is part of the page and is decompressed once.
   const plotly = () => (ready ??= (async () => {
-    const packed = document.getElementById("plotly").textContent.trim();
-    const bytes = Uint8Array.from(atob(packed), (c) => c.charCodeAt(0));
-    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
     const script = document.createElement("script");
-    script.textContent = await new Response(stream).text();
+    script.textContent = await decompressed("plotly", "gzip");
     document.head.append(script);
     return globalThis.Plotly;
   })());
@@ -93,18 +96,17 @@
       }
     }
 
-    source() {
-      const id = `data-${this.element.dataset.figure}`;
-      return JSON.parse(document.getElementById(id).textContent);
+    // The description, which is decompressed once.
+    async load() {
+      this.source ??= JSON.parse(await decompressed(`data-${this.element.dataset.figure}`, "deflate"));
     }
 
     // The drawing as wide as the SVG that it covers.
     drawing() {
       const { width } = this.svg.getBoundingClientRect();
       this.width = width;
-      const source = this.source();
-      const scale = width / source.layout.width;
-      const { data, layout } = resolved(source, scale);
+      const scale = width / this.source.layout.width;
+      const { data, layout } = resolved(this.source, scale);
       return { data, layout };
     }
 
@@ -114,7 +116,7 @@
 
     async enter() {
       this.toggle.disabled = true;
-      const Plotly = await plotly();
+      const [Plotly] = await Promise.all([plotly(), this.load()]);
       const live = document.createElement("div");
       live.className = "live";
       live.tabIndex = 0;

@@ -22,12 +22,15 @@ fn figures(page: &mut Page) -> Vec<String> {
 /// and its name.
 fn kinds(page: &mut Page) -> Vec<(usize, String)> {
     let kinds = page.texts(
-        "[...document.querySelectorAll('figure[data-figure]')].map((figure) => {
-           const { data, layout } = JSON.parse(figure.querySelector('script').textContent);
+        "Promise.all([...document.querySelectorAll('figure[data-figure]')].map(async (figure) => {
+           const packed = atob(figure.querySelector('script').textContent);
+           const bytes = new Blob([Uint8Array.from(packed, (c) => c.charCodeAt(0))]);
+           const text = bytes.stream().pipeThrough(new DecompressionStream('deflate'));
+           const { data, layout } = await new Response(text).json();
            const axes = Object.keys(layout).filter((key) => /axis/.test(key));
            const types = [...data.map((t) => t.type), ...axes.map((key) => key[0] + layout[key].type)];
            return [...new Set(types)].sort().join() + (axes.length > 2);
-         })",
+         }))",
     );
     let first = |i: &usize| !kinds[..*i].contains(&kinds[*i]);
     let found: Vec<_> = figures(page).into_iter().enumerate().filter(|(i, _)| first(i)).collect();

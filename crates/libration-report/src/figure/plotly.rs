@@ -1,6 +1,7 @@
 //! Figures for Plotly.js, from the same layout.
 
 mod annotation;
+mod rounding;
 mod shape;
 mod trace;
 

@@ -2,8 +2,9 @@
 
 use serde_json::{Value, json};
 
+use super::rounding::{PLACE_DIGITS, VALUE_DIGITS, place, rounded, shade};
 use super::{Number, color, dash};
-use crate::figure::axis::Scale;
+use crate::figure::axis::{Scale, Span};
 use crate::figure::color::ColorMap;
 use crate::figure::layout::{ColorBar, PanelLayout};
 use crate::figure::mark::{Mark, Shape};
@@ -14,8 +15,8 @@ use crate::figure::ticks::Tick;
 use crate::text;
 
 /// A list in which what has no place on the axis is `null`.
-fn values(values: &[f64], scale: Scale) -> Vec<Option<f64>> {
-    values.iter().map(|&v| scale.of(v).is_finite().then_some(v)).collect()
+fn places(values: &[f64], span: &Span) -> Vec<Option<f64>> {
+    values.iter().map(|&v| span.scale.of(v).is_finite().then(|| place(v, span))).collect()
 }
 
 /// The traces of a mark.
@@ -27,7 +28,7 @@ pub(super) fn traces(
     data: &mut Vec<Value>,
 ) {
     let panel = placed.panel;
-    let (xs, ys) = (panel.x.scale, panel.y.scale);
+    let (xs, ys) = (&placed.frame.x.span, &placed.frame.y.span);
     let base = |kind: &str| {
         json!({"type": kind, "xaxis": n.key("x"), "yaxis": n.key("y"),
             "name": mark.label.as_deref().map(text::html).unwrap_or_default(),
@@ -39,8 +40,8 @@ pub(super) fn traces(
         Shape::Line { x, y } => {
             let mut trace = base("scatter");
             trace["mode"] = "lines".into();
-            trace["x"] = json!(values(x, xs));
-            trace["y"] = json!(values(y, ys));
+            trace["x"] = json!(places(x, xs));
+            trace["y"] = json!(places(y, ys));
             trace["line"] = line(&color);
             data.push(trace);
         }
@@ -48,16 +49,16 @@ pub(super) fn traces(
             let mut trace = base("scatter");
             trace["mode"] = "markers".into();
             trace["cliponaxis"] = false.into();
-            trace["x"] = json!(values(x, xs));
-            trace["y"] = json!(values(y, ys));
+            trace["x"] = json!(places(x, xs));
+            trace["y"] = json!(places(y, ys));
             trace["marker"] = marker(&mark.style, &color);
             data.push(trace);
         }
         Shape::Envelope(e) => {
             let shown = |i: usize| {
-                xs.of(e.x[i]).is_finite()
-                    && ys.of(e.low[i]).is_finite()
-                    && ys.of(e.high[i]).is_finite()
+                xs.scale.of(e.x[i]).is_finite()
+                    && ys.scale.of(e.low[i]).is_finite()
+                    && ys.scale.of(e.high[i]).is_finite()
             };
             for run in runs(e.x.len().min(e.low.len()).min(e.high.len()), shown) {
                 let around = |there: &[f64], back: &[f64]| -> Vec<f64> {
@@ -69,20 +70,20 @@ pub(super) fn traces(
                 };
                 data.push(area(
                     base("scatter"),
-                    &around(&e.x, &e.x),
-                    &around(&e.high, &e.low),
+                    [&around(&e.x, &e.x), &around(&e.high, &e.low)],
+                    [xs, ys],
                     mark,
                 ));
             }
         }
-        Shape::Region { x, y } => data.push(area(base("scatter"), x, y, mark)),
+        Shape::Region { x, y } => data.push(area(base("scatter"), [x, y], [xs, ys], mark)),
         Shape::Contour { grid, levels } => {
             for &level in levels {
                 for corners in contour(grid, level, &placed.frame) {
                     let mut trace = base("scatter");
                     trace["mode"] = "lines".into();
-                    trace["x"] = corners.iter().map(|p| p[0]).collect();
-                    trace["y"] = corners.iter().map(|p| p[1]).collect();
+                    trace["x"] = corners.iter().map(|p| place(p[0], xs)).collect();
+                    trace["y"] = corners.iter().map(|p| place(p[1], ys)).collect();
                     trace["line"] = line(&color);
                     trace["name"] = format!("{level}").into();
                     data.push(trace);
@@ -92,13 +93,22 @@ pub(super) fn traces(
         Shape::Raster { grid, .. } => {
             let Some(bar) = &placed.bar else { return };
             let mut trace = base("heatmap");
-            trace["x"] = json!(edges(&grid.x, xs));
-            trace["y"] = json!(edges(&grid.y, ys));
-            let shade = |&z: &f64| Some(bar.ruler.span.scale.of(z)).filter(|z| z.is_finite());
-            let row = |row: &[f64]| row.iter().map(shade).collect::<Vec<_>>();
-            let rows = || grid.z.chunks(grid.x.len().max(1));
-            trace["z"] = json!(rows().map(row).collect::<Vec<_>>());
-            trace["customdata"] = json!(rows().collect::<Vec<_>>());
+            trace["x"] = json!(places(&edges(&grid.x, xs.scale), xs));
+            trace["y"] = json!(places(&edges(&grid.y, ys.scale), ys));
+            let colors = bar.ruler.span;
+            let rows = |of: &dyn Fn(f64) -> f64| -> Value {
+                let finite = |&z: &f64| Some(of(z)).filter(|z| z.is_finite());
+                let row = |row: &[f64]| row.iter().map(finite).collect::<Vec<_>>();
+                grid.z.chunks(grid.x.len().max(1)).map(row).collect()
+            };
+            match colors.scale {
+                Scale::Linear => trace["z"] = rows(&|z| shade(z, &colors, VALUE_DIGITS)),
+                // Colours follow logarithms; the text beside the pointer shows values.
+                Scale::Log => {
+                    trace["z"] = rows(&|z| shade(colors.scale.of(z), &colors, 1));
+                    trace["customdata"] = rows(&|z| rounded(z, f64::INFINITY, VALUE_DIGITS));
+                }
+            }
             trace["colorscale"] = colorscale(bar.colors.map);
             trace["zmin"] = bar.ruler.span.low.into();
             trace["zmax"] = bar.ruler.span.high.into();
@@ -134,10 +144,13 @@ fn hover(mark: &Mark, x: String, y: String) -> String {
     let (x, y) = (text::html(&x), text::html(&y));
     match &mark.shape {
         Shape::Raster { colors, .. } => format!(
-            "{x}: %{{x:.6~g}}<br>{y}: %{{y:.6~g}}<br>{}: %{{customdata:.7~g}}<extra></extra>",
-            text::html(&colors.title())
+            "{x}: %{{x:.6~g}}<br>{y}: %{{y:.6~g}}<br>{}: %{{{}:.{VALUE_DIGITS}~g}}<extra></extra>",
+            text::html(&colors.title()),
+            if colors.scale == Scale::Log { "customdata" } else { "z" },
         ),
-        _ => format!("{name}{x}: %{{x:.8~g}}<br>{y}: %{{y:.8~g}}<extra></extra>"),
+        _ => format!(
+            "{name}{x}: %{{x:.{PLACE_DIGITS}~g}}<br>{y}: %{{y:.{PLACE_DIGITS}~g}}<extra></extra>"
+        ),
     }
 }
 
@@ -161,17 +174,18 @@ fn marker(style: &Style, color: &str) -> Value {
         "line": {"color": color, "width": width}})
 }
 
-fn area(mut trace: Value, x: &[f64], y: &[f64], mark: &Mark) -> Value {
+fn area(mut trace: Value, [x, y]: [&[f64]; 2], [xs, ys]: [&Span; 2], mark: &Mark) -> Value {
     let color = color(&mark.style);
-    let closed =
-        |values: &[f64]| -> Vec<f64> { values.iter().chain(values.first()).copied().collect() };
+    let closed = |values: &[f64], span: &Span| -> Vec<f64> {
+        values.iter().chain(values.first()).map(|&v| place(v, span)).collect()
+    };
     trace["mode"] = "lines".into();
     trace["fill"] = "toself".into();
     trace["hoveron"] = "points".into();
     trace["fillcolor"] = format!("{color}/0.16").into();
     trace["line"] = json!({"color": color, "width": mark.style.width, "simplify": false});
-    trace["x"] = closed(x).into();
-    trace["y"] = closed(y).into();
+    trace["x"] = closed(x, xs).into();
+    trace["y"] = closed(y, ys).into();
     trace
 }
 
