@@ -2,12 +2,12 @@
 
 use libration::control::{Clock, Controller};
 use libration::ensemble::{All, Loops, Setup};
-use libration::system::{BaselineOnly, Oscillator};
-use libration::{Integrator, State};
+use libration::{Integrator, State, System};
 use libration_study::{Lab, StudyError};
 
-/// A loop of an oscillator. These studies are short, and have many kinds of loops.
-pub(super) type Loop<M, K, C> = Setup<All<BaselineOnly<Oscillator<f64>>>, M, K, C>;
+/// A loop of an oscillator. Most are short, and there are many kinds of them: wrap the oscillator in `BaselineOnly`, except in
+/// those that take millions of steps.
+pub(super) type Loop<Sys, M, K, C> = Setup<All<Sys>, M, K, C>;
 
 /// The states of all loops after some steps.
 pub(super) struct Snapshot {
@@ -31,13 +31,19 @@ const LARGE: f64 = 200.0;
 ///
 /// States that become large are divided by their size and begin anew, as long as they grow by no more than [`FASTEST`]:
 /// clocks that remember are not for loops that grow by e²⁰⁰.
-pub(super) fn run_snapshots<M: Integrator, K: Controller<f64, 1>, C: Clock<f64>>(
+pub(super) fn run_snapshots<Sys, M, K, C>(
     lab: &Lab<'_>,
-    setup: Loop<M, K, C>,
+    setup: Loop<Sys, M, K, C>,
     (dt, seed): (f64, u64),
     starts: &[State<f64, 1>],
     at: &[u64],
-) -> Result<Vec<Snapshot>, StudyError> {
+) -> Result<Vec<Snapshot>, StudyError>
+where
+    Sys: System<f64, 1> + Copy + Send + Sync,
+    M: Integrator,
+    K: Controller<f64, 1>,
+    C: Clock<f64>,
+{
     let mut loops = Loops::new(setup, dt, seed, [0.0], starts, lab.alone()?)?;
     let mut scales = vec![0.0; starts.len()];
     let mut seen = Vec::with_capacity(at.len());

@@ -77,27 +77,10 @@ const METHODS: [Method; 3] = [Method::SymplecticEuler, Method::VelocityVerlet, M
 /// The seed of all that is random here; another gives other numbers within the same errors.
 const SEED: u64 = 7;
 
-/// `$body` with one of [`METHODS`] bound to `$m`.
-macro_rules! with_jittered {
-    ($method:expr, |$m:ident| $body:expr) => {
-        match $method {
-            libration::Method::SymplecticEuler => {
-                let $m = libration::integrator::SymplecticEuler;
-                $body
-            }
-            libration::Method::VelocityVerlet => {
-                let $m = libration::integrator::VelocityVerlet;
-                $body
-            }
-            _ => {
-                let $m = libration::integrator::Rk4;
-                $body
-            }
-        }
-    };
-}
-
 /// Runs free trajectories of a setting under Gaussian jitter.
+///
+/// Loops of the symplectic methods are compiled for all instruction sets: they take most of the steps of the study. RK4
+/// runs with few settings.
 fn free(
     lab: &Lab<'_>,
     setting: &setting::Setting,
@@ -105,16 +88,77 @@ fn free(
     starts: &[libration::State<f64, 1>],
     at: &[u64],
 ) -> Result<Vec<super::loop_ensemble::Snapshot>, StudyError> {
+    use super::loop_ensemble::run_snapshots;
     use libration::control::clock::{Gaussian, Jittered};
     use libration::ensemble::{All, Setup};
+    use libration::integrator::{Rk4, SymplecticEuler, VelocityVerlet};
     use libration::system::BaselineOnly;
-    with_jittered!(setting.method, |m| {
-        let setup = Setup::new(All(BaselineOnly(model)), m).clock(Jittered(Gaussian(setting.rms)));
-        super::loop_ensemble::run_snapshots(lab, setup, (setting.dt, SEED), starts, at)
-    })
+
+    let (clock, steps) = (Jittered(Gaussian(setting.rms)), (setting.dt, SEED));
+    match setting.method {
+        Method::SymplecticEuler => {
+            let setup = Setup::new(All(model), SymplecticEuler).clock(clock);
+            run_snapshots(lab, setup, steps, starts, at)
+        }
+        Method::VelocityVerlet => {
+            let setup = Setup::new(All(model), VelocityVerlet).clock(clock);
+            run_snapshots(lab, setup, steps, starts, at)
+        }
+        _ => {
+            let setup = Setup::new(All(BaselineOnly(model)), Rk4).clock(clock);
+            run_snapshots(lab, setup, steps, starts, at)
+        }
+    }
 }
 
 /// The start of the configuration.
 fn start(lab: &Lab<'_>) -> libration::State<f64, 1> {
     libration::State { q: [lab.config.start.q], v: [lab.config.start.v] }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::AtomicBool;
+
+    use libration::control::clock::{Gaussian, Jittered};
+    use libration::ensemble::{All, InstructionSet, Setup};
+    use libration::integrator::{SymplecticEuler, VelocityVerlet};
+    use libration::system::{BaselineOnly, Oscillator};
+    use libration::{Integrator, State};
+    use libration_study::{Config, Effort, Silent};
+
+    use super::*;
+    use crate::loop_ensemble::{Snapshot, run_snapshots};
+
+    const MODEL: Oscillator<f64> = Oscillator { omega2: 10.0 };
+    const START: State<f64, 1> = State { q: [1.0], v: [0.25] };
+
+    fn bits(seen: &[Snapshot]) -> Vec<[u64; 2]> {
+        let states = seen.iter().flat_map(|s| s.directions());
+        states.map(|s| [s.q[0].to_bits(), s.v[0].to_bits()]).collect()
+    }
+
+    fn baseline(lab: &Lab<'_>, setting: &setting::Setting, m: impl Integrator) -> Vec<Snapshot> {
+        let clock = Jittered(Gaussian(setting.rms));
+        let setup = Setup::new(All(BaselineOnly(MODEL)), m).clock(clock);
+        run_snapshots(lab, setup, (setting.dt, SEED), &[START; 70], &[1, 300]).unwrap()
+    }
+
+    #[test]
+    fn free_loops_have_the_bits_of_the_baseline_with_each_instruction_set() {
+        let stop = AtomicBool::new(false);
+        for set in InstructionSet::available() {
+            let config = Config::new(Effort::Quick, Some(set));
+            let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
+            for method in [Method::SymplecticEuler, Method::VelocityVerlet] {
+                let setting = setting::Setting { method, model: MODEL, dt: 0.1, rms: 0.1 };
+                let found = free(&lab, &setting, MODEL, &[START; 70], &[1, 300]).unwrap();
+                let wanted = match method {
+                    Method::SymplecticEuler => baseline(&lab, &setting, SymplecticEuler),
+                    _ => baseline(&lab, &setting, VelocityVerlet),
+                };
+                assert_eq!(bits(&found), bits(&wanted), "{} on {}", method.name(), set.name());
+            }
+        }
+    }
 }
