@@ -9,6 +9,9 @@ use super::UpdateMatrix;
 /// spiral has its largest energy in its last turn.
 const LAST_TURN: u64 = 64;
 
+/// Part by which a drift in double-double exceeds a limit that the exact drift then exceeds too.
+const CLEARLY: f64 = 1e-6;
+
 /// The largest relative energy drift of an orbit.
 #[derive(Clone, Copy, Debug)]
 pub struct DriftForecast {
@@ -37,9 +40,33 @@ pub fn forecast_drift<const D: usize>(
     start: &State<f64, D>,
     steps: u64,
 ) -> Option<DriftForecast> {
+    forecast(model, step, start, steps, f64::INFINITY)
+}
+
+/// Whether the largest relative energy drift of [`forecast_drift`] is at most `limit`. The search stops at the first step that is
+/// clearly beyond it. None where the initial energy is zero.
+pub fn drift_keeps_within<const D: usize>(
+    model: impl Model<D>,
+    step: &UpdateMatrix<Wide, D>,
+    start: &State<f64, D>,
+    steps: u64,
+    limit: f64,
+) -> Option<bool> {
+    let forecast = forecast(model, step, start, steps, limit * (1.0 + CLEARLY))?;
+    Some(forecast.drift.to_f64() <= limit)
+}
+
+/// The forecast, or one of a step at which the drift exceeds `enough`.
+fn forecast<const D: usize>(
+    model: impl Model<D>,
+    step: &UpdateMatrix<Wide, D>,
+    start: &State<f64, D>,
+    steps: u64,
+    enough: f64,
+) -> Option<DriftForecast> {
     let drift = exact_drift(model, step, start)?;
     let searched = steps.min(DriftForecast::SEARCHED);
-    let (found, covered) = search(model, step, start, searched);
+    let (found, covered) = search(model, step, start, searched, enough);
     let tail = if covered < searched { LAST_TURN } else { 1 };
     let forecast = |n| DriftForecast { drift: drift(n), at_step: n };
     let mut best = forecast(found);
@@ -57,7 +84,7 @@ pub fn forecast_drift<const D: usize>(
     // Orbits so slow that the search saw but a part of a turn.
     let stride = steps.div_ceil(DriftForecast::SEARCHED);
     if stride > 1 {
-        let (far, _) = search(model, &step.power(stride), start, steps / stride);
+        let (far, _) = search(model, &step.power(stride), start, steps / stride, enough);
         let mut at = far * stride;
         consider(at);
         let mut reach = stride;
@@ -91,17 +118,19 @@ fn exact_drift<const D: usize>(
     (!initial.is_zero()).then_some(drift)
 }
 
-/// The step of the largest drift in double-double, and how many steps stayed finite.
+/// The step of the largest drift in double-double, or the first above `enough`, and how many steps stayed finite.
 fn search<const D: usize>(
     model: impl Model<D>,
     step: &UpdateMatrix<Wide, D>,
     start: &State<f64, D>,
     steps: u64,
+    enough: f64,
 ) -> (u64, u64) {
     let system = model.on::<TwoFloat>();
     let step = step.map(TwoFloat::from);
     let mut state = start.map(TwoFloat::from_f64);
     let initial = system.energy(&state);
+    let enough = initial.abs().hi() * enough;
     let (mut largest, mut at_step) = (TwoFloat::zero(), 0);
     for n in 1..=steps {
         state = step.apply(&state);
@@ -111,6 +140,9 @@ fn search<const D: usize>(
         }
         if drift > largest {
             (largest, at_step) = (drift, n);
+            if drift.hi() > enough {
+                return (n, steps);
+            }
         }
     }
     (at_step, steps)

@@ -45,7 +45,7 @@ mod update_matrix;
 
 pub use complex::Complex;
 pub use data_flow::{DataFlow, Operation};
-pub use drift_forecast::{DriftForecast, forecast_drift};
+pub use drift_forecast::{DriftForecast, drift_keeps_within, forecast_drift};
 pub use eigenvalues::{determinant, eigenvalues};
 pub use energy_band::EnergyBand;
 pub use equilibrium::{Equilibrium, jacobian, rate_derivative};

@@ -56,7 +56,7 @@ impl<S: Scalar, const D: usize> UpdateMatrix<S, D> {
     }
 
     /// The image of `state`.
-    #[inline]
+    #[inline(always)]
     pub fn apply(&self, state: &State<S, D>) -> State<S, D> {
         // Plain loops: a fold over chained iterators is not inlined.
         let mut image = State::origin();

@@ -1,6 +1,6 @@
 //! Coverage of an invariant curve by a discrete orbit.
 
-use libration::analysis::{EnergyBand, Linearisation, forecast_drift};
+use libration::analysis::{EnergyBand, Linearisation, drift_keeps_within, forecast_drift};
 use libration::system::Oscillator;
 use libration::{Method, State};
 
@@ -37,8 +37,7 @@ pub(super) fn slack(
     let beyond = |i: u32| FURTHEST * (f64::from(i) / f64::from(LOOKS)).powi(2);
     let keeps = |z: f64| {
         let step = Linearisation::new(method, unit, start, z).step;
-        forecast_drift(unit, &step, start, steps.min(ENOUGH))
-            .is_some_and(|forecast| forecast.drift.to_f64() <= tolerance)
+        drift_keeps_within(unit, &step, start, steps.min(ENOUGH), tolerance) == Some(true)
     };
     // A search ends just where the criterion fails.
     let there = if keeps(ended * (1.0 - 1e-6)) { ended / z - 1.0 } else { 0.0 };

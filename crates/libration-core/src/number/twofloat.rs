@@ -235,6 +235,11 @@ impl Scalar for TwoFloat {
 
     #[inline(always)]
     fn ratio(self, num: i32, den: i32) -> Self {
+        if num == 1 && den.is_positive() && den.count_ones() == 1 {
+            // Both parts are scaled without rounding.
+            let part = 1.0 / f64::from(den);
+            return TwoFloat { hi: self.hi * part, lo: self.lo * part };
+        }
         self.times_f64(num.into()).over(TwoFloat::constant(den.into()))
     }
 }

@@ -3,7 +3,9 @@
 //! `../reference/oracle.json` was computed with mpmath from textbook matrices; its time steps are the
 //! decimals written, ours the nearest doubles, which differ by at most a part in 10¹⁶.
 
-use libration::analysis::{Linearisation, Spectrum, SymbolicStep, forecast_drift};
+use libration::analysis::{
+    Linearisation, Spectrum, SymbolicStep, drift_keeps_within, forecast_drift,
+};
 use libration::number::Wide;
 use libration::system::Oscillator;
 use libration::{Elementary, Method, Scalar, State, with_method};
@@ -112,6 +114,26 @@ fn drifts_over_a_million_steps_meet_the_oracle_even_where_they_exceed_every_floa
             close(got.drift.to_f64(), number(&Value::from(text)), label);
         }
     });
+}
+
+#[test]
+fn a_drift_keeps_within_a_limit_exactly_where_its_forecast_does() {
+    let model = Oscillator { omega2: 1.0 };
+    for method in [Method::ExplicitEuler, Method::SymplecticEuler, Method::VelocityVerlet] {
+        for dt in [1e-3, 0.1, 1.3, 2.5] {
+            let step = linearise(method, 1.0, dt).step;
+            let drift = forecast_drift(model, &step, &START, 10_000).unwrap().drift.to_f64();
+            for part in [1e-3, 0.5, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 2.0] {
+                let limit = drift * part;
+                let keeps = drift_keeps_within(model, &step, &START, 10_000, limit);
+                let label = format!("{}, dt = {dt}, {part} of the drift", method.name());
+                assert_eq!(keeps, Some(drift <= limit), "{label}");
+            }
+        }
+    }
+    let step = linearise(Method::VelocityVerlet, 1.0, 0.1).step;
+    let rest = State { q: [0.0], v: [0.0] };
+    assert_eq!(drift_keeps_within(model, &step, &rest, 10, 1.0), None, "no energy at the start");
 }
 
 #[test]

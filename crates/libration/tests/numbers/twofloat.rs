@@ -41,6 +41,14 @@ proptest! {
     }
 
     #[test]
+    fn a_power_of_two_divides_exactly_as_a_quotient_does(a in twofloat(), exponent in 0..31_u32) {
+        let den = (1_i64 << exponent).min(1 << 30) as i32;
+        let part = a.ratio(1, den);
+        prop_assert_eq!(Wide::from(part), Wide::from(a).scaled(-i64::from(exponent.min(30))));
+        prop_assert_eq!(part, a / TwoFloat::from_f64(den.into()));
+    }
+
+    #[test]
     fn sums_that_cancel_stay_accurate(a in twofloat(), scale in -3.0..3.0_f64, k in 20..110_i32) {
         // b is close to −a: what is left is small, and still right to 3u².
         let b = -(a * TwoFloat::from_sum(1.0, scale * exp2(-k)));
