@@ -2,10 +2,6 @@
 
 use std::collections::HashSet;
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use miniz_oxide::inflate::decompress_to_vec_zlib;
-
 use super::layout::FigureLayout;
 use super::mark_geometry::MarkGeometry;
 use super::sizes::WIDTH;
@@ -160,55 +156,6 @@ fn svg_is_well_formed_whatever_the_words() {
             title.and_then(|node| node.text()).is_some_and(|text| text.contains("a < b & \"c\""))
         );
     }
-}
-
-/// The description of the interactive figure, as the script of the page reads it.
-fn embedded(html: &str) -> serde_json::Value {
-    let data = html.split("id=\"data-fig-1\">").nth(1).unwrap().split("</script>").next().unwrap();
-    let bytes = STANDARD.decode(data).expect("base64");
-    let text = decompress_to_vec_zlib(&bytes).expect("the format `deflate` of browsers");
-    serde_json::from_slice(&text).expect("JSON")
-}
-
-#[test]
-fn a_closing_tag_in_the_words_is_harmless() {
-    let html = embed(&busy());
-    assert_eq!(html.matches("</script").count(), 1, "only the end of the data");
-    assert_eq!(embedded(&html)["data"][0]["name"], plotly(&busy())["data"][0]["name"]);
-    assert!(html.contains("<b>Figure 9.1 — a &lt; b"));
-}
-
-#[test]
-fn the_data_of_a_figure_are_embedded_whole_in_two_thirds_of_their_size() {
-    let x: Vec<f64> = (0..2000).map(|i| f64::from(i) / 1000.0).collect();
-    let y: Vec<f64> = x.iter().map(|x| (7.0 * x).sin()).collect();
-    let drawn = figure(Panel::new(Axis::linear("t"), Axis::linear("y")).mark(Mark::line(x, y)));
-    let (html, whole) = (embed(&drawn), plotly(&drawn));
-    assert_eq!(embedded(&html), whole);
-    let rest = embed(&figure(Panel::new(Axis::linear("t"), Axis::linear("y")))).len();
-    assert!(html.len() - rest < whole.to_string().len() * 2 / 3, "{} bytes", html.len());
-}
-
-#[test]
-fn a_raster_has_its_values_once_and_on_a_logarithmic_scale_beside_their_logarithms() {
-    let raster = |log: bool| {
-        let grid =
-            Grid::sample(
-                [1.0, 2.0],
-                [1.0, 2.0],
-                |x, y| if x * y > 3.0 { 0.0 } else { x * y / 3.0 },
-            );
-        let colors = if log { Colors::new("z").log() } else { Colors::new("z") };
-        let panel = Panel::new(Axis::linear("x"), Axis::linear("y"));
-        plotly(&figure(panel.mark(Mark::raster(grid, colors))))["data"][0].clone()
-    };
-    let linear = raster(false);
-    assert!(linear["customdata"].is_null() && linear["z"][0][1] == 0.6666667);
-    assert!(linear["hovertemplate"].as_str().unwrap().contains("%{z:.7~g}"));
-    let log = raster(true);
-    assert!(log["customdata"][0][1] == 0.6666667 && log["z"][1][1].is_null());
-    assert!((log["z"][0][1].as_f64().unwrap() - (2.0_f64 / 3.0).log10()).abs() < 1e-4);
-    assert!(log["hovertemplate"].as_str().unwrap().contains("%{customdata:.7~g}"));
 }
 
 #[test]

@@ -208,3 +208,26 @@ fn colorbar(bar: &ColorBar<'_>, height: f64) -> Value {
         "tickfont": {"size": SMALL, "color": "var(--soft)"},
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::figure::{Axis, Colors, Figure, Grid, Mark, Panel, plotly};
+
+    #[test]
+    fn a_raster_has_its_values_once_and_on_a_logarithmic_scale_beside_their_logarithms() {
+        let raster = |colors: Colors| {
+            let value = |x: f64, y: f64| if x * y > 3.0 { 0.0 } else { x * y / 3.0 };
+            let grid = Grid::sample([1.0, 2.0], [1.0, 2.0], value);
+            let panel = Panel::new(Axis::linear("x"), Axis::linear("y"));
+            let figure = Figure::new("x", "").panel(panel.mark(Mark::raster(grid, colors)));
+            plotly(&figure)["data"][0].clone()
+        };
+        let linear = raster(Colors::new("z"));
+        assert!(linear["customdata"].is_null() && linear["z"][0][1] == 0.6666667);
+        assert!(linear["hovertemplate"].as_str().unwrap().contains("%{z:.7~g}"));
+        let log = raster(Colors::new("z").log());
+        assert!(log["customdata"][0][1] == 0.6666667 && log["z"][1][1].is_null());
+        assert!((log["z"][0][1].as_f64().unwrap() - (2.0_f64 / 3.0).log10()).abs() < 1e-4);
+        assert!(log["hovertemplate"].as_str().unwrap().contains("%{customdata:.7~g}"));
+    }
+}
