@@ -16,6 +16,8 @@ mod deadline_misses;
 mod durations;
 mod equations;
 mod exit_codes;
+#[cfg(unix)]
+mod first_hour;
 mod forces;
 mod identify;
 mod implicit;
