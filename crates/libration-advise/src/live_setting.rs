@@ -66,6 +66,11 @@ pub(super) fn of_advice(advice: &Advice) -> Vec<LiveSetting> {
     shown(&setting)
 }
 
+/// Why a page about a loop has no live section.
+pub(super) const NO_LIVE_SECTION: &str = "This page cannot run the loop itself: a live section requires feedback of all states around an equilibrium without commands, the \
+     same latency for all commands and none for measurements, and jitter that is Gaussian with an rms of at most 1/3. `libration serve` \
+     shows the system with such a loop.";
+
 /// The list of one setting.
 pub(super) fn shown(setting: &Setting) -> Vec<LiveSetting> {
     vec![LiveSetting { title: setting.system.clone(), text: setting.to_string() }]

@@ -18,6 +18,9 @@ pub fn page(advice: &Advice) -> String {
         Page { title: "Budget of a simulation or a control loop".into(), ..Page::default() };
     page.answer.clone_from(&advice.answer);
     page.live = live_setting::of_advice(advice);
+    if page.live.is_empty() {
+        page.note(live_setting::NO_LIVE_SECTION);
+    }
     for warning in &advice.warnings {
         page.note(format!("Warning: {warning}."));
     }

@@ -16,6 +16,9 @@ use crate::subject::{Point, Stepper, Subject, is_finite};
 /// The longest latency, in periods.
 pub(crate) const MOST_LATENCY: u64 = 64;
 
+/// The most steps in a period.
+const MOST_STEPS: f64 = 2000.0;
+
 /// The most points of a curve.
 const POINTS: usize = 3000;
 
@@ -64,10 +67,12 @@ impl<'a> ControlLoop<'a> {
             refused(format!("gain = {rows} × {columns}; expected {m} × {n}, inputs × states"))
         })?;
         let gain = gain.scaled(control.gain_factor);
-        let latency = Latency::of_seconds(control.latency, control.period)
+        // A slow clock has fewer periods per second.
+        let mean_period = control.period * (1.0 + control.skew);
+        let latency = Latency::of_seconds(control.latency, mean_period)
             .filter(|latency| latency.steps() <= MOST_LATENCY as f64)
             .ok_or_else(|| {
-                let most = MOST_LATENCY as f64 * control.period;
+                let most = MOST_LATENCY as f64 * mean_period;
                 let given = control.latency;
                 refused(format!(
                     "latency = {given} s; expected at most {MOST_LATENCY} periods, {most} s"
@@ -78,7 +83,16 @@ impl<'a> ControlLoop<'a> {
         let linear =
             LinearLoop::new(subject.plant(&point)?, controller, control.period, cost, vec![0.0; n])
                 .map_err(|error| refused(error.to_string()))?;
-        Ok(ControlLoop { subject, point, control: control.clone(), gain, latency, dt, linear })
+        let own =
+            ControlLoop { subject, point, control: control.clone(), gain, latency, dt, linear };
+        let steps: f64 = own.steps().iter().sum();
+        if steps > MOST_STEPS {
+            let why = format!(
+                "dt = {dt} s: {steps:.0} steps in a period; expected at most {MOST_STEPS} in a page"
+            );
+            return Err(refused(why));
+        }
+        Ok(own)
     }
 
     /// The timing of the setting.
@@ -165,22 +179,33 @@ impl<'a> ControlLoop<'a> {
             .collect();
         own.commands.push_front(command);
         let arriving = own.commands.pop_back().unwrap_or_default();
-        let before = self.latency.part() * seconds;
+        let [before, behind] = self.steps();
+        let part = self.latency.part();
         let mut time = 0.0;
-        let mut move_by = |own: &mut LoopState<S>, span: f64, time: &mut f64| {
-            let steps = (span / self.dt - 1e-9).ceil().max(1.0);
+        let mut move_by = |own: &mut LoopState<S>, span: f64, steps: f64| {
             let dt = span / steps;
-            for _ in 0..if span > 0.0 { steps as usize } else { 0 } {
+            for _ in 0..steps as u64 {
                 stepper.step(&mut own.state, &own.acting, dt);
-                *time += dt;
-                each(*time, own);
+                time += dt;
+                each(time, own);
             }
         };
-        move_by(own, before, &mut time);
+        move_by(own, part * seconds, before);
         if !lost {
             own.acting = arriving;
         }
-        move_by(own, seconds - before, &mut time);
+        move_by(own, (1.0 - part) * seconds, behind);
+    }
+
+    /// The steps in a period before and behind the arrival of a command: even numbers, as in `simulate`, of at most the time step in the
+    /// longest period.
+    pub(crate) fn steps(&self) -> [f64; 2] {
+        // The largest normal number is below 8.58.
+        let longest = 1.0 + 8.58 * self.control.jitter;
+        let steps = self.mean_period() * longest / self.dt;
+        let part = self.latency.part();
+        let even = |share: f64| 2.0 * (0.5 * steps * share).ceil().max(1.0);
+        [if part == 0.0 { 0.0 } else { even(part) }, even(1.0 - part)]
     }
 
     /// The matrix of a period of mean length as the integrator steps it: on the states, the acting commands and those in transit.
@@ -216,15 +241,14 @@ impl<'a> ControlLoop<'a> {
 
     /// Operations of the programs in a period.
     pub(crate) fn work(&self, step: &StepProgram) -> f64 {
-        let steps = (self.control.period / self.dt).ceil() + 1.0;
-        steps * step.program().operations().max(1) as f64
+        self.steps().iter().sum::<f64>() * step.program().operations().max(1) as f64
     }
 
     /// The states and commands of loop 0 after each step, at most so many periods.
     pub(crate) fn record(&self, step: &StepProgram, periods: usize) -> [Vec<Vec<f64>>; 2] {
         let mut stepper = Stepper::<f64>::new(step, 2 * self.subject.degrees());
         let mut own = self.begin::<f64>(&self.subject.start);
-        let steps = periods as f64 * (self.control.period / self.dt).max(1.0);
+        let steps = periods as f64 * self.steps().iter().sum::<f64>();
         let stride = (steps / POINTS as f64).ceil().max(1.0) as usize;
         let row = |time: f64, own: &LoopState<f64>| {
             let states = self.subject.places.iter().map(|&i| own.state[i]);

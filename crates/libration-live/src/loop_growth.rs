@@ -15,11 +15,11 @@ const LOOPS: u64 = 16;
 
 impl ControlLoop<'_> {
     /// The rate in 1/s at which the root of the mean square of small deviations grows, measured, and the standard error of this number.
-    pub(crate) fn measured_growth(&self, step: &StepProgram) -> Option<[f64; 2]> {
+    pub(crate) fn measured_growth(&self, step: &StepProgram, least: usize) -> Option<[f64; 2]> {
         if self.control.jitter == 0.0 && self.control.loss == 0.0 {
-            return Some([self.growth_of_loops(step, 0..1, false)?, 0.0]);
+            return Some([self.growth_of_loops(step, 0..1, least)?, 0.0]);
         }
-        let group = |k| self.growth_of_loops(step, k * LOOPS..(k + 1) * LOOPS, true);
+        let group = |k| self.growth_of_loops(step, k * LOOPS..(k + 1) * LOOPS, 2);
         let rates: Vec<f64> = (0..GROUPS).map(group).collect::<Option<_>>()?;
         let count = GROUPS as f64;
         let mean = rates.iter().sum::<f64>() / count;
@@ -32,8 +32,9 @@ impl ControlLoop<'_> {
         &self,
         step: &StepProgram,
         numbers: core::ops::Range<u64>,
-        random: bool,
+        least: usize,
     ) -> Option<f64> {
+        let random = numbers.end - numbers.start > 1;
         let loops = if random { LOOPS * GROUPS } else { 1 };
         let periods = (WORK / loops as f64 / self.work(step)).clamp(40.0, 2000.0) as u64;
         let scale = self.subject.scale(&self.point);
@@ -59,7 +60,7 @@ impl ControlLoop<'_> {
                 all.iter_mut().for_each(|(_, own)| self.scale(own, factor));
             }
         }
-        growth.rate().map(|rate| rate / self.mean_period())
+        growth.rate(least).map(|rate| rate / self.mean_period())
     }
 
     /// Multiplies all deviations from the equilibrium and the commands that hold it.

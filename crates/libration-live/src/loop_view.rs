@@ -4,6 +4,7 @@ use libration_equations::StepProgram;
 use libration_linear::{Channels, CostWeights, LoopTiming, Matrix, eigenvalues};
 
 use crate::control_loop::{ControlLoop, MOST_LATENCY};
+use crate::growth::least_entries;
 use crate::motion::{WORK, complex, radius};
 use crate::setting::Control;
 use crate::subject::Subject;
@@ -22,8 +23,8 @@ pub(crate) fn view(setting: &Setting, control: &Control) -> Result<Answer, Setti
     answer.text("inputs", subject.equations.inputs().join(" "));
     answer.number("periods", periods as f64);
     answer.number("horizon", periods as f64 * own.mean_period());
-    let parts = (control.period / setting.dt - 1e-9).ceil().max(1.0);
-    answer.number("evaluations", parts * step.evaluations() as f64 / control.period);
+    let steps: f64 = own.steps().iter().sum();
+    answer.number("evaluations", steps * step.evaluations() as f64 / own.mean_period());
     let ideal = own.ideal();
     for (of, own) in [("", &own), ("ideal.", &ideal)] {
         let [rows, commands] = own.record(&step, periods);
@@ -42,14 +43,16 @@ pub(crate) fn view(setting: &Setting, control: &Control) -> Result<Answer, Setti
     let exact = own.linear.period_matrix(&own.timing()).ok();
     let of_exact = exact.as_ref().and_then(eigenvalues).unwrap_or_default();
     complex(&mut answer, "exact", &of_exact);
-    answer.text("point", "equilibrium");
+    answer.text("point", subject.describe(&own.point));
+    answer.number("steps", own.steps().iter().sum::<f64>());
     // What the steps of the integrator change, in a period of mean length, is added to the growth of the exact loop.
     let shift = radius(&matrix).zip(exact.as_ref().and_then(radius));
     let shift = shift.map(|(stepped, exact)| (stepped / exact).ln() / own.mean_period());
     let exact_growth = own.exact_growth();
     let predicted = exact_growth.zip(shift).map(|(growth, shift)| growth + shift);
     answer.number("growth.predicted", predicted);
-    let measured = own.measured_growth(&step);
+    let least = least_entries(&eigenvalues(&matrix).unwrap_or_default());
+    let measured = own.measured_growth(&step, least);
     answer.number("growth.measured", measured.map(|[rate, _]| rate));
     answer.number("growth.error", measured.map(|[_, error]| error));
     answer.number("growth.exact", exact_growth);
@@ -71,6 +74,7 @@ pub(crate) fn limits(setting: &Setting, control: &Control) -> Result<Answer, Set
         _ => 0.0,
     };
     answer.number("latency.stable", largest * own.mean_period());
+    answer.number("latency.tried", MOST_LATENCY as f64 * own.mean_period());
     let cost = |timing: &LoopTiming| own.linear.stationary(timing).ok().flatten();
     let rise = cost(&own.timing()).zip(cost(&own.linear.ideal()));
     let rise = rise.map(|(own, ideal)| own.cost / ideal.cost - 1.0);

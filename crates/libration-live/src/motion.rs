@@ -6,7 +6,7 @@ use libration_equations::StepProgram;
 use libration_linear::{Matrix, eigenvalues};
 use num_complex::Complex64;
 
-use crate::growth::Growth;
+use crate::growth::{Growth, least_entries};
 use crate::subject::{Point, Stepper, Subject, fastest, is_finite};
 use crate::{Answer, Setting, SettingError};
 
@@ -53,6 +53,7 @@ fn trajectory(answer: &mut Answer, subject: &Subject, step: &StepProgram, dt: f6
     let mut energy = subject.energy();
     let first = energy.as_mut().map(|energy| energy(&subject.start));
     let mut largest = 0.0_f64;
+    let mut size = 0.0_f64;
     let mut stepper = Stepper::<f64>::new(step, states);
     let mut state = subject.start.clone();
     for k in 0..=steps {
@@ -63,7 +64,11 @@ fn trajectory(answer: &mut Answer, subject: &Subject, step: &StepProgram, dt: f6
             let scale = if first == 0.0 { 1.0 } else { first.abs() };
             (energy(&state) - first) / scale
         });
-        largest = change.map_or(largest, |change| largest.max(change.abs()));
+        largest = change.map_or(largest, |change| match change.is_finite() {
+            true => largest.max(change.abs()),
+            false => f64::NAN,
+        });
+        size = subject.places.iter().map(|&i| state[i].abs()).fold(size, f64::max);
         if k % stride == 0 {
             time.push(k as f64 * dt);
             recorded.iter_mut().zip(&subject.places).for_each(|(own, &i)| own.push(state[i]));
@@ -72,6 +77,7 @@ fn trajectory(answer: &mut Answer, subject: &Subject, step: &StepProgram, dt: f6
         stepper.step(&mut state, &inputs, dt);
     }
     let points = time.len();
+    answer.number("size", size);
     answer.column("time", time);
     for (name, column) in subject.names.iter().zip(recorded) {
         answer.column(format!("x.{name}"), column);
@@ -179,22 +185,16 @@ fn linear(
     point: &Point,
 ) {
     let matrix = step_matrix(subject, step, point, setting.dt);
+    let own = eigenvalues(&matrix).unwrap_or_default();
     let exact = eigenvalues(&subject.slopes(point)).unwrap_or_default();
-    complex(answer, "eigenvalues", &eigenvalues(&matrix).unwrap_or_default());
+    complex(answer, "eigenvalues", &own);
     let after = |value: &Complex64| (value * setting.dt).exp();
     complex(answer, "exact", &exact.iter().map(after).collect::<Vec<_>>());
-    let at: Vec<String> = subject
-        .names
-        .iter()
-        .zip(&subject.places)
-        .map(|(name, &place)| format!("{name} = {:.4}", point.state[place]))
-        .collect();
-    let place = if point.rests { "equilibrium" } else { "start" };
-    answer.text("point", format!("{place} {}", at.join(", ")));
+    answer.text("point", subject.describe(point));
     answer.number("growth.predicted", radius(&matrix).map(|radius| radius.ln() / setting.dt));
     let measured = if point.rests {
         let most = (WORK / 4.0 / step.program().operations().max(1) as f64) as usize;
-        measured_growth(subject, step, point, setting.dt, most.min(4000))
+        measured_growth(subject, step, point, setting.dt, [most.min(4000), least_entries(&own)])
     } else {
         None
     };
@@ -214,7 +214,7 @@ fn measured_growth(
     step: &StepProgram,
     point: &Point,
     dt: f64,
-    steps: usize,
+    [steps, least]: [usize; 2],
 ) -> Option<f64> {
     let mut stepper = Stepper::<f64>::new(step, 2 * subject.degrees());
     let mut growth = Growth::new(subject.scale(point));
@@ -229,7 +229,7 @@ fn measured_growth(
             places.for_each(|&i| state[i] = point.state[i] + factor * (state[i] - point.state[i]));
         }
     }
-    growth.rate().map(|rate| rate / dt)
+    growth.rate(least).map(|rate| rate / dt)
 }
 
 /// The largest stable time step: where deviations first grow though those of the exact motion do not, on a grid of steps that are

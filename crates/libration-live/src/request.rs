@@ -4,7 +4,7 @@ use libration_core::AnyMethod;
 use libration_equations::StepProgram;
 
 use crate::stability_map::MapAxis;
-use crate::subject::Subject;
+use crate::subject::{Subject, fastest};
 use crate::{Answer, Setting, SettingError, loop_view, map_row, motion};
 
 /// The answer to a request, whose first line has its kind: `view`, `limits`, `design` for the gains of a linear-quadratic regulator with
@@ -61,7 +61,9 @@ fn limits(setting: &Setting) -> Result<Answer, SettingError> {
     let step = StepProgram::of(setting.integrator, subject.equations.dynamics());
     let point = subject.calm_point(&[]);
     let mut answer = Answer::default();
-    let largest = point.rests.then(|| motion::largest_stable_step(&subject, &step, &point));
+    // Without a linear force no step is long.
+    let has_rate = point.rests && fastest(&subject.slopes(&point)) * setting.horizon > 1e-6;
+    let largest = has_rate.then(|| motion::largest_stable_step(&subject, &step, &point));
     answer.number("dt.stable", largest.map(|largest| largest.unwrap_or(f64::INFINITY)));
     Ok(answer)
 }

@@ -160,6 +160,16 @@ impl Subject {
             .map_err(|error| SettingError::Subject(error.to_string()))
     }
 
+    /// A point in words.
+    pub(crate) fn describe(&self, point: &Point) -> String {
+        let states = self.names.iter().zip(&self.places);
+        let states = states.filter(|(_, place)| !point.rests || self.unknowns.contains(place));
+        let values: Vec<String> = states
+            .map(|(name, &place)| format!("{name} = {:.4}", point.state[place] + 0.0))
+            .collect();
+        format!("{} {}", if point.rests { "equilibrium" } else { "start" }, values.join(", "))
+    }
+
     /// The derivatives of the rates of the states by the states near a point.
     pub(crate) fn slopes(&self, point: &Point) -> Matrix {
         let at = [point.state.clone(), point.inputs.clone()].concat();

@@ -1,5 +1,6 @@
 //! An audit as an HTML page.
 
+use libration::AnyMethod;
 use libration::live::{MOST_DEGREES, Setting};
 use libration_report::live::LiveSetting;
 use libration_report::notation::{number, plural};
@@ -52,6 +53,14 @@ fn live(audit: &ProbeReport) -> Vec<LiveSetting> {
     };
     let names = [names(&audit.states), names(&audit.inputs)];
     let mut setting = Setting::of_plant("the simulator, linearised", &flow.a, &flow.b, names);
+    // Its own integrator, where it is known and this form of the plant has positions and velocities.
+    let recognised = audit.recognition.as_ref().and_then(|own| own.by_results.methods.first());
+    let mechanical = !setting.definitions.coordinates.is_empty();
+    if let Some(method) =
+        recognised.and_then(|name| AnyMethod::from_name(name)).filter(|_| mechanical)
+    {
+        setting.integrator = method;
+    }
     setting.dt = audit.dt;
     setting.horizon = setting.horizon.max(100.0 * audit.dt);
     vec![LiveSetting { title: setting.system.clone(), text: setting.to_string() }]

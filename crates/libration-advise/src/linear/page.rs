@@ -7,7 +7,7 @@ use libration_report::report;
 
 use super::deadlines_page::deadlines;
 use super::{ChainLink, InputMargins, LinearAdvice, redesign_page};
-use crate::live_setting::shown;
+use crate::live_setting::{NO_LIVE_SECTION, shown};
 use crate::page::{budget_row, figure};
 use crate::{Budget, StabilityWindow};
 
@@ -19,6 +19,9 @@ pub fn page(advice: &LinearAdvice) -> String {
     let mut page = Page { title: "Budget of a control loop".into(), ..Page::default() };
     page.answer.clone_from(&advice.answer);
     page.live = advice.live.as_ref().map(shown).unwrap_or_default();
+    if page.live.is_empty() {
+        page.note(NO_LIVE_SECTION);
+    }
     for warning in &advice.warnings {
         page.note(format!("Warning: {warning}."));
     }

@@ -62,7 +62,13 @@ fn page(options: &SystemArgs) -> Result<String, Failure> {
     } else if let Some(name) = &options.system {
         let (system, actuation) = catalog::build(name, &options.set).map_err(Failure::usage)?;
         let mass = matches!(actuation, catalog::Actuation::Force { .. }).then(|| actuation.mass());
-        settings.push(Setting::of_system(system, mass));
+        let mut setting = Setting::of_system(system, mass);
+        begin_at(&mut setting, options)?;
+        settings.push(setting);
+    } else if let Some(option) = first_of_start(options) {
+        return Err(Failure::usage(format!(
+            "{option} is given without a system; expected --system or --force"
+        )));
     }
     settings.extend(live_settings::examples());
     let settings: Vec<LiveSetting> = settings
@@ -73,6 +79,36 @@ fn page(options: &SystemArgs) -> Result<String, Failure> {
         &settings,
         "What an integrator, a time step, latency, jitter and skew do to a system",
     ))
+}
+
+/// The first option that changes a system, if there is one.
+fn first_of_start(options: &SystemArgs) -> Option<&'static str> {
+    let SystemArgs { set, q, v, .. } = options;
+    [(!set.is_empty(), "--set"), (q.is_some(), "--q"), (v.is_some(), "--v")]
+        .into_iter()
+        .find_map(|(given, name)| given.then_some(name))
+}
+
+/// Replaces the start by that of the options.
+fn begin_at(setting: &mut Setting, options: &SystemArgs) -> Result<(), Failure> {
+    let coordinates = setting.definitions.coordinates.clone();
+    for (given, flag, prime) in [(&options.q, "--q", ""), (&options.v, "--v", "'")] {
+        let Some(given) = given else { continue };
+        let values = given.values();
+        if values.len() != coordinates.len() {
+            return Err(Failure::usage(format!(
+                "{flag} has {} numbers; expected {} in a page of `{}`",
+                values.len(),
+                coordinates.len(),
+                setting.system
+            )));
+        }
+        for (name, value) in coordinates.iter().zip(values) {
+            let key = format!("start.{name}{prime}");
+            setting.set(&key, &value.to_string()).map_err(Failure::usage)?;
+        }
+    }
+    Ok(())
 }
 
 fn open(address: &str) {
@@ -116,7 +152,18 @@ fn reply<'p>(head: &[String], port: u16, page: &'p [u8]) -> (&'static str, &'sta
             own.trim().eq_ignore_ascii_case(name).then(|| value.trim())
         })
     };
-    let hosts = ["127.0.0.1", "localhost"].map(|name| format!("{name}:{port}"));
+    let mut hosts: Vec<String> =
+        ["127.0.0.1", "localhost"].iter().map(|name| format!("{name}:{port}")).collect();
+    // Browsers leave out the port of the protocol.
+    if port == 80 {
+        hosts.extend(["127.0.0.1".to_owned(), "localhost".to_owned()]);
+    }
+    let is_host = |line: &&String| {
+        line.split_once(':').is_some_and(|(own, _)| own.trim().eq_ignore_ascii_case("host"))
+    };
+    if head.iter().skip(1).filter(is_host).count() != 1 {
+        return refused("400 Bad Request", "expected one field `Host`\n");
+    }
     if !field("host").is_some_and(|host| hosts.iter().any(|own| own.eq_ignore_ascii_case(host))) {
         return refused("403 Forbidden", "this page is for this machine alone\n");
     }
@@ -125,7 +172,9 @@ fn reply<'p>(head: &[String], port: u16, page: &'p [u8]) -> (&'static str, &'sta
         return refused("403 Forbidden", "pages of other origins are refused\n");
     }
     let mut words = head.first().map_or("", String::as_str).split(' ');
-    match (words.next(), words.next()) {
+    let method = words.next();
+    let path = words.next().map(|path| path.split('?').next().unwrap_or_default());
+    match (method, path) {
         (Some("GET" | "HEAD"), Some("/" | "/index.html")) => ("200 OK", "text/html", page),
         (Some("GET" | "HEAD"), _) => refused("404 Not Found", "there is one page, at /\n"),
         _ => refused("405 Method Not Allowed", "expected GET\n"),
@@ -148,7 +197,9 @@ mod tests {
             (&[get, "Host: 127.0.0.1:8765"][..], "200 OK"),
             (&[get, "host:localhost:8765", "Origin: http://localhost:8765"], "200 OK"),
             (&["HEAD / HTTP/1.1", "Host: localhost:8765"], "200 OK"),
-            (&[get], "403 Forbidden"),
+            (&[get], "400 Bad Request"),
+            (&[get, "Host: localhost:8765", "Host: example.org"], "400 Bad Request"),
+            (&["GET /?x=1 HTTP/1.1", "Host: localhost:8765"], "200 OK"),
             (&[get, "Host: example.org"], "403 Forbidden"),
             (&[get, "Host: example.org:8765"], "403 Forbidden"),
             (&[get, "Host: localhost:8765", "Origin: https://example.org"], "403 Forbidden"),
@@ -156,7 +207,7 @@ mod tests {
             (&["GET /etc/passwd HTTP/1.1", "Host: localhost:8765"], "404 Not Found"),
             (&["POST / HTTP/1.1", "Host: localhost:8765"], "405 Method Not Allowed"),
             (&["", "Host: localhost:8765"], "405 Method Not Allowed"),
-            (&[], "403 Forbidden"),
+            (&[], "400 Bad Request"),
         ] {
             assert_eq!(status(lines), expected, "{lines:?}");
         }

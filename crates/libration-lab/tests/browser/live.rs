@@ -19,7 +19,7 @@ fn begin(page: &mut Page) {
 /// Waits until the figures show the setting, with what takes longer than a frame.
 fn drawn(page: &mut Page) {
     let done = format!(
-        "(() => {{ const live = {SECTION}.live; return !live.dirty && live.limitsOf === [...live.setting].map((x) => x.join('=')).join('\\n'); }})()"
+        "(() => {{ const live = {SECTION}.live; return !live.working && live.limitsOf === [...live.setting].map((x) => x.join('=')).join('\\n'); }})()"
     );
     assert!(page.comes_true(&done));
 }
@@ -83,7 +83,7 @@ fn states_in_the_page_have_the_bits_of_the_native_engine() {
     visit(WIDTHS[0], |page| {
         begin(page);
         let found = page.texts(&format!(
-            "{}.map((setting) => ({HASH})({SECTION}.live.engine(`view\\n${{setting}}`)))",
+            "Promise.all({}.map(async (setting) => ({HASH})(await {SECTION}.live.engine.ask(`view\\n${{setting}}`))))",
             json!(settings)
         ));
         for ((setting, native), found) in settings.iter().zip(&native).zip(&found) {
@@ -161,19 +161,105 @@ fn equations_that_a_reader_types_move_and_wrong_ones_are_named() {
                 json!(text)
             ));
         };
-        let error = |page: &mut Page| {
-            page.eval(&format!("{}.textContent", part("error"))).as_str().unwrap().to_owned()
+        let says = |page: &mut Page, text: &str| {
+            let shown = format!("{}.textContent === {}", part("error"), json!(text));
+            assert!(page.comes_true(&shown), "{text}");
         };
-        write(page, "system=mine\ncoordinates=x\nacceleration.x=-k*x^3\nparameter.k=4\nstart.x=2");
-        drawn(page);
-        assert_eq!(
-            (error(page), page.number(&format!("{SECTION}.live.view['x.x'][0]"))),
-            (String::new(), 2.0)
+        let begins = |page: &mut Page, x: f64| {
+            assert!(page.comes_true(&format!("{SECTION}.live.view?.['x.x']?.[0] === {x}")));
+        };
+        let base = "system=mine\ncoordinates=x\nacceleration.x=-";
+        write(page, &format!("{base}k*x^3\nparameter.k=4\nstart.x=2"));
+        begins(page, 2.0);
+        for (text, error) in [
+            (format!("{base}r*x^3\nstart.x=2"), "Error: acceleration.x: unknown name `r`"),
+            (format!("{base}x\nstart.x=two"), "Error: start.x = two; expected a number"),
+            (format!("{base}x\nacceleration.x=-2*x"), "Error: `acceleration.x` is given twice"),
+            ("[system]".to_owned(), "Error: unknown key `[system]`"),
+        ] {
+            write(page, &text);
+            says(page, error);
+            // The error stays, no answer of an earlier setting does, and there is nothing to copy.
+            page.frame();
+            says(page, error);
+            assert_eq!(page.eval(&format!("{}.textContent", part("verdict"))), "");
+            assert_eq!(page.eval(&format!("{}.disabled", part("copy-command"))), true);
+        }
+        write(page, &format!("{base}x\nstart.x=3"));
+        says(page, "");
+        begins(page, 3.0);
+    });
+}
+
+#[test]
+fn a_link_brings_no_code_into_what_a_reader_copies() {
+    visit(WIDTHS[0], |page| {
+        begin(page);
+        for (key, value) in [
+            ("integrator", "velocity-verlet; touch gone #"),
+            ("seed", "0; touch gone"),
+            ("dt", "0.1 $(touch gone)"),
+            ("system", "x\"\"\"+str(1)+\"\"\""),
+            ("system", "END\ntouch gone\n$(touch gone) `touch gone`"),
+            ("start.q\ntouch gone\n", "1"),
+        ] {
+            let entries = [["system", "x"], ["coordinates", "q"], ["acceleration.q", "-q"]];
+            let link: Vec<[&str; 2]> = [[key, value]].into_iter().chain(entries).collect();
+            page.eval(&format!("location.hash = '#live&' + new URLSearchParams({})", json!(link)));
+            page.frame();
+            let texts = page.eval(&format!("{SECTION}.live.texts(true)"));
+            let [command, python] = ["command", "python"].map(|name| texts[name].as_str().unwrap());
+            // Text of a reader stands between quotes, in a document that the shell does not read.
+            let file = command.split("END'\n").nth(1).unwrap().split("\nEND\n").next().unwrap();
+            let outside = command.replace(file, "");
+            assert!(!outside.contains("touch gone"), "{command}");
+            assert!(!python.contains("\"\"\"+str"), "{python}");
+            assert!(
+                file.lines().all(|line| !line.contains("touch") || line.starts_with("name = \"")),
+                "{file}"
+            );
+        }
+    });
+}
+
+#[test]
+fn a_link_with_part_of_a_setting_has_defaults_and_nonsense_is_named() {
+    visit(WIDTHS[0], |page| {
+        page.eval(
+            "location.hash = '#live&system=x&coordinates=q&acceleration.q=-q&start.q=1&dt=abc'",
         );
-        write(page, "system=mine\ncoordinates=x\nacceleration.x=-r*x^3\nstart.x=2");
-        assert_eq!(error(page), "Error: acceleration.x: unknown name `r`");
-        // The last setting that was right stays.
-        assert_eq!(entry(page, "parameter.k"), 4.0);
+        begin(page);
+        let error = page.eval(&format!("{}.textContent", part("error")));
+        assert_eq!(error, "Error: dt = abc; expected a number");
+        assert_eq!([entry(page, "dt"), entry(page, "horizon")], [0.01, 10.0]);
+        assert!(verdict(page).starts_with("Stable"));
+    });
+}
+
+#[test]
+fn a_setting_that_takes_long_leaves_the_page_awake() {
+    visit(WIDTHS[0], |page| {
+        begin(page);
+        let quadrotor = live_settings::examples()
+            .into_iter()
+            .find(|own| own.definitions.inputs.len() == 2)
+            .unwrap()
+            .to_string();
+        let gain = "gain=1,1,1,1,1,1;1,1,1,1,1,1\nperiod=0.02\nlatency=0.03\njitter=0.3\n";
+        page.eval(&format!(
+            "location.hash = '#live&' + new URLSearchParams({}.trim().split('\\n').map((line) => line.split(/=(.*)/s).slice(0, 2)))",
+            json!(format!("{quadrotor}{gain}"))
+        ));
+        let frames = page.number(
+            "(async () => { const end = performance.now() + 500; let count = 0; while (performance.now() < end) { await new Promise(requestAnimationFrame); count++; } return count; })()",
+        );
+        assert!(frames > 5.0, "{frames}");
+        // An answer that does not come is given up.
+        let done = format!(
+            "{SECTION}.live.view || {}.textContent.includes('takes too long')",
+            part("error")
+        );
+        assert!(page.comes_true(&done));
     });
 }
 
@@ -182,6 +268,7 @@ fn a_loop_that_a_reader_switches_on_is_designed_and_latency_makes_it_unstable() 
     visit(WIDTHS[0], |page| {
         begin(page);
         page.eval("document.getElementById('live-loop').click()");
+        assert!(page.comes_true(&format!("{SECTION}.live.setting.has('gain')")));
         assert!(verdict(page).starts_with("Stable"), "{}", verdict(page));
         let limit = page.number(&format!("{SECTION}.live.limits['latency.stable'][0]"));
         for (factor, expected) in [(0.95, "Stable"), (1.05, "Unstable")] {
@@ -229,6 +316,7 @@ fn every_control_has_a_name_and_nothing_is_wider_than_a_phone() {
     visit(WIDTHS[1], |page| {
         begin(page);
         page.eval("document.getElementById('live-loop').click()");
+        assert!(page.comes_true(&format!("{SECTION}.live.setting.has('gain')")));
         drawn(page);
         let nameless = page.texts(&format!(
             "[...{SECTION}.querySelectorAll('input, select, textarea, button, canvas')].filter((own) =>

@@ -1,6 +1,12 @@
 // A setting as a file, as commands and as Python.
 
+// Whatever a link brought: texts are quoted for the language that they stand in, and all else is a number or a known name.
+
 const quote = (text) => JSON.stringify(text);
+const numberOf = (setting, key) => String(Number(setting.get(key) ?? 0));
+const nameOf = (setting) => setting.get("integrator").replace(/[^a-z0-9-]/g, "");
+/** A text between triple quotes of Python. */
+const pythonText = (text) => `"""${text.replaceAll("\\", "\\\\").replaceAll('"', '\\"')}"""`;
 const tomlKey = (name) => (/^[A-Za-z0-9_-]+$/.test(name) ? name : quote(name));
 
 /** The file of the system. */
@@ -16,7 +22,7 @@ const systemFile = (setting) => {
     } else if (["acceleration", "rate", "let"].includes(table)) {
       lines.push(`${table}.${tomlKey(name)} = ${quote(value)}`);
     } else if (table in tables) {
-      tables[table].push(`${tomlKey(name)} = ${value}`);
+      tables[table].push(`${tomlKey(name)} = ${Number(value)}`);
     }
   }
   if (tables.parameter.length) lines.push(`parameters = { ${tables.parameter.join(", ")} }`);
@@ -32,13 +38,13 @@ const gainRows = (setting) => {
 const hasLoop = (setting) => Boolean(setting.get("gain"));
 
 /** Whole numbers of a motion or a loop. */
-const stepsOf = (setting, step) => Math.max(1, Math.round(Number(setting.get("horizon")) / Number(setting.get(step))));
+const stepsOf = (setting, step) => Math.min(1e9, Math.max(1, Math.round(Number(setting.get("horizon")) / Number(setting.get(step)))));
 
 /** The commands that compute the same in a terminal. */
 const commandOf = (setting) => {
-  const get = (key) => setting.get(key);
+  const number = (key) => numberOf(setting, key);
   const file = `cat > system.toml <<'END'\n${systemFile(setting)}END\n`;
-  const step = `--integrator ${get("integrator")} --dt ${get("dt")}`;
+  const step = `--integrator ${nameOf(setting)} --dt ${number("dt")}`;
   if (!hasLoop(setting)) {
     return (
       `${file}libration analyze --system system.toml ${step}\n` +
@@ -46,36 +52,37 @@ const commandOf = (setting) => {
     );
   }
   const rows = gainRows(setting).map((row) => row.join(",")).join(";");
-  const positive = (key, option, text = (x) => x) => (Number(get(key) ?? 0) === 0 ? "" : ` ${option} ${text(get(key))}`);
+  const some = (key, option) => (number(key) === "0" ? "" : ` ${option}${number(key)}`);
   const timing =
-    `--gain="${rows}" --period ${get("period")} --latency ${get("latency") ?? 0}` +
-    positive("jitter", "--jitter", (x) => `gaussian:${x}`) +
-    positive("loss", "--loss");
-  const skew = positive("skew", "--skew=").replace("= ", "=");
-  // A slow clock makes periods longer, and latencies and simulations with them.
-  const simulated = Number(get("skew") ?? 0) === 0 ? `libration simulate --system system.toml ${timing} ${step}` +
-    ` --seed ${get("seed") ?? 0} --steps ${stepsOf(setting, "period")} --output loop.csv\n` : "";
-  return `${file}libration advise --system system.toml ${timing}${skew}\n${simulated}`;
+    `--gain="${rows}" --period ${number("period")} --latency ${number("latency")}` +
+    some("jitter", "--jitter gaussian:") +
+    some("loss", "--loss ");
+  const advise = `libration advise --system system.toml ${timing}${some("skew", "--skew=")}\n`;
+  // The simulation of one loop has no skew.
+  if (number("skew") !== "0") return file + advise;
+  return (
+    `${file}${advise}libration simulate --system system.toml ${timing} ${step}` +
+    ` --seed ${number("seed")} --steps ${stepsOf(setting, "period")} --output loop.csv\n`
+  );
 };
 
 /** The same in Python. */
 const pythonOf = (setting) => {
-  const get = (key) => setting.get(key);
+  const number = (key) => numberOf(setting, key);
   const begin =
-    `import libration\n\nwith open("system.toml", "w") as file:\n    file.write('''${systemFile(setting)}''')\n` +
+    `import libration\n\nwith open("system.toml", "w") as file:\n    file.write(${pythonText(systemFile(setting))})\n` +
     `system = libration.System.from_toml("system.toml")\n`;
   if (!hasLoop(setting)) {
-    const call = `system, integrator=${quote(get("integrator"))}, dt=${get("dt")}`;
+    const call = `system, integrator=${quote(nameOf(setting))}, dt=${number("dt")}`;
     return (
       `${begin}print(libration.analyze(${call}))\n` +
       `motion = libration.simulate(${call}, steps=${stepsOf(setting, "dt")})\n`
     );
   }
   const rows = gainRows(setting).map((row) => `[${row.join(", ")}]`).join(", ");
-  const some = (key, name, text = (x) => x) => (Number(get(key) ?? 0) === 0 ? "" : `, ${name}=${text(get(key))}`);
+  const some = (key, text) => (number(key) === "0" ? "" : `, ${text(number(key))}`);
   return (
-    `${begin}plant = libration.LinearPlant.from_system(system)\n` +
-    `advice = libration.advise(plant, gain=[${rows}], period=${get("period")}, latency=${get("latency") ?? 0}` +
-    `${some("jitter", "jitter", (x) => `("gaussian", ${x})`)}${some("skew", "skew")}${some("loss", "loss")})\nprint(advice)\n`
+    `${begin}advice = libration.advise(\n    system, libration.StateFeedback([${rows}]), period=${number("period")}, latency=${number("latency")}` +
+    `${some("jitter", (x) => `jitter=("gaussian", ${x})`)}${some("skew", (x) => `skew=${x}`)}${some("loss", (x) => `loss=${x}`)},\n)\nprint(advice)\n`
   );
 };

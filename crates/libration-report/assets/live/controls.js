@@ -52,8 +52,9 @@ class NumberRow {
     });
     this.text.addEventListener("input", () => {
       const number = parseNumber(this.text.value, key);
-      this.text.setAttribute("aria-invalid", String(Number.isNaN(number)));
-      if (Number.isNaN(number)) return;
+      const wrong = !Number.isFinite(number) || (SECONDS.has(key) && number < 0);
+      this.text.setAttribute("aria-invalid", String(wrong));
+      if (wrong) return;
       this.place(number);
       changed(number);
     });

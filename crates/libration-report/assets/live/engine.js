@@ -1,21 +1,74 @@
-// The engine: a WebAssembly module with two functions, and settings as lists of entries.
+// The engine: a WebAssembly module in a worker, and settings as lists of entries.
 
-/** Compiles the module in the page. Returns a function from a request to its answer. */
-const loadEngine = async () => {
-  const text = document.getElementById("live-engine").textContent.trim();
-  const packed = Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
-  const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
-  const bytes = await new Response(unpacked).arrayBuffer();
-  const { instance } = await WebAssembly.instantiate(bytes, {});
-  const { memory, request, answer } = instance.exports;
-  return (text) => {
-    const bytes = new TextEncoder().encode(text);
+/** The time in ms after which an answer is given up. */
+const PATIENCE = 4000;
+
+/** What the worker runs: it answers one request after the other. */
+const workerProgram = () => {
+  let engine;
+  onmessage = async ({ data }) => {
+    if (data.bytes) {
+      engine = WebAssembly.instantiate(data.bytes, {}).then(({ instance }) => instance.exports);
+      return;
+    }
+    const { memory, request, answer } = await engine;
+    const bytes = new TextEncoder().encode(data.text);
     const place = request(bytes.length);
     new Uint8Array(memory.buffer, place, bytes.length).set(bytes);
     const begin = answer();
     const length = new DataView(memory.buffer).getUint32(begin, true);
-    return readAnswer(memory.buffer.slice(begin + 4, begin + 4 + length));
+    const reply = memory.buffer.slice(begin + 4, begin + 4 + length);
+    postMessage({ number: data.number, reply }, [reply]);
   };
+};
+
+/** An engine in a worker of its own. Whatever it computes, the page stays awake; what takes too long is given up. */
+class Engine {
+  constructor(bytes) {
+    this.bytes = bytes;
+    this.waiting = new Map();
+    this.count = 0;
+    this.start();
+  }
+  start() {
+    const source = URL.createObjectURL(new Blob([`(${workerProgram})()`], { type: "text/javascript" }));
+    this.worker = new Worker(source);
+    URL.revokeObjectURL(source);
+    this.worker.onmessage = ({ data }) => this.settle(data.number, readAnswer(data.reply));
+    // A request that fails in the engine is answered, too.
+    this.worker.onerror = () => this.restart("the engine failed on this setting");
+    this.worker.postMessage({ bytes: this.bytes });
+  }
+  restart(error) {
+    this.worker.terminate();
+    this.start();
+    for (const number of [...this.waiting.keys()]) this.settle(number, { error });
+  }
+  settle(number, answer) {
+    const own = this.waiting.get(number);
+    if (!own) return;
+    clearTimeout(own.timer);
+    this.waiting.delete(number);
+    own.done(answer);
+  }
+  /** The answer to a request; one with an `error` if it takes too long. */
+  ask(text) {
+    return new Promise((done) => {
+      const number = ++this.count;
+      const late = "this setting takes too long for a page; the commands below have no such limit";
+      const timer = setTimeout(() => this.restart(late), PATIENCE);
+      this.waiting.set(number, { done, timer });
+      this.worker.postMessage({ number, text });
+    });
+  }
+}
+
+/** The module in the page. */
+const loadModule = async () => {
+  const text = document.getElementById("live-engine").textContent.trim();
+  const packed = Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
+  const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Response(unpacked).arrayBuffer();
 };
 
 /** Texts, and columns of numbers, by their names. */
@@ -39,22 +92,47 @@ const readAnswer = (bytes) => {
 /** The number of a column of one; NaN without it. */
 const single = (answer, name) => (answer[name] && answer[name].length ? answer[name][0] : NaN);
 
-/** A setting as a map from keys to texts, in order. */
-const parseSetting = (text) =>
-  new Map(
-    text
-      .split("\n")
-      .filter((line) => line.includes("="))
-      .map((line) => [line.slice(0, line.indexOf("=")).trim(), line.slice(line.indexOf("=") + 1).trim()]),
-  );
+const SYSTEM_KEY = /^(system|coordinates|inputs|energy)$|^(acceleration|rate|let|parameter|start)\.[A-Za-z_][A-Za-z0-9_]*'?$/;
+const isSystemKey = (key) => SYSTEM_KEY.test(key);
+const NUMBER_KEY = /^(dt|horizon|gain-factor|period|latency|jitter|skew|loss|seed)$|^(parameter|start)\./;
+const STEP_KEYS = { integrator: "velocity-verlet", dt: "0.01", horizon: "10" };
+
+/** A setting as a map from keys to texts, in order, and what is wrong with its lines. Missing numbers have their defaults. */
+const settingOf = (entries) => {
+  const setting = new Map();
+  let error = "";
+  for (const [key, text] of entries) {
+    const value = text.replace(/[\r\n]/g, " ").trim();
+    const known = isSystemKey(key) || key in STEP_KEYS || LOOP_KEYS.includes(key);
+    const number = NUMBER_KEY.test(key) ? Number(value) : 0;
+    if (!known) error ||= `unknown key \`${key}\``;
+    else if (!Number.isFinite(number) || value === "") error ||= `${key} = ${value}; expected a number`;
+    else if (setting.has(key)) error ||= `\`${key}\` is given twice`;
+    else setting.set(key, value);
+  }
+  for (const [key, value] of Object.entries(STEP_KEYS)) if (!setting.has(key)) setting.set(key, value);
+  return { setting, error };
+};
+
+/** The entries of lines `key=value`; a line that is none has the whole of it as its key. */
+const entriesOf = (text) =>
+  text
+    .split("\n")
+    .filter((line) => line.trim())
+    .map((line) => {
+      const end = line.indexOf("=");
+      return end < 0 ? [line.trim(), ""] : [line.slice(0, end).trim(), line.slice(end + 1).trim()];
+    });
+
+const parseSetting = (text) => settingOf(entriesOf(text)).setting;
 
 const settingText = (setting) => [...setting].map(([key, value]) => `${key}=${value}`).join("\n");
 
-/** The setting in the fragment of a link; null if the fragment is another. */
+/** The setting in the fragment of a link, and what is wrong with it; null if the fragment is another. */
 const settingOfLink = (fragment) => {
   if (!fragment.startsWith("#live&")) return null;
-  const entries = [...new URLSearchParams(fragment.slice(6))].map(([key, value]) => [key, value.replace(/[\r\n]/g, " ")]);
-  return entries.length ? new Map(entries) : null;
+  const entries = [...new URLSearchParams(fragment.slice(6))];
+  return entries.length ? settingOf(entries) : null;
 };
 
 const linkOfSetting = (setting) => `#live&${new URLSearchParams([...setting])}`;
@@ -67,8 +145,8 @@ const statesOf = (setting) => {
 };
 
 const LOOP_KEYS = ["gain", "gain-factor", "period", "latency", "jitter", "skew", "loss", "seed"];
+const LOOP_DEFAULTS = { "gain-factor": "1", period: "0.01", latency: "0", jitter: "0", skew: "0", loss: "0", seed: "0" };
 const SECONDS = new Set(["dt", "horizon", "period", "latency"]);
-const isSystemKey = (key) => /^(system|coordinates|inputs|energy)$|^(acceleration|rate|let|parameter|start)\./.test(key);
 
 /** A number with three digits, for sentences. */
 const short = (x) => format(x, 3);

@@ -45,7 +45,7 @@ const drawPhase = (live) => {
 };
 
 const drawCurve = (live) => {
-  const { view, names } = live;
+  const { view } = live;
   const plot = live.plots.curve;
   const caption = live.find("curve-caption");
   if (view.kind === "motion" && view.energy.length) {
@@ -54,6 +54,7 @@ const drawCurve = (live) => {
     plot.begin(new Scale(extent([view.time], 0)), new Scale(extent(bounds)), ["t (s)", "ΔE/E₀"]);
     for (const side of [1, -1]) plot.line(extent([view.time], 0), [side * predicted, side * predicted], "--theory", 1.2, [6, 4]);
     plot.line(view.time, view.energy, "--accent-0");
+    plot.canvas.setAttribute("aria-label", `Relative change of the energy over time, at most ${format(single(view, "energy.largest"))}.`);
     caption.textContent = "Relative change of the energy; dashed the largest change, predicted from shorter steps.";
     return;
   }
@@ -67,7 +68,7 @@ const drawCurve = (live) => {
   plot.line(times, values, "--neutral", 2.5);
   plot.line(view.time, view[`x.${name}`], "--accent-0");
   caption.textContent = ideal ? "The loop as it is; gray with perfect timing." : "The motion in these steps; gray in short steps of order 8.";
-  plot.canvas.setAttribute("aria-label", `${names[0]} over time.`);
+  plot.canvas.setAttribute("aria-label", `${name} over time.`);
 };
 
 const drawCircle = (live) => {
@@ -105,7 +106,7 @@ const drawMap = (live) => {
   const keys = axesOf(setting);
   const plot = live.plots.map;
   const figure = plot.canvas.closest("figure");
-  figure.hidden = keys.length < 2;
+  figure.hidden = keys.length < 2 || !live.view;
   if (figure.hidden) return;
   if (!live.axes || !live.axes.every((key) => keys.includes(key)) || live.axes[0] === live.axes[1]) live.axes = [keys[0], keys[1]];
   const [x, y] = live.axes;
@@ -113,13 +114,13 @@ const drawMap = (live) => {
   options(live.find("x-axis"), labels.filter(([key]) => key !== y), x);
   options(live.find("y-axis"), labels.filter(([key]) => key !== x), y);
   const scale = (key) => rows.find((row) => row.key === key).scale;
-  const others = new Map([...setting].filter(([key]) => key !== x && key !== y && key !== "horizon" && !key.startsWith("start.")));
-  const name = `${x} ${y} ${settingText(others)}`;
+  const others = new Map([...setting].filter(([key]) => key !== x && key !== y && key !== "horizon" && key !== "seed" && !key.startsWith("start.")));
+  // The start matters only where it decides which point is linearised.
+  const name = `${x} ${y} ${x.startsWith("parameter") || y.startsWith("parameter") ? "" : live.view.point} ${settingText(others)}`;
   if (!live.map || live.map.name !== name) {
     // Rows in an order in which each half of them covers the map.
     const order = [...Array(MAP.rows).keys()].sort((a, b) => reversed(a) - reversed(b));
-    live.map = { name, x: scale(x), y: scale(y), order, cells: new Float64Array(MAP.columns * MAP.rows).fill(NaN), done: 0 };
-    cancelAnimationFrame(live.mapFrame);
+    live.map = { name, x: scale(x), y: scale(y), order, cells: new Float64Array(MAP.columns * MAP.rows).fill(NaN), known: new Set() };
     computeMap(live, live.map);
   }
   paintMap(live);
@@ -127,27 +128,34 @@ const drawMap = (live) => {
 
 const reversed = (row) => [0, 1, 2, 3, 4].reduce((sum, bit) => sum + (((row >> bit) & 1) << (4 - bit)), 0);
 
-/** Computes cells for a few milliseconds of each frame. */
-const computeMap = (live, map) => {
+/** The time in ms that a request for cells may take; what takes longer is asked for in smaller parts, and ten times that long not at all. */
+const MAP_TIME = 150;
+
+/** Computes the cells of a map, one request after the other. */
+const computeMap = async (live, map) => {
   const setting = new Map(live.setting);
   const [x, y] = live.axes;
-  const chunks = MAP.columns / MAP.chunk;
-  const work = () => {
-    if (live.map !== map) return;
-    const until = performance.now() + 8;
-    while (map.done < MAP.rows * chunks && performance.now() < until) {
-      const row = map.order[Math.floor(map.done / chunks)];
-      const first = (map.done % chunks) * MAP.chunk;
-      const values = Array.from({ length: MAP.chunk }, (_, i) => map.x.value((first + i + 0.5) / MAP.columns));
-      const answer = live.ask(`map ${x} ${values.join(",")} ${y} ${map.y.value((row + 0.5) / MAP.rows)}`, setting);
+  let chunk = MAP.chunk;
+  for (const row of map.order) {
+    for (let first = 0; first < MAP.columns; first += chunk) {
+      const count = Math.min(chunk, MAP.columns - first);
+      const values = Array.from({ length: count }, (_, i) => map.x.value((first + i + 0.5) / MAP.columns));
+      const started = performance.now();
+      const answer = await live.ask(`map ${x} ${values.join(",")} ${y} ${map.y.value((row + 0.5) / MAP.rows)}`, setting, live.slow);
+      if (live.map !== map) return;
       if (answer.growth) map.cells.set(answer.growth, row * MAP.columns + first);
-      map.done++;
+      const time = performance.now() - started;
+      if (time / count > 10 * MAP_TIME) {
+        map.slow = true;
+        paintMap(live);
+        return;
+      }
+      chunk = Math.max(1, Math.min(MAP.columns, Math.round((count * MAP_TIME) / Math.max(time, 1))));
     }
+    map.known.add(row);
     paintMap(live);
-    if (map.done < MAP.rows * chunks) live.mapFrame = requestAnimationFrame(work);
-    else live.section.dataset.map = map.name;
-  };
-  live.mapFrame = requestAnimationFrame(work);
+  }
+  live.section.dataset.map = map.name;
 };
 
 const paintMap = (live) => {
@@ -161,7 +169,7 @@ const paintMap = (live) => {
   const [lefts, bottoms] = [lines(MAP.columns, left, right), lines(MAP.rows, bottom, top)];
   const inks = { stable: plot.ink("--accent-3"), unstable: plot.ink("--accent-4") };
   // A row that is not there yet looks like the one below it that is.
-  const known = new Set(map.order.slice(0, Math.ceil((map.done * MAP.chunk) / MAP.columns)));
+  const { known } = map;
   plot.clip(() => {
     for (let row = 0; row < MAP.rows; row++) {
       let source = row;
@@ -178,8 +186,12 @@ const paintMap = (live) => {
     }
     plot.context.globalAlpha = 1;
   });
-  plot.dot(Number(setting.get(x)), Number(setting.get(y)), "--page", 7);
-  plot.dot(Number(setting.get(x)), Number(setting.get(y)), "--accent-1", 5);
+  if (map.slow) plot.context.fillText("too slow for a page: see the commands", left + 12, top + 24);
+  // A point beyond the map is shown open, at its edge.
+  const at = [[map.x, x], [map.y, y]].map(([scale, key]) => Math.min(1, Math.max(0, scale.part(Number(setting.get(key))))));
+  const beyond = [[map.x, x], [map.y, y]].some(([scale, key]) => Math.abs(scale.part(Number(setting.get(key))) - 0.5) > 0.5 + 1e-9);
+  plot.dot(map.x.value(at[0]), map.y.value(at[1]), "--page", 7);
+  plot.dot(map.x.value(at[0]), map.y.value(at[1]), "--accent-1", 5, beyond);
   plot.canvas.setAttribute("aria-label", `Map of stability over ${labelOf(x)} and ${labelOf(y)}; the point is at ${format(Number(setting.get(x)))}, ${format(Number(setting.get(y)))}.`);
 };
 
@@ -187,43 +199,70 @@ const times = (rate) => (rate < 0 ? `halve every ${short(Math.LN2 / -rate)} s` :
 
 /** The verdict on a setting, in a sentence or two. */
 const judge = (view, limits, setting) => {
-  const [growth, exact] = [single(view, "growth.predicted"), single(view, "growth.exact")];
+  const growth = single(view, "growth.predicted");
   if (Number.isNaN(growth)) return { verdict: "No growth is predicted: the step or the plant is not finite here.", good: false };
-  if (view.kind === "loop") {
-    const limit = single(limits, "latency.stable");
-    const more = Number.isNaN(limit) ? "" : limit > 0 ? ` Without jitter and losses it is stable up to a latency of ${short(limit)} s.` : " Without jitter and losses it is unstable without any latency.";
-    const state = growth < 0 ? `Stable: deviations ${times(growth)}` : `Unstable: deviations ${times(growth)}`;
-    const ideal = single(view, "growth.ideal");
-    const beside = Number.isNaN(ideal) ? "." : `; with perfect timing they ${times(ideal)}.`;
-    return { verdict: state + beside + more, good: growth < 0 };
-  }
-  const dt = Number(setting.get("dt"));
+  return view.kind === "loop" ? judgeLoop(view, limits, setting, growth) : judgeMotion(view, limits, setting, growth);
+};
+
+const judgeLoop = (view, limits, setting, growth) => {
+  const [limit, tried] = [single(limits, "latency.stable"), single(limits, "latency.tried")];
+  const random = Number(setting.get("jitter")) > 0 || Number(setting.get("loss")) > 0;
+  const without = random ? " Without jitter and losses it" : " It";
+  let more = "";
+  if (limit === Infinity) more = `${without} is stable up to ${short(tried)} s, the longest latency of a page.`;
+  else if (limit > 0) more = `${without} is stable up to a latency of ${short(limit)} s.`;
+  const marginal = Math.abs(growth) * Number(setting.get("period")) < 1e-9;
+  if (marginal) return { verdict: `At the edge: deviations from the ${view.point} neither grow nor decay exponentially.`, good: false };
+  const ideal = single(view, "growth.ideal");
+  const beside = Number.isNaN(ideal) || Math.abs(ideal) < 1e-9 ? "." : `; with perfect timing they ${times(ideal)}.`;
+  const state = growth < 0 ? "Stable" : "Unstable";
+  return { verdict: `${state}: deviations from the ${view.point} ${times(growth)}${beside}${more}`, good: growth < 0 };
+};
+
+const judgeMotion = (view, limits, setting, growth) => {
+  const [exact, dt, limit] = [single(view, "growth.exact"), Number(setting.get("dt")), single(limits, "dt.stable")];
   const grows = growth * dt > 1e-9;
-  const where = view.point.startsWith("equilibrium") ? "the equilibrium" : "the start";
-  if (grows && exact * dt > 1e-9) {
-    return { verdict: `Deviations from ${where} grow by nature: they ${times(exact)}; in these steps they ${times(growth)}.`, good: true };
+  if (exact * dt > 1e-9) {
+    return { verdict: `Deviations from the ${view.point} grow by nature: they ${times(exact)}; in these steps they ${grows ? times(growth) : "do not grow"}.`, good: grows };
   }
-  const limit = single(limits, "dt.stable");
-  const share = limit === Infinity ? " No step up to 100 radians is unstable." : limit > 0 ? ` The largest stable step is ${short(limit)} s; this is ${short((100 * dt) / limit)} % of it.` : limit === 0 ? " No step of this integrator is stable here." : "";
-  if (grows) return { verdict: `Unstable: deviations from ${where} ${times(growth)}, though those of the exact motion do not grow.${share}`, good: false };
-  return { verdict: `Stable: no deviation from ${where} grows.${share}`, good: true };
+  let share = "";
+  if (limit === Infinity) share = " No step up to 100 radians of the fastest mode is unstable.";
+  else if (limit > 0 && dt <= limit) share = ` The largest stable step is ${short(limit)} s; this is ${short((100 * dt) / limit)} % of it.`;
+  else if (limit > 0) share = ` Steps are stable up to ${short(limit)} s${grows ? "" : ", and again here"}.`;
+  else if (limit === 0) share = " No step of this integrator is stable here.";
+  if (grows) return { verdict: `Unstable: deviations from the ${view.point} ${times(growth)}, though those of the exact motion do not grow.${share}`, good: false };
+  const away = leaves(view);
+  return { verdict: `Stable: no deviation from the ${view.point} grows exponentially.${away}${share}`, good: !away };
+};
+
+/** A sentence if the motion from the start runs away from the reference; empty else. */
+const leaves = (view) => {
+  const reference = Math.max(...view.states.split(" ").map((name) => Math.max(0, ...[...(view[`reference.${name}`] || [])].map(Math.abs))));
+  const size = single(view, "size");
+  const cut = single(view, "horizon") > 1.5 * (view.time[view.time.length - 1] || 0) + 2 * (view.time[1] || 0);
+  return cut || (reference > 0 && size > 10 * reference) ? " But this motion, from its start, runs away." : "";
 };
 
 /** Rows of a quantity with its prediction and its measurement. */
 const numberRows = (view, limits, setting) => {
   const get = (name) => format(single(view, name));
+  const random = Number(setting.get("jitter")) > 0 || Number(setting.get("loss")) > 0;
   const error = single(view, "growth.error");
   const measured = get("growth.measured") + (error > 0 ? ` ± ${error.toPrecision(1)}` : "");
-  const rows = [["growth of small deviations (1/s)", get("growth.predicted"), measured]];
+  const of = view.kind === "loop" && random ? "growth of the mean deviation, rms of many loops; measured: 128 loops (1/s)" : "growth of small deviations (1/s)";
+  const rows = [[of, get("growth.predicted"), measured]];
   if (view.kind === "motion") {
-    rows.push(["largest change of the energy", get("energy.predicted"), get("energy.largest")]);
-    if (limits["dt.stable"]) rows.push(["largest stable step (s)", format(single(limits, "dt.stable")), "—"]);
+    if (view.energy.length) rows.push(["largest change of the energy", get("energy.predicted"), get("energy.largest")]);
+    const limit = single(limits, "dt.stable");
+    if (limit >= 0 && (limit > 0 || single(view, "growth.exact") <= 1e-9)) rows.push(["largest stable step (s)", limit === 0 ? "none" : format(limit), "—"]);
   } else {
-    if (limits["latency.stable"]) rows.push(["stable up to a latency of (s)", format(single(limits, "latency.stable")), "—"]);
+    const [limit, tried] = [single(limits, "latency.stable"), single(limits, "latency.tried")];
+    rows.push(["stable up to a latency of (s)", limit === Infinity ? `above ${format(tried)}` : format(limit), "—"]);
     if (limits["cost.rise"]) rows.push(["rise of the mean square of the states under noise", format(single(limits, "cost.rise")), "—"]);
+    rows.push(["steps in a period", "—", get("steps")]);
   }
   rows.push(["evaluations of the forces per simulated second", get("evaluations"), "—"]);
   const [asked, shown] = [Number(setting.get("horizon")), single(view, "horizon")];
-  if (shown < 0.99 * asked) rows.push(["time shown, of the time asked for (s)", "—", `${format(shown)} of ${format(asked)}`]);
+  if (shown < 0.5 * asked) rows.push(["time shown, of the time asked for (s)", "—", `${format(shown)} of ${format(asked)}`]);
   return rows;
 };

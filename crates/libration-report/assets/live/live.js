@@ -3,45 +3,52 @@
 class Live {
   constructor(section) {
     this.section = section;
-    this.presets = JSON.parse(document.getElementById("live-settings").textContent);
-    this.find = (name) => section.querySelector(`[data-live="${name}"]`);
     // For scripts of readers and tests.
     section.live = this;
-    this.plots = {};
+    this.presets = JSON.parse(document.getElementById("live-settings").textContent);
+    this.find = (name) => section.querySelector(`[data-live="${name}"]`);
     this.palette = new Palette(section);
+    this.plots = {};
     for (const name of ["phase", "curve", "circle", "map"]) this.plots[name] = new Plot(this.find(name), this.palette);
     this.frames = [];
-    this.dirty = false;
     this.methods = null;
     // The form is there before the engine, so that nothing moves when it comes.
-    this.choose(settingOfLink(location.hash) || parseSetting(this.presets[0].text));
+    const linked = settingOfLink(location.hash);
+    this.choose(linked ? linked.setting : parseSetting(this.presets[0].text), linked?.error);
     addEventListener("hashchange", () => {
       const linked = settingOfLink(location.hash);
-      if (linked && linkOfSetting(linked) !== linkOfSetting(this.setting)) this.choose(linked);
+      if (linked && linkOfSetting(linked.setting) !== linkOfSetting(this.setting)) this.choose(linked.setting, linked.error);
     });
+    this.listen();
   }
 
   async begin() {
-    this.engine = await loadEngine();
-    this.methods = this.engine("methods\n").methods.split(" ");
+    const bytes = await loadModule();
+    // Maps and limits may take long, and must not keep the figures waiting.
+    [this.engine, this.slow] = [new Engine(bytes), new Engine(bytes)];
+    this.methods = (await this.engine.ask("methods\n")).methods.split(" ");
     this.listMethods();
     this.change();
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
       this.palette.clear();
       this.change();
     });
-    new ResizeObserver(() => this.change()).observe(this.section);
-    this.listen();
+    let width = this.section.clientWidth;
+    new ResizeObserver(() => {
+      if (width === this.section.clientWidth) return;
+      width = this.section.clientWidth;
+      this.change();
+    }).observe(this.section);
     this.section.dataset.state = "ready";
   }
 
-  /** Begins with another setting; ranges of sliders are around its numbers. */
-  choose(setting) {
+  /** Begins with another setting; ranges of sliders are around its numbers. `error` says what is wrong with its source. */
+  choose(setting, error = "") {
     this.setting = setting;
-    this.map = null;
-    this.axes = null;
-    this.columns = null;
+    [this.sourceError, this.editError] = [error, ""];
+    [this.view, this.map, this.axes, this.columns] = [null, null, null, null];
     this.limits = {};
+    this.limitsOf = "";
     this.fitted = false;
     this.fill();
     this.change();
@@ -49,31 +56,60 @@ class Live {
 
   set(key, value) {
     this.setting.set(key, String(value));
+    this.touch();
+  }
+
+  /** The setting changed by other means than its equations, whose last right text returns. */
+  touch() {
+    if (this.editError) {
+      this.editError = "";
+      this.find("equations").value = this.systemText();
+    }
     this.change();
   }
 
-  /** Draws in the next frame. */
-  change() {
-    if (this.dirty || !this.engine) return;
-    this.dirty = true;
-    requestAnimationFrame(() => {
-      this.dirty = false;
+  systemText() {
+    return settingText(new Map([...this.setting].filter(([key]) => isSystemKey(key))));
+  }
+
+  ask(kind, setting = this.setting, engine = this.engine) {
+    return engine.ask(`${kind}\n${settingText(setting)}`);
+  }
+
+  /** Draws as soon as the engine has answered. While it works, only the last change counts. */
+  async change() {
+    this.changed = true;
+    if (this.working || !this.engine) return;
+    this.working = true;
+    while (this.changed) {
+      this.changed = false;
       const started = performance.now();
-      this.draw();
+      const text = settingText(this.setting);
+      const view = await this.engine.ask(`view\n${text}`);
+      if (this.editError || (text !== settingText(this.setting) && view.error)) continue;
+      this.show(view);
       this.frames.push(performance.now() - started);
       if (this.frames.length > 60) this.frames.shift();
       this.section.dataset.frame = [...this.frames].sort((a, b) => a - b)[this.frames.length >> 1].toFixed(2);
-    });
+      await new Promise(requestAnimationFrame);
+    }
+    this.working = false;
   }
 
-  ask(kind, setting = this.setting) {
-    return this.engine(`${kind}\n${settingText(setting)}`);
-  }
-
-  draw() {
-    const view = this.ask("view");
-    this.showError(view.error);
-    if (view.error) return;
+  show(view) {
+    const error = view.error || this.sourceError;
+    this.find("error").textContent = error ? `Error: ${error}` : "";
+    this.find("equations").setAttribute("aria-invalid", String(Boolean(error)));
+    // Figures of another setting than the one in the form are faint.
+    this.section.classList.toggle("stale", Boolean(view.error));
+    this.failed = Boolean(view.error);
+    if (view.error) {
+      clearTimeout(this.idle);
+      this.find("verdict").textContent = "";
+      this.find("numbers").replaceChildren();
+      this.linked();
+      return;
+    }
     this.view = view;
     this.names = view.states.split(" ");
     this.numbers();
@@ -83,16 +119,16 @@ class Live {
     drawMap(this);
     clearTimeout(this.idle);
     this.idle = setTimeout(() => this.rest(), 120);
-    this.section.dataset.drawn = String(Number(this.section.dataset.drawn || 0) + 1);
   }
 
   /** What takes longer than a frame, when nothing moves. */
-  rest() {
-    this.limits = this.ask("limits");
-    this.limitsOf = settingText(this.setting);
+  async rest() {
+    const text = settingText(this.setting);
+    const limits = await this.slow.ask(`limits\n${text}`);
+    if (this.failed || text !== settingText(this.setting)) return;
+    [this.limits, this.limitsOf] = [limits, text];
     this.fit();
     this.numbers();
-    drawCircle(this);
     this.linked();
     const fragment = linkOfSetting(this.setting);
     if (this.touched && location.hash !== fragment) history.replaceState(null, "", fragment);
@@ -105,21 +141,24 @@ class Live {
     if (this.fitted || !row || !(limit > 0 && limit < Infinity)) return;
     this.fitted = true;
     const latency = Number(this.setting.get("latency"));
-    row.scale = rangeOf("latency", latency, 2 * limit);
+    row.scale = rangeOf("latency", latency, Math.min(2 * limit, single(this.limits, "latency.tried")));
     row.place(latency);
     this.map = null;
     drawMap(this);
   }
 
-  showError(error) {
-    this.find("error").textContent = error ? `Error: ${error}` : "";
-    this.find("equations").setAttribute("aria-invalid", String(Boolean(error)));
+  /** The texts to copy; none where the setting has an error, unless `always`. */
+  texts(always = false) {
+    if (this.failed && !always) return { command: "", python: "", link: "" };
+    const link = location.href.split("#")[0] + linkOfSetting(this.setting);
+    return { command: commandOf(this.setting), python: pythonOf(this.setting), link };
   }
 
   linked() {
-    for (const [name, text] of [["command", commandOf], ["python", pythonOf]]) {
-      this.find(`${name}-code`).textContent = text(this.setting);
-    }
+    const { command, python } = this.texts();
+    this.find("command-code").textContent = command;
+    this.find("python-code").textContent = python;
+    for (const name of ["command", "python", "link"]) this.find(`copy-${name}`).disabled = !command;
   }
 
   /** Verdict and numbers. */
@@ -138,48 +177,47 @@ class Live {
 
   /** Makes the form for the setting. */
   fill() {
-    const { setting } = this;
     this.rows = [];
-    const numberRow = (key, holder) => {
-      const number = Number(setting.get(key));
-      const scale = rangeOf(key, number, 10 * Number(setting.get("period")));
-      const row = new NumberRow(key.replace(/[^A-Za-z0-9]/g, "-") + this.rows.length, key, labelOf(key), scale, (x) => {
-        this.touched = true;
-        this.set(key, x);
-      });
-      row.show(number);
-      this.rows.push(row);
-      holder.append(row.element);
-    };
-    const keys = (prefix) => [...setting.keys()].filter((key) => key.startsWith(prefix));
-    const parts = [];
-    const parameters = keys("parameter.");
-    if (parameters.length) {
-      const holder = group("Parameters");
-      parameters.forEach((key) => numberRow(key, holder));
-      parts.push(holder);
-    }
-    const start = group("Start");
-    keys("start.").forEach((key) => numberRow(key, start));
-    if (start.children.length > 1) parts.push(start);
-    const step = group("Step");
-    const select = make("select", { id: "live-integrator" });
-    this.integrator = select;
-    this.listMethods();
-    select.addEventListener("change", () => {
-      this.touched = true;
-      this.map = null;
-      this.set("integrator", select.value);
-    });
-    step.append(make("label", { htmlFor: "live-integrator", textContent: "Integrator" }), select);
-    ["dt", "horizon"].forEach((key) => numberRow(key, step));
-    parts.push(step);
-    parts.push(this.loopGroup(numberRow));
-    this.find("numbers-form").replaceChildren(...parts);
-    const system = new Map([...setting].filter(([key]) => isSystemKey(key)));
-    this.find("equations").value = settingText(system);
-    const chosen = this.presets.findIndex((preset) => parseSetting(preset.text).get("system") === setting.get("system"));
+    const parts = [
+      this.numberGroup("Parameters", "parameter."),
+      this.numberGroup("Start", "start."),
+      this.stepGroup(),
+      this.loopGroup(),
+    ];
+    this.find("numbers-form").replaceChildren(...parts.filter(Boolean));
+    this.find("equations").value = this.systemText();
+    const chosen = this.presets.findIndex((preset) => parseSetting(preset.text).get("system") === this.setting.get("system"));
     this.find("system").value = String(chosen);
+    this.linked();
+  }
+
+  numberGroup(title, prefix) {
+    const keys = [...this.setting.keys()].filter((key) => key.startsWith(prefix));
+    return keys.length ? group(title, ...keys.map((key) => this.numberRow(key))) : null;
+  }
+
+  numberRow(key) {
+    const number = Number(this.setting.get(key));
+    const scale = rangeOf(key, number, 10 * Number(this.setting.get("period")));
+    const id = key.replace(/[^A-Za-z0-9]/g, "-") + this.rows.length;
+    const row = new NumberRow(id, key, labelOf(key), scale, (x) => {
+      this.touched = true;
+      this.set(key, x);
+    });
+    row.show(number);
+    this.rows.push(row);
+    return row.element;
+  }
+
+  stepGroup() {
+    this.integrator = make("select", { id: "live-integrator" });
+    this.listMethods();
+    this.integrator.addEventListener("change", () => {
+      this.touched = true;
+      this.set("integrator", this.integrator.value);
+    });
+    const label = make("label", { htmlFor: "live-integrator", textContent: "Integrator" });
+    return group("Step", label, this.integrator, ...["dt", "horizon"].map((key) => this.numberRow(key)));
   }
 
   /** The names of the integrators; before the engine is there, that of the setting. */
@@ -189,64 +227,84 @@ class Live {
     this.integrator.value = own;
   }
 
-  loopGroup(numberRow) {
+  loopGroup() {
     const { setting } = this;
-    const holder = group("Control loop");
     if (!setting.get("inputs")) {
-      holder.append(make("p", { className: "sub", textContent: "The equations have no inputs for commands." }));
-      return holder;
+      return group("Control loop", make("p", { className: "sub", textContent: "The equations have no inputs for commands." }));
     }
     const box = make("input", { type: "checkbox", id: "live-loop", checked: hasLoop(setting) });
-    holder.append(make("div", {}, box, make("label", { htmlFor: "live-loop", textContent: " Feedback u = u₀ − K(x − x₀)" })));
     box.addEventListener("change", () => {
-      this.touched = true;
-      const next = new Map(setting);
+      const next = new Map([...setting].filter(([key]) => !LOOP_KEYS.includes(key)));
       if (box.checked) this.design(next);
-      else LOOP_KEYS.forEach((key) => next.delete(key));
-      this.choose(next);
+      else this.choose(next);
     });
+    const holder = group("Control loop", make("div", {}, box, make("label", { htmlFor: "live-loop", textContent: " Feedback u = u₀ − K(x − x₀)" })));
     if (!hasLoop(setting)) return holder;
-    for (const [key, value] of [["gain-factor", 1], ["period", 0.01], ["latency", 0], ["jitter", 0], ["skew", 0], ["loss", 0], ["seed", 0]]) {
-      if (!setting.has(key)) setting.set(key, String(value));
-    }
-    const rows = setting.get("gain").split(";").map((row) => row.split(",").map(Number));
-    const names = statesOf(setting);
-    rows.forEach((row, i) =>
-      row.forEach((gain, j) => {
-        const label = `Gain of ${names[j] || j + 1}${rows.length > 1 ? ` on input ${i + 1}` : ""}`;
-        const own = new NumberRow(`gain-${i}-${j}`, "gain", label, rangeOf("gain", gain), (x) => {
-          this.touched = true;
-          rows[i][j] = x;
-          this.set("gain", rows.map((row) => row.join(",")).join(";"));
-        });
-        own.show(gain);
-        holder.append(own.element);
-      }),
-    );
-    ["gain-factor", "period", "latency", "jitter", "skew", "loss", "seed"].forEach((key) => numberRow(key, holder));
+    for (const [key, value] of Object.entries(LOOP_DEFAULTS)) if (!setting.has(key)) setting.set(key, value);
+    holder.append(...this.gainRows(), ...Object.keys(LOOP_DEFAULTS).map((key) => this.numberRow(key)));
     const design = make("button", { type: "button", textContent: "Design gains (LQR)" });
-    design.addEventListener("click", () => {
-      this.touched = true;
-      const next = new Map(setting);
-      this.design(next);
-      this.choose(next);
-    });
+    design.addEventListener("click", () => this.design(new Map(this.setting)));
     holder.append(design);
     return holder;
   }
 
-  /** Gains of a linear-quadratic regulator with weights of 1. */
-  design(setting) {
+  gainRows() {
+    const rows = this.setting.get("gain").split(";").map((row) => row.split(",").map(Number));
+    const names = statesOf(this.setting);
+    const rowOf = (gain, i, j) => {
+      const label = `Gain of ${names[j] || j + 1}${rows.length > 1 ? ` on input ${i + 1}` : ""}`;
+      const own = new NumberRow(`gain-${i}-${j}`, "gain", label, rangeOf("gain", gain), (x) => {
+        this.touched = true;
+        rows[i][j] = x;
+        this.set("gain", rows.map((row) => row.join(",")).join(";"));
+      });
+      own.show(gain);
+      return own.element;
+    };
+    return rows.flatMap((row, i) => row.map((gain, j) => rowOf(gain, i, j)));
+  }
+
+  /** Chooses the setting with the gains of a linear-quadratic regulator with weights of 1. */
+  async design(setting) {
+    this.touched = true;
     if (!setting.get("period")) setting.set("period", setting.get("dt"));
-    const designed = this.ask("design", new Map([...setting].filter(([key]) => key !== "gain").concat([["gain", "0"]])));
-    this.showError(designed.error);
-    if (designed.error) return;
+    const designed = await this.ask("design", new Map([...setting].filter(([key]) => key !== "gain").concat([["gain", "0"]])));
+    if (designed.error) {
+      this.choose(new Map([...setting].filter(([key]) => !LOOP_KEYS.includes(key))), designed.error);
+      return;
+    }
     const rows = setting.get("inputs").split(",").length;
     const columns = designed.gain.length / rows;
     const texts = Array.from({ length: rows }, (_, i) =>
       [...designed.gain.slice(i * columns, (i + 1) * columns)].map((x) => Number(x.toPrecision(4))).join(","),
     );
     setting.set("gain", texts.join(";"));
+    this.choose(setting);
+  }
+
+  /** Takes the system that a reader types, as soon as it has no error. */
+  async edit() {
+    const field = this.find("equations");
+    const text = field.value;
+    const rest = [...this.setting].filter(([key]) => !isSystemKey(key));
+    const { setting, error } = settingOf([...entriesOf(text), ...rest]);
+    let next = setting;
+    let problem = error;
+    if (!problem) {
+      const view = await this.ask("view", next);
+      // Gains of another system have another shape.
+      if (view.error && hasLoop(next)) next = new Map([...next].filter(([key]) => !LOOP_KEYS.includes(key)));
+      problem = hasLoop(setting) && !hasLoop(next) ? (await this.ask("view", next)).error : view.error;
+    }
+    if (field.value !== text) return;
+    this.touched = true;
+    this.editError = problem || "";
+    if (problem) {
+      this.show({ error: problem });
+      return;
+    }
+    this.choose(next);
+    field.value = text;
   }
 
   listen() {
@@ -257,25 +315,12 @@ class Live {
       this.touched = true;
       this.choose(parseSetting(preset.text));
     });
-    this.find("equations").addEventListener("input", () => {
-      const system = parseSetting(this.find("equations").value);
-      const rest = [...this.setting].filter(([key]) => !isSystemKey(key));
-      let next = new Map([...system, ...rest]);
-      // Gains of another system have another shape.
-      if (hasLoop(next) && this.ask("view", next).error) next = new Map([...next].filter(([key]) => !LOOP_KEYS.includes(key)));
-      const view = this.ask("view", next);
-      this.showError(view.error);
-      if (view.error) return;
-      this.touched = true;
-      const text = this.find("equations").value;
-      this.choose(next);
-      this.find("equations").value = text;
-    });
-    for (const [name, text] of [["command", commandOf], ["python", pythonOf], ["link", () => location.href.split("#")[0] + linkOfSetting(this.setting)]]) {
+    this.find("equations").addEventListener("input", () => this.engine && this.edit());
+    for (const name of ["command", "python", "link"]) {
       this.find(`copy-${name}`).addEventListener("click", async () => {
         const said = this.find("copied");
         try {
-          await navigator.clipboard.writeText(text(this.setting));
+          await navigator.clipboard.writeText(this.texts()[name]);
           said.textContent = "Copied.";
         } catch {
           said.textContent = "The browser refused to copy; the text is under “Commands”.";
@@ -283,15 +328,8 @@ class Live {
         setTimeout(() => (said.textContent = ""), 4000);
       });
     }
-    follow(this.plots.phase, (x, y) => {
-      const [first, second] = this.columns;
-      this.setting.set(`start.${first}`, String(Number(x.toPrecision(4))));
-      this.moved(`start.${second}`, y);
-    });
-    follow(this.plots.map, (x, y) => {
-      this.setting.set(this.axes[0], String(Number(x.toPrecision(4))));
-      this.moved(this.axes[1], y);
-    });
+    follow(this.plots.phase, (x, y) => this.moved([`start.${this.columns[0]}`, x], [`start.${this.columns[1]}`, y]));
+    follow(this.plots.map, (x, y) => this.moved([this.axes[0], x], [this.axes[1], y]));
     for (const name of ["columns", "x-axis", "y-axis"]) {
       this.find(name).addEventListener("change", () => {
         if (name === "columns") this.columns = this.find(name).value.split("|");
@@ -302,10 +340,11 @@ class Live {
   }
 
   /** A pointer moved two entries. */
-  moved(key, number) {
+  moved(...entries) {
     this.touched = true;
-    this.set(key, Number(number.toPrecision(4)));
-    for (const row of this.rows) if (this.setting.has(row.key)) row.show(Number(this.setting.get(row.key)));
+    for (const [key, number] of entries) this.setting.set(key, String(Number(number.toPrecision(4))));
+    for (const row of this.rows) if (this.setting.has(row.key) && row.key !== "gain") row.show(Number(this.setting.get(row.key)));
+    this.touch();
   }
 }
 
