@@ -30,6 +30,7 @@ mod integrator_page;
 mod largest_step;
 mod linear_candidates;
 mod linearised_step;
+mod live_setting;
 mod matrices;
 mod matrix_step;
 mod memory;

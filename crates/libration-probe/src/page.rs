@@ -1,8 +1,5 @@
 //! An audit as an HTML page.
 
-use libration::AnyMethod;
-use libration::live::{MOST_DEGREES, Setting};
-use libration_report::live::LiveSetting;
 use libration_report::notation::{number, plural};
 use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
@@ -10,6 +7,7 @@ use libration_report::report;
 
 use crate::ProbeReport;
 use crate::integrator_page::{defects, integrator};
+use crate::live_setting::live_settings;
 use crate::mode_plane::mode_plane;
 use crate::summary::{capitalised, error_in_words};
 
@@ -17,7 +15,7 @@ use crate::summary::{capitalised, error_in_words};
 pub fn page(audit: &ProbeReport) -> String {
     let mut page = Page { title: format!("Audit of a step: {}", audit.title), ..Page::default() };
     page.answer.clone_from(&audit.answer);
-    page.live = live(audit);
+    page.live = live_settings(audit);
     findings(&mut page, audit);
     modes(&mut page, audit);
     latency(&mut page, audit);
@@ -40,30 +38,6 @@ pub fn page(audit: &ProbeReport) -> String {
         audit.libration_version,
     );
     report::render_page(&page, &sub)
-}
-
-/// The linearised simulator in steps of its length, from which a reader may change gains and timing; none of a simulator whose steps have
-/// one length only, or that is too large.
-fn live(audit: &ProbeReport) -> Vec<LiveSetting> {
-    let Some(flow) = audit.flow.as_ref().filter(|flow| flow.a.rows() <= MOST_DEGREES) else {
-        return Vec::new();
-    };
-    let names = |given: &[String]| {
-        given.iter().map(|name| name.split(' ').next().unwrap_or_default().to_owned()).collect()
-    };
-    let names = [names(&audit.states), names(&audit.inputs)];
-    let mut setting = Setting::of_plant("the simulator, linearised", &flow.a, &flow.b, names);
-    // Its own integrator, where it is known and this form of the plant has positions and velocities.
-    let recognised = audit.recognition.as_ref().and_then(|own| own.by_results.methods.first());
-    let mechanical = !setting.definitions.coordinates.is_empty();
-    if let Some(method) =
-        recognised.and_then(|name| AnyMethod::from_name(name)).filter(|_| mechanical)
-    {
-        setting.integrator = method;
-    }
-    setting.dt = audit.dt;
-    setting.horizon = setting.horizon.max(100.0 * audit.dt);
-    vec![LiveSetting { title: setting.system.clone(), text: setting.to_string() }]
 }
 
 fn findings(page: &mut Page, audit: &ProbeReport) {

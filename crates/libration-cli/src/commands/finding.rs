@@ -22,7 +22,7 @@ pub(super) fn run(
 ) -> Result<(), Failure> {
     let name = id.split('.').next().unwrap_or(id);
     let Some(study) = STUDIES.by_name(name) else {
-        let help = suggest("studies", name, STUDIES.names().into_iter());
+        let help = suggest("studies", name, STUDIES.names());
         return Err(Failure::usage(format!(
             "--only {id}: no study `{name}`; expected STUDY.NAME, the identifier of a finding; {help}"
         )));

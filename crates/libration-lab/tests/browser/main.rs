@@ -10,6 +10,7 @@ mod chromium;
 mod devtools;
 mod figures;
 mod live;
+mod live_links;
 mod loading;
 mod page;
 mod reading;

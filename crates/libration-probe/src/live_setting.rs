@@ -1,0 +1,31 @@
+//! The setting of the live section of a page about a simulator.
+
+use libration::AnyMethod;
+use libration::live::{MOST_DEGREES, Setting};
+use libration_report::live::LiveSetting;
+
+use crate::ProbeReport;
+
+/// The linearised simulator in steps of its length, from which a reader may change gains and timing; none of a simulator whose steps have
+/// one length only, or that is too large.
+pub(crate) fn live_settings(audit: &ProbeReport) -> Vec<LiveSetting> {
+    let Some(flow) = audit.flow.as_ref().filter(|flow| flow.a.rows() <= MOST_DEGREES) else {
+        return Vec::new();
+    };
+    let names = |given: &[String]| {
+        given.iter().map(|name| name.split(' ').next().unwrap_or_default().to_owned()).collect()
+    };
+    let names = [names(&audit.states), names(&audit.inputs)];
+    let mut setting = Setting::of_plant("the simulator, linearised", &flow.a, &flow.b, names);
+    // Its own integrator, where it is known and this form of the plant has positions and velocities.
+    let recognised = audit.recognition.as_ref().and_then(|own| own.by_results.methods.first());
+    let mechanical = !setting.definitions.coordinates.is_empty();
+    if let Some(method) =
+        recognised.and_then(|name| AnyMethod::from_name(name)).filter(|_| mechanical)
+    {
+        setting.integrator = method;
+    }
+    setting.dt = audit.dt;
+    setting.horizon = setting.horizon.max(100.0 * audit.dt);
+    vec![LiveSetting { title: setting.system.clone(), text: setting.to_string() }]
+}
