@@ -24,7 +24,7 @@ impl Growth {
 
     /// Of states of this size, over as long a range as has digits.
     pub(crate) fn of_one_range(scale: f64) -> Self {
-        Growth::within(1e-3 * scale, 1e-9..=1e1)
+        Growth::within(1e-3 * scale, 1e-9..=1e2)
     }
 
     fn within(small: f64, range: RangeInclusive<f64>) -> Self {

@@ -164,8 +164,12 @@ impl Subject {
     pub(crate) fn describe(&self, point: &Point) -> String {
         let states = self.names.iter().zip(&self.places);
         let states = states.filter(|(_, place)| !point.rests || self.unknowns.contains(place));
+        let value = |x: f64| {
+            let text = format!("{:.4}", x + 0.0);
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        };
         let values: Vec<String> = states
-            .map(|(name, &place)| format!("{name} = {:.4}", point.state[place] + 0.0))
+            .map(|(name, &place)| format!("{name} = {}", value(point.state[place])))
             .collect();
         format!("{} {}", if point.rests { "equilibrium" } else { "start" }, values.join(", "))
     }

@@ -249,7 +249,7 @@ const numberRows = (view, limits, setting) => {
   const random = Number(setting.get("jitter")) > 0 || Number(setting.get("loss")) > 0;
   const error = single(view, "growth.error");
   const measured = get("growth.measured") + (error > 0 ? ` ± ${error.toPrecision(1)}` : "");
-  const of = view.kind === "loop" && random ? "growth of the mean deviation, rms of many loops; measured: 128 loops (1/s)" : "growth of small deviations (1/s)";
+  const of = view.kind === "loop" && random ? "growth of the rms deviation of many loops; measured with 128 (1/s)" : "growth of small deviations (1/s)";
   const rows = [[of, get("growth.predicted"), measured]];
   if (view.kind === "motion") {
     if (view.energy.length) rows.push(["largest change of the energy", get("energy.predicted"), get("energy.largest")]);
