@@ -103,6 +103,17 @@ pub fn optional_period<'de, D: Deserializer<'de>>(
     Ok(Option::<Period>::deserialize(deserializer)?.map(|Period(x)| Number(x)))
 }
 
+/// Reads a list of periods.
+///
+/// # Errors
+/// If one of them is no period.
+pub fn list_of_periods<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Vec<Number>, D::Error> {
+    let all = Vec::<Period>::deserialize(deserializer)?;
+    Ok(all.into_iter().map(|Period(x)| Number(x)).collect())
+}
+
 struct Duration(f64);
 
 impl<'de> Deserialize<'de> for Duration {

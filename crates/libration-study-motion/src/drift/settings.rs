@@ -1,7 +1,7 @@
 //! Settings of the study `drift`.
 
 use libration_settings::validation::{check_list, check_steps};
-use libration_settings::{Count, Fault, Number, limits, numbers};
+use libration_settings::{Count, Fault, Number, duration, limits, numbers};
 use libration_study::{Settings, schema};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -27,6 +27,7 @@ impl Default for DriftSettings {
 pub struct Table {
     /// Time steps in s, each once.
     #[schemars(schema_with = "schema::time_steps")]
+    #[serde(deserialize_with = "duration::list_of_periods")]
     dt: Vec<Number>,
     /// Number of steps at each time step.
     #[schemars(schema_with = "schema::steps")]

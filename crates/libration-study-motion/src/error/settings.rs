@@ -1,7 +1,7 @@
 //! Settings of the study `error`.
 
 use libration_settings::validation::{check_number, check_steps};
-use libration_settings::{Count, Fault, Number, limits};
+use libration_settings::{Count, Fault, Number, duration, limits};
 use libration_study::{Settings, schema};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -27,6 +27,7 @@ impl Default for ErrorSettings {
 pub struct Table {
     /// Time step in s.
     #[schemars(schema_with = "schema::time_step")]
+    #[serde(deserialize_with = "duration::number_of_period")]
     dt: Number,
     /// Number of steps.
     #[schemars(schema_with = "schema::steps")]

@@ -1,7 +1,7 @@
 //! Settings of the study `spectrum`.
 
 use libration_settings::validation::check_number;
-use libration_settings::{Fault, Number, limits};
+use libration_settings::{Fault, Number, duration, limits};
 use libration_study::{Settings, schema};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -25,6 +25,7 @@ impl Default for SpectrumSettings {
 pub struct Table {
     /// Time step of the tables in s.
     #[schemars(schema_with = "schema::time_step")]
+    #[serde(deserialize_with = "duration::number_of_period")]
     dt: Number,
 }
 
