@@ -4,18 +4,21 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use libration::analysis::ObserverNoise;
-use libration::catalog::Actuation;
 use libration::control::controller::PidGains;
 use libration::control::{Feedback, Jitter, LqrWeights};
-use libration::{AnySystem, catalog};
 use libration_logs::{StampOptions, read_time_stamps};
-use libration_settings::{Count, Document, Fault, Number, SettingsError, suggestions};
+use libration_settings::{
+    ConfigCommand, Coordinates, Count, Document, Fault, Number, SettingsError, suggestions,
+};
 
 use super::AdviseError;
 use super::advised_system::AdvisedSystem;
 use super::control::{Control, Correction, Law, Regulator};
 use super::file_tables::{ControllerTable, LoopTable, ObserverTable, RequestFile};
 use super::request::{Measure, Request, Tolerance};
+
+/// How to advise on other systems, in messages.
+const OTHER_SYSTEMS: &str = "`libration advise` takes systems by equations as `--system FILE` without a loop, and as `--plant FILE` with one";
 
 /// The default request, as a file with comments.
 pub const DEFAULT: &str = include_str!("default.toml");
@@ -27,6 +30,7 @@ pub const DEFAULT: &str = include_str!("default.toml");
 pub fn parse(text: &str, file_name: &str) -> Result<Request, SettingsError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let document = Document::parse(text, file_name)?;
+    document.check_keys(ConfigCommand::ADVISE.keys)?;
     let file: RequestFile = toml::from_str(text).map_err(|error| document.explain(&error))?;
     let request = Request::try_from(file).map_err(|fault| document.locate(fault))?;
     Ok(Request { invocation: format!("libration advise --config {file_name}"), ..request })
@@ -36,8 +40,8 @@ impl TryFrom<RequestFile> for Request {
     type Error = Fault;
 
     fn try_from(file: RequestFile) -> Result<Self, Fault> {
-        let numbers = |list: Vec<Number>| -> Vec<f64> { list.into_iter().map(|x| x.0).collect() };
-        let (system, actuation) = system(file.system)?;
+        let coordinates = |given: Option<Coordinates>| given.map_or(vec![0.0], Coordinates::list);
+        let (system, actuation) = file.system.catalogued(OTHER_SYSTEMS)?;
         let control = match file.controller {
             None if file.looped.is_some() => {
                 let message = "`[loop]` requires a controller, as [controller.pd]";
@@ -48,8 +52,8 @@ impl TryFrom<RequestFile> for Request {
         };
         let request = Request {
             system: AdvisedSystem::Catalogued { system, actuation },
-            q: numbers(file.start.q),
-            v: numbers(file.start.v),
+            q: coordinates(file.start.q),
+            v: coordinates(file.start.v),
             control,
             tolerance: tolerance(file.tolerance)?,
             horizon: file.request.horizon.0,
@@ -74,17 +78,6 @@ impl TryFrom<RequestFile> for Request {
         })?;
         Ok(request)
     }
-}
-
-fn system(
-    tables: BTreeMap<String, BTreeMap<String, Number>>,
-) -> Result<(AnySystem, Actuation), Fault> {
-    let mut systems = tables.into_iter();
-    let (Some((name, parameters)), None) = (systems.next(), systems.next()) else {
-        return Err(Fault::new("system", "`system` must be one table, as [system.oscillator]"));
-    };
-    let parameters: Vec<_> = parameters.iter().map(|(name, value)| (name, value.0)).collect();
-    catalog::build(&name, &parameters).map_err(|error| Fault::new("system", error.to_string()))
 }
 
 fn tolerance(table: BTreeMap<String, Number>) -> Result<Tolerance, Fault> {
@@ -212,6 +205,25 @@ mod tests {
     }
 
     #[test]
+    fn each_key_of_the_command_is_read_and_no_other() {
+        for key in ConfigCommand::all_keys() {
+            let own = ConfigCommand::ADVISE.keys.contains(&key);
+            match parse(&format!("{key} = true"), "mine.toml") {
+                Ok(_) => assert!(!own, "{key}"),
+                Err(error) => assert!(own && error.message().contains(key), "{error}"),
+            }
+        }
+    }
+
+    #[test]
+    fn a_start_is_a_number_or_a_list() {
+        let request = |text: &str| parse(text, "mine.toml").unwrap();
+        let (number, list) = ("[start]\nq = 0.5\nv = 0", "[start]\nq = [0.5]\nv = [0.0]");
+        assert_eq!(request(number), request(list));
+        assert_eq!(request(number).q, [0.5]);
+    }
+
+    #[test]
     fn errors_name_the_file_and_the_value() {
         let error_of = |text: &str| parse(text, "mine.toml").unwrap_err().to_string();
         for (text, wanted) in [
@@ -245,6 +257,11 @@ mod tests {
             ("[system.kepler]\n", "the dimension is 1, but it must be 2"),
             ("[start]\nq = [1.0, 2.0]\n", "`q` has 2 numbers and `v` 1"),
             ("[loop]\nlatenzy = 1\n", "unknown key `latenzy`"),
+            ("[lop]\n", "did you mean `loop`?"),
+            ("[integrater]\n", "did you mean `integrator`, which `rollout` reads?"),
+            ("[system.oscillator]\nomga2 = 1\n", "did you mean `omega2`?"),
+            ("[system.equations]\nof = 'a.toml'\n", "`--system FILE` without a loop"),
+            ("[system.oscillator]\n[system.pendulum]\n", "must be one table"),
         ] {
             let error = error_of(text);
             assert!(error.contains(wanted) && error.contains("mine.toml"), "{wanted}: {error}");

@@ -3,16 +3,16 @@
 use std::collections::BTreeMap;
 
 use libration_settings::latency_presets::LatencyValue;
-use libration_settings::{Count, Number, duration};
+use libration_settings::{Count, Number, StartTable, SystemTables, duration};
 use serde::Deserialize;
 
-/// A request file.
+/// A request file. Tables of other commands are ignored.
 #[derive(Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub(super) struct RequestFile {
     pub(super) tolerance: BTreeMap<String, Number>,
     pub(super) request: RequestTable,
-    pub(super) system: BTreeMap<String, BTreeMap<String, Number>>,
+    pub(super) system: SystemTables,
     pub(super) start: StartTable,
     pub(super) controller: Option<ControllerTable>,
     #[serde(rename = "loop")]
@@ -25,13 +25,6 @@ pub(super) struct RequestTable {
     #[serde(deserialize_with = "duration::number")]
     pub(super) horizon: Number,
     pub(super) rollout: [Count; 2],
-}
-
-#[derive(Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub(super) struct StartTable {
-    pub(super) q: Vec<Number>,
-    pub(super) v: Vec<Number>,
 }
 
 #[derive(Deserialize)]
@@ -112,8 +105,7 @@ impl Default for RequestFile {
         RequestFile {
             tolerance: [("trajectory".to_owned(), Number(1e-3))].into(),
             request: RequestTable::default(),
-            system: [("oscillator".to_owned(), [("omega2".to_owned(), Number(10.0))].into())]
-                .into(),
+            system: SystemTables::of("oscillator", &[("omega2", 10.0)]),
             start: StartTable::default(),
             controller: None,
             looped: None,
@@ -124,12 +116,6 @@ impl Default for RequestFile {
 impl Default for RequestTable {
     fn default() -> Self {
         RequestTable { horizon: Number(10.0), rollout: [Count(4096), Count(1024)] }
-    }
-}
-
-impl Default for StartTable {
-    fn default() -> Self {
-        StartTable { q: vec![Number(0.0)], v: vec![Number(0.0)] }
     }
 }
 

@@ -3,7 +3,7 @@
 use libration_analyze::equation_analysis::EquationSummary;
 use libration_settings::equations::EquationSystem;
 use libration_settings::linear_loop::linearised_equations;
-use libration_settings::live_settings;
+use libration_settings::{ConfigCommand, live_settings};
 use libration_study::{Config, Effort, Study};
 use libration_study_batch::SystemDeterminism;
 use libration_study_motion::{Convergence, Nonlinear, Problem, SystemPrecision, SystemStability};
@@ -114,11 +114,15 @@ impl<'a> SystemStudies<'a> {
     pub fn reason_without_effect(&self, key: &str) -> Option<String> {
         let name = &self.system.name;
         let (table, inner) = key.split_once('.').unwrap_or((key, ""));
-        if ["oscillator", "start"].contains(&table) || inner == "systems" {
+        if ["system", "start"].contains(&table) || inner == "systems" {
             return Some(format!("the system `{name}` takes its place"));
         }
         if let Some(other) = self.not_applicable.iter().find(|other| other.study == table) {
             return Some(other.sentence(name));
+        }
+        if !ConfigCommand::LAB.keys.contains(&table) {
+            return ConfigCommand::reader_of(table)
+                .map(|reader| format!("`{}` reads it, and `lab` does not", reader.name));
         }
         let own = self.studies.iter().find(|study| study.name() == table)?;
         let without = || format!("the study `{table}` of a system by equations has no settings");

@@ -5,7 +5,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
-use super::{Fault, SettingsError, suggestions};
+use super::{ConfigCommand, Fault, SettingsError, suggestions};
 
 /// A parsed TOML file with the position of each value.
 pub struct Document<'a> {
@@ -26,17 +26,19 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// Checks that each key at the root is one of `known`.
+    /// Checks that each key at the root is one of `own`, or one that another command reads.
     ///
     /// # Errors
     /// The first unknown key.
-    pub fn check_keys(&self, known: &[&str]) -> Result<(), SettingsError> {
-        let unknown = |key: &&Spanned<_>| !known.contains(&AsRef::<str>::as_ref(key.get_ref()));
+    pub fn check_keys(&self, own: &[&str]) -> Result<(), SettingsError> {
+        let known = |key: &str| own.contains(&key) || ConfigCommand::reader_of(key).is_some();
+        let unknown = |key: &&Spanned<_>| !known(AsRef::<str>::as_ref(key.get_ref()));
         match self.table.get_ref().keys().filter(unknown).min_by_key(|key| key.span().start) {
             None => Ok(()),
             Some(key) => {
-                let help = suggestions::suggest("keys", key.get_ref(), known.iter().copied());
-                let message = format!("unknown key `{}`", key.get_ref());
+                let name: &str = key.get_ref();
+                let help = unknown_key_help(name, own);
+                let message = format!("unknown key `{name}`");
                 Err(SettingsError::new(self.file, self.text, key.span(), message, Some(help)))
             }
         }
@@ -49,7 +51,7 @@ impl<'a> Document<'a> {
 
     /// The error of a value that is not allowed.
     pub fn locate(&self, fault: Fault) -> SettingsError {
-        let span = self.find(fault.key, fault.index);
+        let span = self.find(&fault.key, fault.index);
         SettingsError::new(self.file, self.text, span, fault.message, fault.help)
     }
 
@@ -95,6 +97,24 @@ impl<'a> Document<'a> {
             }
         }
         span
+    }
+}
+
+/// Help for an unknown key at the root: the most similar key of any command, and a list of those of this one.
+fn unknown_key_help(name: &str, own: &[&str]) -> String {
+    if name == "oscillator" {
+        return "the table of the oscillator is [system.oscillator]".to_owned();
+    }
+    let of_own = suggestions::nearest(name, own.iter().copied());
+    let of_all = suggestions::nearest(name, ConfigCommand::all_keys());
+    let near = suggestions::nearest(name, [of_own, of_all].into_iter().flatten());
+    let foreign = near.filter(|near| !own.contains(near));
+    match foreign.and_then(|near| Some((near, ConfigCommand::reader_of(near)?.name))) {
+        Some((near, reader)) => {
+            let own = own.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ");
+            format!("did you mean `{near}`, which `{reader}` reads? the keys are {own}")
+        }
+        None => suggestions::suggest("keys", name, own.iter().copied()),
     }
 }
 

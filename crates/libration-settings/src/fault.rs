@@ -1,12 +1,13 @@
 //! Invalid values.
 
+use std::borrow::Cow;
 use std::fmt;
 
 /// An invalid value of a settings file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
     /// The dotted key, as in `drift.dt`.
-    pub key: &'static str,
+    pub key: Cow<'static, str>,
     /// The index of the element, if the value is an array.
     pub index: Option<usize>,
     /// The error and the allowed values.
@@ -26,13 +27,13 @@ impl std::error::Error for Fault {}
 
 impl Fault {
     /// The fault `message` of the value of `key`.
-    pub fn new(key: &'static str, message: impl Into<String>) -> Self {
-        Fault { key, index: None, message: message.into(), help: None }
+    pub fn new(key: impl Into<Cow<'static, str>>, message: impl Into<String>) -> Self {
+        Fault { key: key.into(), index: None, message: message.into(), help: None }
     }
 
     /// The fault `message` of element `index` of the array `key`.
-    pub fn at(key: &'static str, index: usize, message: impl Into<String>) -> Self {
-        Fault { key, index: Some(index), message: message.into(), help: None }
+    pub fn at(key: impl Into<Cow<'static, str>>, index: usize, message: impl Into<String>) -> Self {
+        Fault { key: key.into(), index: Some(index), message: message.into(), help: None }
     }
 
     /// The same fault with a suggestion.

@@ -1,5 +1,7 @@
 //! The configuration of the laboratory.
 
+use std::collections::BTreeMap;
+
 use libration::Method;
 use libration::ensemble::{EnsembleError, InstructionSet};
 use libration_settings::{Fault, suggestions};
@@ -122,10 +124,12 @@ impl Serialize for Config {
         let integrators: Vec<_> = self.integrators.iter().map(|method| method.name()).collect();
         map.serialize_entry("integrators", &integrators)?;
         match &self.system {
-            Some(system) => map.serialize_entry("system", system)?,
+            Some(name) => {
+                map.serialize_entry("system", &BTreeMap::from([("equations", name)]))?;
+            }
             None => {
-                map.serialize_entry("oscillator", &self.oscillator)?;
-                map.serialize_entry("start", &self.start)?;
+                map.serialize_entry("system", &self.oscillator.tables())?;
+                map.serialize_entry("start", &self.start.table())?;
             }
         }
         for (name, value) in self.settings.values() {

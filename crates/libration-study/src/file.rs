@@ -3,7 +3,7 @@
 use libration::Method;
 use libration::ensemble::InstructionSet;
 use libration_settings::validation::parse_names;
-use libration_settings::{Fault, Number, suggestions};
+use libration_settings::{Fault, StartTable, SystemTables, suggestions};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -13,8 +13,7 @@ use crate::{AllSettings, Config, Effort, Spring, Start, schema};
 pub(crate) const TEXT: &str = include_str!("default.toml");
 
 /// The keys in the order of the file.
-pub(crate) const KEYS: [&str; 6] =
-    ["studies", "effort", "simd", "integrators", "oscillator", "start"];
+pub(crate) const KEYS: [&str; 6] = ["studies", "effort", "simd", "integrators", "system", "start"];
 
 /// Configuration of `libration lab`. Units are SI.
 #[derive(Deserialize, JsonSchema, Serialize)]
@@ -33,60 +32,25 @@ pub(crate) struct File {
     #[schemars(schema_with = "schema::integrators")]
     integrators: Vec<String>,
     /// The simulated harmonic oscillator.
-    oscillator: SpringTable,
+    #[schemars(schema_with = "schema::system")]
+    system: SystemTables,
     /// Initial state; `q` and `v` must not both be 0.
+    #[schemars(schema_with = "schema::start")]
     start: StartTable,
-}
-
-/// A mass on a spring, m q'' = -k q.
-#[derive(Deserialize, JsonSchema, Serialize)]
-#[serde(default, deny_unknown_fields)]
-struct SpringTable {
-    /// Mass in kg.
-    #[schemars(schema_with = "schema::spring")]
-    m: Number,
-    /// Stiffness in N/m.
-    #[schemars(schema_with = "schema::spring")]
-    k: Number,
-}
-
-/// Initial position and velocity.
-#[derive(Deserialize, JsonSchema, Serialize)]
-#[serde(default, deny_unknown_fields)]
-struct StartTable {
-    /// Position in m.
-    #[schemars(schema_with = "schema::coordinate")]
-    q: Number,
-    /// Velocity in m/s.
-    #[schemars(schema_with = "schema::coordinate")]
-    v: Number,
 }
 
 impl Default for File {
     fn default() -> Self {
-        let Config { studies, effort, simd, integrators, .. } = Config::default();
+        let Config { studies, effort, simd, integrators, oscillator, start, .. } =
+            Config::default();
         File {
             studies,
             effort: effort.name().into(),
             simd: libration_settings::instruction_set_name(simd).into(),
             integrators: integrators.into_iter().map(|method| method.name().into()).collect(),
-            oscillator: SpringTable::default(),
-            start: StartTable::default(),
+            system: oscillator.tables(),
+            start: start.table(),
         }
-    }
-}
-
-impl Default for SpringTable {
-    fn default() -> Self {
-        let Spring { m, k } = Config::default().oscillator;
-        SpringTable { m: Number(m), k: Number(k) }
-    }
-}
-
-impl Default for StartTable {
-    fn default() -> Self {
-        let Start { q, v } = Config::default().start;
-        StartTable { q: Number(q), v: Number(v) }
     }
 }
 
@@ -107,8 +71,8 @@ impl TryFrom<File> for Config {
             simd: simd(&file.simd)?,
             integrators,
             system: None,
-            oscillator: Spring { m: file.oscillator.m.0, k: file.oscillator.k.0 },
-            start: Start { q: file.start.q.0, v: file.start.v.0 },
+            oscillator: Spring::from_tables(&file.system)?,
+            start: Start::from_table(file.start)?,
             settings: AllSettings::default(),
         })
     }

@@ -1,6 +1,6 @@
 //! The studies of a laboratory and their configuration.
 
-use libration_settings::{Document, Fault, SettingsError};
+use libration_settings::{ConfigCommand, Document, Fault, SettingsError};
 use schemars::generate::SchemaSettings;
 use schemars::json_schema;
 use serde_json::{Value, json};
@@ -119,6 +119,11 @@ impl Registry {
         let properties = root.ensure_object().get_mut("properties").and_then(Value::as_object_mut);
         if let Some(properties) = properties {
             properties.insert("studies".to_owned(), studies.to_value());
+            for command in [ConfigCommand::ADVISE, ConfigCommand::ROLLOUT] {
+                for key in command.keys.iter().filter(|key| !KEYS.contains(key)) {
+                    properties.insert((*key).to_owned(), schema::ignored(command.name));
+                }
+            }
             for section in self.sections() {
                 let schema = (section.schema)(&mut generator).to_value();
                 properties.insert(section.name.to_owned(), schema);

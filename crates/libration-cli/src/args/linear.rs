@@ -151,7 +151,7 @@ impl AdviseArgs {
 
 /// A fault with the option that causes it.
 pub(super) fn named(fault: &Fault) -> String {
-    let option = match fault.key {
+    let option = match &*fault.key {
         "loop.latency" => "--latency: ",
         "loop.output-latency" => "--output-latency: ",
         "loop.period" => "--period: ",

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 
 use libration_advise as advise;
 use libration_advise::{Advice, Budget, LoopAdvice, Request, linear, rounded};
+use libration_settings::ConfigCommand;
 use libration_work::Work;
 
 use super::advice_output::{AdviceOutput, failure};
@@ -26,7 +27,7 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
     if let Some((request, warnings)) = super::advise_linear::load_request(args)? {
         return super::advise_linear::run(args, request, warnings, quiet);
     }
-    let (request, warnings) = load_request(args)?;
+    let (request, warnings) = load_request(args, quiet)?;
     let compute = |work: &Work<'_>| advise::advise(work, &request);
     let output = AdviceOutput {
         describe,
@@ -61,7 +62,7 @@ pub(super) fn verdict(args: &AdviseArgs, command: &str, quiet: bool) -> Result<V
         let linear::LinearAdvice { answer, warnings, budgets, period, .. } = advice;
         return Ok(Verdict { answer, warnings, budgets, period: Some(period), holds });
     }
-    let (mut request, _) = load_request(args)?;
+    let (mut request, _) = load_request(args, quiet)?;
     command.clone_into(&mut request.invocation);
     let reporter = Reporter::new(quiet);
     let advice = advise::advise(&Work::new(&reporter, stop), &request);
@@ -74,10 +75,17 @@ pub(super) fn verdict(args: &AdviseArgs, command: &str, quiet: bool) -> Result<V
 }
 
 /// Returns the request of the file or of the options, and the warnings about the log.
-fn load_request(args: &AdviseArgs) -> Result<(Request, Vec<String>), Failure> {
+fn load_request(args: &AdviseArgs, quiet: bool) -> Result<(Request, Vec<String>), Failure> {
     args.ensure_no_linear_options()?;
     let mut request = match &args.config {
-        Some(path) => args.with_timing(config_file::read(path, advise::parse)?)?,
+        Some(path) => {
+            let request = config_file::read(path, |text, name| {
+                advise::parse(text, name).inspect(|_| {
+                    config_file::note_ignored_keys(text, ConfigCommand::ADVISE, quiet);
+                })
+            })?;
+            args.with_timing(request)?
+        }
         None => match args.system_options().and_then(equation_file::system) {
             Some(system) => args.equation_request(system?)?,
             None => args.request()?,

@@ -3,9 +3,10 @@
 use std::fmt::Display;
 use std::path::Path;
 
-use libration_settings::SettingsError;
+use libration_settings::{ConfigCommand, SettingsError};
 
 use crate::error::Failure;
+use crate::terminal;
 
 /// Reads and parses the file of `--config`.
 pub(super) fn read<T>(
@@ -17,4 +18,15 @@ pub(super) fn read<T>(
     };
     let text = libration_settings::read_text(path).map_err(|error| wrong(&error))?;
     parse(&text, &path.to_string_lossy()).map_err(|error| Failure::Shown(error.render_styled()))
+}
+
+/// Prints a note about the keys of a file that only other commands read.
+pub(super) fn note_ignored_keys(text: &str, command: ConfigCommand, quiet: bool) {
+    let ignored = command.ignored_keys(text);
+    if quiet || ignored.is_empty() {
+        return;
+    }
+    let keys = ignored.iter().map(|(key, reader)| format!("`{key}` (of `{reader}`)"));
+    let keys = keys.collect::<Vec<_>>().join(", ");
+    terminal::say(&format!("note: `{}` ignores {keys}", command.name));
 }

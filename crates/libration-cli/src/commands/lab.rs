@@ -8,11 +8,12 @@ use libration_lab::results::Results;
 use libration_lab::session::{Cause, SessionError};
 use libration_lab::{STUDIES, SystemStudies, session};
 use libration_report::record::{Record, Verdict};
+use libration_settings::ConfigCommand;
 use libration_study::{Config, Lab};
 use libration_study_motion::Problem;
 
 use super::disagreements::check_findings;
-use super::{equation_file, finding};
+use super::{config_file, equation_file, finding};
 use crate::args::{LabArgs, simd};
 use crate::error::Failure;
 use crate::progress::Reporter;
@@ -26,7 +27,7 @@ pub(crate) fn run(args: &LabArgs, quiet: bool) -> Result<(), Failure> {
     if args.schema {
         return Ok(terminal::print(&format!("{:#}\n", STUDIES.schema()))?);
     }
-    let config = configure(args)?;
+    let config = configure(args, quiet)?;
     if let Some(id) = &args.only {
         return finding::run(id, args, config, quiet);
     }
@@ -71,9 +72,9 @@ fn show(report: &Path) {
 }
 
 /// Returns the configuration of the file, with options in place of its values.
-fn configure(args: &LabArgs) -> Result<Config, Failure> {
+fn configure(args: &LabArgs, quiet: bool) -> Result<Config, Failure> {
     let mut config = match &args.config {
-        Some(path) => read(path)?,
+        Some(path) => read(path, quiet)?,
         None => STUDIES.config(),
     };
     if args.all {
@@ -87,13 +88,16 @@ fn configure(args: &LabArgs) -> Result<Config, Failure> {
     Ok(config)
 }
 
-fn read(path: &Path) -> Result<Config, Failure> {
+fn read(path: &Path, quiet: bool) -> Result<Config, Failure> {
     let bytes = libration_settings::read(path).map_err(|error| {
         Failure::usage(format!("cannot read `{}` (--config): {error}", path.display()))
     })?;
-    STUDIES
+    let config = STUDIES
         .parse_bytes(&bytes, &path.to_string_lossy())
-        .map_err(|error| Failure::Shown(error.render_styled()))
+        .map_err(|error| Failure::Shown(error.render_styled()))?;
+    let text = String::from_utf8_lossy(&bytes);
+    config_file::note_ignored_keys(&text, ConfigCommand::LAB, quiet);
+    Ok(config)
 }
 
 fn unwritable(folder: &Path, error: &OutputError) -> Failure {

@@ -12,6 +12,7 @@ use libration_env::dataset::{
     Dataset, DatasetError, EquationSource, Flaw, Monitor, VerifyOptions, WriteJob,
 };
 use libration_lab::ReportCheck;
+use libration_settings::ConfigCommand;
 
 use super::{config_file, verify_report};
 use crate::args::{RolloutArgs, VerifyArgs};
@@ -31,7 +32,11 @@ pub(crate) fn run(args: &RolloutArgs, quiet: bool) -> Result<(), Failure> {
         None => dataset::parse(text, name),
     };
     let dataset = match &args.config {
-        Some(path) => config_file::read(path, parse)?,
+        Some(path) => config_file::read(path, |text, name| {
+            parse(text, name).inspect(|_| {
+                config_file::note_ignored_keys(text, ConfigCommand::ROLLOUT, quiet);
+            })
+        })?,
         None if args.system.is_none() => Dataset::default(),
         None => parse("", "defaults").map_err(|error| Failure::usage(error.message()))?,
     };

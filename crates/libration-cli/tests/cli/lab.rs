@@ -93,14 +93,15 @@ fn a_study_that_is_nearly_right_is_guessed() {
 fn wrong_configurations_are_shown_at_the_place() {
     let folder = folder();
     let cases: &[(&[u8], &[&str])] = &[
-        (b"[oscillator]\nk = 0\n", &["mine.toml:2:5", "`oscillator.k` is 0.0", "greater than 0"]),
-        (b"[oscillator]\nm = -1\n", &["mine.toml:2:5", "`oscillator.m` is -1.0"]),
-        (b"[oscillator]\nm = 'one'\n", &["mine.toml:2:5", "expected a number", "^^^^^"]),
-        (b"[ocillator]\n", &["mine.toml:1:2", "unknown key `ocillator`", "`oscillator`?"]),
+        (b"[system.oscillator]\nk = 0\n", &["mine.toml:2:5", "`system.oscillator.k` is 0.0"]),
+        (b"[system.oscillator]\nm = -1\nk = 1\n", &["mine.toml:2:5", "`m` is -1.0"]),
+        (b"[system.oscillator]\nm = 'one'\n", &["mine.toml:2:5", "expected a number", "^^^^^"]),
+        (b"[oscillator]\n", &["mine.toml:1:2", "unknown key `oscillator`", "[system.oscillator]"]),
+        (b"[system.pendulum]\n", &["mine.toml:1:9", "libration lab --system FILE"]),
         (b"[drift]\ndt = [0.1, 0]\n", &["mine.toml:2:12", "`drift.dt` is 0.0"]),
         (b"[drift]\ndt = [nan]\n", &["mine.toml:2:7", "`drift.dt` is NaN"]),
         (b"[drift]\nsteps = 0\n", &["mine.toml:2:9", "`drift.steps` is 0", "1 to"]),
-        (b"[start]\nq = [1, 2]\n", &["mine.toml:2:5", "`start.q`", "expected a number"]),
+        (b"[start]\nq = [1, 2]\n", &["mine.toml:2:5", "`start.q` has 2 numbers", "expected one"]),
         (b"integrators = ['rk5']\n", &["mine.toml:1:16", "`rk5`", "`rk4`?", "`leapfrog`"]),
         (b"studies = ['no-such']\n", &["mine.toml:1:12", "unknown study `no-such`"]),
         (b"effort = \n", &["mine.toml:1:10", "error: "]),

@@ -52,6 +52,7 @@ mod report_check;
 mod report_folder;
 mod rollout;
 mod serve;
+mod shared_config;
 mod simulate;
 mod stability;
 mod steps;

@@ -1,7 +1,7 @@
 //! Settings of data sets.
 
 use libration_analyze::trajectory::FloatType;
-use libration_settings::{Document, SettingsError};
+use libration_settings::{ConfigCommand, Document, SettingsError};
 
 use super::system_tables::EquationSource;
 use super::tables::File;
@@ -60,6 +60,7 @@ fn parse_changed(
 ) -> Result<Dataset, SettingsError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let document = Document::parse(text, file_name)?;
+    document.check_keys(ConfigCommand::ROLLOUT.keys)?;
     let mut file: File = toml::from_str(text).map_err(|error| document.explain(&error))?;
     change(&mut file);
     Dataset::try_from(file).map_err(|fault| document.locate(fault))

@@ -1,12 +1,10 @@
 //! Tables of systems.
 
 use std::collections::BTreeMap;
-use std::fmt;
 use std::path::Path;
 
 use libration_settings::Number;
-use serde::de::{MapAccess, Visitor};
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
 
 /// The equations of a system.
 #[derive(Clone, Copy, Debug)]
@@ -20,13 +18,6 @@ pub enum EquationSource<'a> {
         /// The text.
         text: &'a str,
     },
-}
-
-/// The tables of `[system]`: equations, or systems of the catalogue with their parameters.
-#[derive(Default)]
-pub(super) struct SystemTables {
-    pub(super) equations: Option<EquationsTable>,
-    pub(super) catalogued: BTreeMap<String, BTreeMap<String, Number>>,
 }
 
 /// A system by equations: the name of a file, or its text.
@@ -57,34 +48,6 @@ impl EquationsTable {
                 ..EquationsTable::default()
             },
         }
-    }
-}
-
-impl<'de> Deserialize<'de> for SystemTables {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Reader;
-
-        // Not an untagged enum, whose errors have no place.
-        impl<'de> Visitor<'de> for Reader {
-            type Value = SystemTables;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a table, as [system.oscillator]")
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<SystemTables, A::Error> {
-                let mut tables = SystemTables::default();
-                while let Some(name) = map.next_key::<String>()? {
-                    if name == "equations" {
-                        tables.equations = Some(map.next_value()?);
-                    } else {
-                        tables.catalogued.insert(name, map.next_value()?);
-                    }
-                }
-                Ok(tables)
-            }
-        }
-        deserializer.deserialize_map(Reader)
     }
 }
 

@@ -4,15 +4,17 @@ use libration::catalog::Actuation;
 use libration::control::Jitter;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{Autoreset, Delays, ProgramEnvironment};
-use libration::{ImplicitMethod, Method, catalog};
+use libration::{ImplicitMethod, Method};
 use libration_analyze::trajectory::FloatType;
 use libration_settings::limits::{TIME_STEP, within};
-use libration_settings::{Count, Fault, Number, suggestions};
+use libration_settings::{
+    Coordinates, Count, Fault, Number, StartTable, SystemTables, suggestions,
+};
 
 use super::equation_tables::equation_environment;
 use super::settings::{Chunk, Dataset, STEPS};
-use super::system_tables::{Numbers, SystemTables};
-use super::tables::{ConstantTable, File, PolicyTable, StartTable, TaskTable};
+use super::system_tables::{EquationsTable, Numbers};
+use super::tables::{ConstantTable, File, PolicyTable, TaskTable};
 use crate::environments::{
     AnyEnvironmentSettings, EnvironmentSettings, Noise, PolicySettings, SingleDofSystem, Task,
 };
@@ -81,8 +83,19 @@ impl TryFrom<File> for Dataset {
             }
             Ok([least, most])
         });
-        let ends = |key, ends: [Number; 2]| -> Result<[f64; 2], Fault> {
-            let [low, high] = ends.map(|end| finite(key, end));
+        let ends = |key, given: Option<Coordinates>, default: f64| -> Result<[f64; 2], Fault> {
+            let ends = match given.map_or(vec![default], Coordinates::list)[..] {
+                [one] => [one; 2],
+                [low, high] => [low, high],
+                ref all => {
+                    let message = format!(
+                        "`{key}` has {} numbers; expected one, or the two ends of an interval",
+                        all.len()
+                    );
+                    return Err(Fault::new(key, message));
+                }
+            };
+            let [low, high] = ends.map(|end| finite(key, Number(end)));
             let (low, high) = (low?, high?);
             if low > high {
                 let message = format!("`{key}` is from {low:?} to {high:?}, but it must rise");
@@ -110,7 +123,7 @@ impl TryFrom<File> for Dataset {
                     dt,
                     substeps,
                     task: task(file.task.unwrap_or_default())?,
-                    start: [ends("start.q", q)?, ends("start.v", v)?],
+                    start: [ends("start.q", q, 1.0)?, ends("start.v", v, 0.0)?],
                     limit,
                     autoreset: Autoreset::SameStep,
                     delays,
@@ -123,9 +136,7 @@ impl TryFrom<File> for Dataset {
                     let message = "`start` belongs to systems of the catalogue; expected `start` in [task.expressions], by the names of states";
                     return Err(Fault::new("start", message));
                 }
-                if !file.system.catalogued.is_empty() {
-                    return Err(Fault::new("system", ONE_SYSTEM));
-                }
+                file.system.check_single()?;
                 let mut environment = equation_environment(equations, file.task, (method, dt))?;
                 environment.definition = ProgramEnvironment {
                     substeps,
@@ -162,7 +173,8 @@ impl TryFrom<File> for Dataset {
     }
 }
 
-const ONE_SYSTEM: &str = "`system` must be one table, as [system.oscillator]";
+/// What to do about linear plants, in messages.
+const OTHER_SYSTEMS: &str = "[system.equations] has systems by equations";
 
 /// A number for each action.
 pub(super) fn each(
@@ -189,15 +201,10 @@ pub(super) fn each(
     }
 }
 
-fn system(tables: &SystemTables) -> Result<(SingleDofSystem, Actuation), Fault> {
-    let mut systems = tables.catalogued.iter();
-    let (Some((name, parameters)), None) = (systems.next(), systems.next()) else {
-        return Err(Fault::new("system", ONE_SYSTEM));
-    };
-    let parameters: Vec<_> = parameters.iter().map(|(name, value)| (name, value.0)).collect();
-    let (system, actuation) = catalog::build(name, &parameters)
-        .map_err(|error| Fault::new("system", error.to_string()))?;
+fn system(tables: &SystemTables<EquationsTable>) -> Result<(SingleDofSystem, Actuation), Fault> {
+    let (system, actuation) = tables.catalogued(OTHER_SYSTEMS)?;
     let lone = SingleDofSystem::new(system).ok_or_else(|| {
+        let name = system.name();
         let message =
             format!("`{name}` does not have a single degree of freedom, as a data set requires");
         Fault::new("system", message)

@@ -1,15 +1,13 @@
 //! Tables of settings files.
 
-use std::collections::BTreeMap;
-
-use libration_settings::{Count, Number, duration};
+use libration_settings::{Count, Number, StartTable, SystemTables, duration};
 use serde::Deserialize;
 
-use super::system_tables::{EquationSource, EquationsTable, Numbers, SystemTables, Weights};
+use super::system_tables::{EquationSource, EquationsTable, Numbers, Weights};
 
-/// A settings file.
+/// A settings file. Tables of other commands are ignored.
 #[derive(Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub(super) struct File {
     pub(super) seed: Count,
     pub(super) float: String,
@@ -21,7 +19,7 @@ pub(super) struct File {
     pub(super) substeps: Count,
     pub(super) limit: Count,
     pub(super) chunk: ChunkTable,
-    pub(super) system: SystemTables,
+    pub(super) system: SystemTables<EquationsTable>,
     pub(super) task: Option<TaskTable>,
     pub(super) start: Option<StartTable>,
     pub(super) delays: DelaysTable,
@@ -74,13 +72,6 @@ pub(super) struct TrackTable {
     pub(super) velocity: Number,
     pub(super) effort: Number,
     pub(super) bound: Number,
-}
-
-#[derive(Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub(super) struct StartTable {
-    pub(super) q: [Number; 2],
-    pub(super) v: [Number; 2],
 }
 
 #[derive(Deserialize)]
@@ -139,7 +130,7 @@ impl File {
             parameters.iter().map(|(name, value)| (name.clone(), Number(*value))).collect();
         let max_action = own.and_then(|own| own.max_action);
         let equations = EquationsTable { parameters, max_action, ..EquationsTable::of(source) };
-        self.system = SystemTables { equations: Some(equations), catalogued: BTreeMap::new() };
+        self.system = SystemTables { equations: Some(equations), ..SystemTables::default() };
         self.start = None;
         self.task = self.task.take().filter(|task| matches!(task, TaskTable::Expressions(_)));
     }
@@ -147,8 +138,6 @@ impl File {
 
 impl Default for File {
     fn default() -> Self {
-        let parameters = [("m", 1.0), ("k", 10.0)];
-        let parameters = parameters.map(|(name, value)| (name.to_owned(), Number(value)));
         File {
             seed: Count(0),
             float: "f32".into(),
@@ -159,10 +148,7 @@ impl Default for File {
             substeps: Count(1),
             limit: Count(0),
             chunk: ChunkTable::default(),
-            system: SystemTables {
-                equations: None,
-                catalogued: [("oscillator".to_owned(), parameters.into())].into(),
-            },
+            system: SystemTables::of("oscillator", &[("omega2", 10.0)]),
             task: None,
             start: None,
             delays: DelaysTable::default(),
@@ -208,12 +194,6 @@ impl Default for TrackTable {
         let RegulateTable { position, velocity, effort, bound } = RegulateTable::default();
         let [amplitude, angular_frequency, phase] = [1.0, 1.0, 0.0].map(Number);
         TrackTable { amplitude, angular_frequency, phase, position, velocity, effort, bound }
-    }
-}
-
-impl Default for StartTable {
-    fn default() -> Self {
-        StartTable { q: [Number(1.0); 2], v: [Number(0.0); 2] }
     }
 }
 

@@ -15,6 +15,7 @@ use libration::system::{BaselineOnly, Pendulum};
 use libration_env::dataset::{
     DataFormat, Dataset, Monitor, VerifyOptions, WriteJob, parse, verify, write,
 };
+use libration_settings::ConfigCommand;
 
 const SETTINGS: &str = "\
 seed = 3
@@ -136,6 +137,32 @@ fn settings_are_read_back_from_a_manifest_whatever_they_are() {
         assert_eq!(u128::from(count.0.into_inner()), dataset.len());
     }
     assert_eq!(Dataset::default().len(), 4096 * 1024);
+}
+
+#[test]
+fn the_printed_settings_are_the_defaults() {
+    assert_eq!(parse("", "set.toml").unwrap(), Dataset::default());
+}
+
+#[test]
+fn each_key_of_the_command_is_read_and_no_other() {
+    for key in ConfigCommand::all_keys() {
+        let own = ConfigCommand::ROLLOUT.keys.contains(&key);
+        match parse(&format!("{key} = true"), "set.toml") {
+            Ok(_) => assert!(!own, "{key}"),
+            Err(error) => assert!(own && error.message().contains(key), "{error}"),
+        }
+    }
+}
+
+#[test]
+fn one_number_is_an_interval_of_no_length() {
+    let of = |start: &str| parse(&format!("[start]\n{start}"), "set.toml");
+    let interval = of("q = [0.5, 0.5]\nv = [-1.0, -1.0]").unwrap();
+    assert_eq!(of("q = [0.5]\nv = -1").unwrap(), interval);
+    assert_ne!(of("q = [0.5, 0.6]\nv = -1").unwrap(), interval);
+    let error = of("q = [1, 2, 3]").unwrap_err().to_string();
+    assert!(error.contains("`start.q` has 3 numbers; expected one, or the two ends"), "{error}");
 }
 
 /// The settings above with a system and a task by equations that have the operations of the compiled ones.

@@ -1,8 +1,10 @@
 //! Configuration files: what is read, and what is said about what cannot be read.
 
+use std::collections::BTreeSet;
+
 use libration::Method;
 use libration_lab::STUDIES;
-use libration_settings::SettingsError;
+use libration_settings::{ConfigCommand, SettingsError};
 use libration_study::{Config, Effort};
 use libration_study_motion::{DriftSettings, SpectrumSettings};
 use serde_json::{Value, json};
@@ -23,14 +25,16 @@ fn the_printed_default_is_the_default() {
 
 #[test]
 fn every_key_has_a_default() {
-    for text in ["", "# nothing\n", "\u{feff}", "[oscillator]\n[start]\n[drift]\n[spectrum]\n"] {
+    for text in
+        ["", "# nothing\n", "\u{feff}", "[system.oscillator]\n[start]\n[drift]\n[spectrum]\n"]
+    {
         assert_eq!(STUDIES.parse(text, "").unwrap(), STUDIES.config(), "{text:?}");
     }
 }
 
 #[test]
 fn values_are_read() {
-    let text = "\u{feff}effort = 'quick'\r\nintegrators = ['leapfrog']\r\noscillator.k = 4\r\n\
+    let text = "\u{feff}effort = 'quick'\r\nintegrators = ['leapfrog']\r\nsystem.oscillator.k = 4\r\n\
                 start = { q = 0, v = -1 }\r\n[drift]\r\n\tdt = [1, 0.5]\r\n\tsteps = 1e3\r\n";
     let config = STUDIES.parse(text, "").unwrap();
     assert_eq!(config.effort, Effort::Quick);
@@ -42,6 +46,64 @@ fn values_are_read() {
         (vec![0.5, 1.0], 1000)
     );
     assert_eq!(config.get::<SpectrumSettings>(), STUDIES.config().get::<SpectrumSettings>());
+}
+
+#[test]
+fn omega2_is_the_oscillator_of_a_mass_of_one() {
+    let spring = |text: &str| {
+        let spring = STUDIES.parse(&format!("[system.oscillator]\n{text}"), "").unwrap().oscillator;
+        (spring.m, spring.k)
+    };
+    assert_eq!(spring("omega2 = 4"), (1.0, 4.0));
+    assert_eq!(spring("m = 2\nk = 5"), (2.0, 5.0));
+}
+
+#[test]
+fn a_start_is_a_number_or_a_list_of_one() {
+    let of = |text: &str| STUDIES.parse(&format!("[start]\n{text}"), "").unwrap().start;
+    assert_eq!(of("q = 0.5\nv = -1"), of("q = [0.5]\nv = [-1]"));
+    assert_eq!((of("q = [0.5]").q, of("q = [0.5]").v), (0.5, 0.0));
+}
+
+#[test]
+fn other_systems_are_errors_that_say_how_to_study_them() {
+    for (text, place) in [
+        ("[system.pendulum]\nomega2 = 9.8", "pendulum"),
+        ("[system.equations]\nof = 'mine.toml'", "equations"),
+        ("[system.linear]\na = [[0.0]]", "linear"),
+    ] {
+        let error = error(text);
+        assert_eq!(marked(&error), place, "{error}");
+        assert!(error.message().contains(&format!("[system.{place}] is given; expected")));
+        assert!(error.help().unwrap().contains("`libration lab --system FILE`"), "{error}");
+    }
+    let two = error("[system.pendulum]\n[system.oscillator]");
+    assert!(two.message().contains("must be one table"), "{two}");
+}
+
+#[test]
+fn time_steps_take_units() {
+    let with_units = "spectrum.dt = '100Hz'\nerror.dt = '2 ms'\ndrift.dt = ['1ms', 0.1]\nprecision.dt = ['1kHz']\n";
+    let seconds =
+        "spectrum.dt = 0.01\nerror.dt = 0.002\ndrift.dt = [0.001, 0.1]\nprecision.dt = [0.001]\n";
+    assert_eq!(STUDIES.parse(with_units, "").unwrap(), STUDIES.parse(seconds, "").unwrap());
+}
+
+#[test]
+fn tables_of_other_commands_change_nothing() {
+    let text = "seed = 7\ndt = 'never'\n[controller.pd]\n[loop]\nlatency = 1\n[tolerance]\n[request]\n[chunk]\n\
+                [task.regulate]\n[delays]\n[noise]\n[policy.none]\n";
+    assert_eq!(STUDIES.parse(text, "").unwrap(), STUDIES.config());
+}
+
+#[test]
+fn the_configuration_in_results_is_that_of_the_run() {
+    let text = "[system.oscillator]\nm = 2\nk = 3\n[start]\nq = [0.25]\nv = [-1]\n";
+    let config = STUDIES.parse(text, "").unwrap();
+    let json = serde_json::to_value(&config).unwrap();
+    assert_eq!(json["system"], json!({ "oscillator": { "k": 3.0, "m": 2.0 } }));
+    assert_eq!(json["start"], json!({ "q": 0.25, "v": -1.0 }));
+    assert_eq!(STUDIES.parse_json(&json).unwrap(), config);
 }
 
 /// Each case: a file, the characters that it is wrong about, a part of the message.
@@ -56,11 +118,25 @@ fn assert_errors(cases: &[(&str, &str, &str)]) {
 #[test]
 fn bad_values_are_named_with_what_is_allowed() {
     assert_errors(&[
-        ("[oscillator]\nm = 0.0", "0.0", "`oscillator.m` is 0.0, but it must be finite and great"),
-        ("[oscillator]\nk = -10", "-10", "`oscillator.k` is -10.0, but it must be finite"),
-        ("[oscillator]\nk = nan", "nan", "`oscillator.k` is NaN"),
-        ("[oscillator]\nm = 1e-320", "1e-320", "omega2 = k/m = 10.0/1e-320 is inf"),
-        ("oscillator = { m = 1e200, k = 1e-200 }", "1e-200", "is 0.0, but it must be finite"),
+        ("[system.oscillator]\nm = 0.0\nk = 1", "0.0", "oscillator: `m` is 0.0, but it must be"),
+        ("[system.oscillator]\nk = -10", "-10", "oscillator: `k` is -10.0, but it must be"),
+        ("[system.oscillator]\nk = nan", "nan", "oscillator: `k` is NaN"),
+        (
+            "[system.oscillator]\nk = 0",
+            "0",
+            "`system.oscillator.k` is 0.0, but it must be finite and",
+        ),
+        ("[system.oscillator]\nm = 1e-320\nk = 10", "10", "omega2 = k/m = 10.0/1e-320 is inf"),
+        (
+            "system.oscillator = { m = 1e200, k = 1e-200 }",
+            "1e-200",
+            "is 0.0, but it must be finite",
+        ),
+        ("[system.oscillator]\nomega2 = 0", "0", "`system.oscillator.omega2` is 0.0, but it must"),
+        ("[system.oscillator]\nomega2 = 1\nk = 2", "2", "cannot be given together with `omega2`"),
+        ("[system.oscillator]\nomga2 = 1", "1", "unknown parameter `omga2`"),
+        ("[start]\nq = [1, 2]", "[1, 2]", "`start.q` has 2 numbers; expected one"),
+        ("[start]\nv = []", "[]", "`start.v` has 0 numbers; expected one"),
         ("[spectrum]\ndt = 0", "0", "`spectrum.dt` is 0.0, but it must be finite and greater"),
         ("[spectrum]\ndt = -inf", "-inf", "`spectrum.dt` is -inf"),
         ("[drift]\ndt = [0.1, -0.2]", "-0.2", "`drift.dt` is -0.2, but it must be finite"),
@@ -100,11 +176,16 @@ fn bad_values_are_named_with_what_is_allowed() {
 #[test]
 fn wrong_types_name_the_key_and_the_type_that_is_needed() {
     assert_errors(&[
-        ("oscillator = 3", "3", "`oscillator`: invalid type: integer `3`, expected"),
+        ("system = 3", "3", "`system`: invalid type: integer `3`, expected a table"),
         (
-            "[oscillator]\nk = '10'",
+            "[system.oscillator]\nk = '10'",
             "'10'",
-            "`oscillator.k`: invalid type: string \"10\", expected a",
+            "`system.oscillator.k`: invalid type: string \"10\", expected a",
+        ),
+        (
+            "[spectrum]\ndt = '2 sec'",
+            "'2 sec'",
+            "`spectrum.dt`: invalid type: string \"2 sec\", expected a number of seconds",
         ),
         ("[drift]\ndt = 0.1", "0.1", "`drift.dt`: invalid type: floating point `0.1`, expected a"),
         (
@@ -125,10 +206,12 @@ fn wrong_types_name_the_key_and_the_type_that_is_needed() {
 #[test]
 fn unknown_keys_are_named_with_the_nearest() {
     let cases = [
-        ("[ocillator]\nm = 1", "ocillator", "did you mean `oscillator`?"),
+        ("[oscillator]\nm = 1", "oscillator", "the table of the oscillator is [system.oscillator]"),
+        ("[sistem]", "sistem", "did you mean `system`?"),
+        ("[contoller]", "contoller", "did you mean `controller`, which `advise` reads?"),
         ("[drift]\nstep = 1", "step", "did you mean `steps`? the keys are `dt`, `steps`"),
         ("drift.DT = [1]", "DT", "did you mean `dt`?"),
-        ("zzz = 1", "zzz", "the keys are `studies`, `effort`, `simd`, `integrators`, `oscillator`"),
+        ("zzz = 1", "zzz", "the keys are `studies`, `effort`, `simd`, `integrators`, `system`"),
     ];
     for (text, place, help) in cases {
         let error = error(text);
@@ -172,13 +255,13 @@ fn names_are_suggested() {
 
 #[test]
 fn an_error_shows_the_line_with_a_caret_under_it() {
-    let shown = error("# spring\n[oscillator]\nm = 2.0\nk = -10.0  # N/m\n").to_string();
+    let shown = error("# spring\n[system.oscillator]\nm = 2.0\nk = -0.0  # N/m\n").to_string();
     let expected = "\
-error: `oscillator.k` is -10.0, but it must be finite and greater than 0
+error: `system.oscillator.k` is -0.0, but it must be finite and greater than 0
  --> mine.toml:4:5
   |
-4 | k = -10.0  # N/m
-  |     ^^^^^";
+4 | k = -0.0  # N/m
+  |     ^^^^";
     assert_eq!(shown, expected);
 }
 
@@ -187,7 +270,7 @@ fn tabs_line_ends_and_wide_characters_do_not_shift_the_caret() {
     // Columns count characters; a tab is one of them, and is shown as four spaces.
     let shown = error("\u{feff}# ∂t\r\n[start]\r\n\tq = \"∂∂\"\t# é\r\n").to_string();
     let expected = "\
-error: `start.q`: invalid type: string \"∂∂\", expected a number
+error: `start.q`: invalid type: string \"∂∂\", expected a number or a list of numbers
  --> mine.toml:3:6
   |
 3 |     q = \"∂∂\"    # é
@@ -234,12 +317,15 @@ fn the_schema_describes_every_key() {
     fn assert_described(value: &Value) {
         for (key, property) in value["properties"].as_object().into_iter().flatten() {
             assert!(property["description"].is_string(), "{key}: {property}");
-            assert!(!property["default"].is_null(), "{key}: {property}");
+            let ignored = property["description"].as_str().unwrap().ends_with("lab` ignores.");
+            assert_eq!(property["default"].is_null(), ignored, "{key}: {property}");
             assert_described(property);
         }
     }
     let schema = STUDIES.schema();
-    assert_eq!(schema["properties"].as_object().unwrap().len(), 19);
+    let keys: BTreeSet<&str> =
+        schema["properties"].as_object().unwrap().keys().map(String::as_str).collect();
+    assert_eq!(keys, ConfigCommand::all_keys().collect());
     assert_described(&schema);
 }
 

@@ -23,7 +23,7 @@ fn check(outcome: Result<Config, SettingsError>) -> Result<(), TestCaseError> {
 
 /// A piece of a configuration file, or of nonsense.
 fn piece() -> impl Strategy<Value = String> {
-    let known = "studies|effort|integrators|oscillator|start|drift|convergence|nonlinear|systems|dt|steps|m|k|q|v|rk4";
+    let known = "studies|effort|integrators|system|oscillator|omega2|start|drift|convergence|nonlinear|systems|dt|steps|m|k|q|v|rk4";
     prop_oneof![
         known,
         "[\\[\\]{}=.,\"'#\t \r\n\u{feff}]{1,3}",
@@ -73,7 +73,7 @@ proptest! {
         m in 1e-6..1e6, k in 1e-6..1e6, dt in 1e-9..1e3, steps in 1_u64..=1_000_000_000,
     ) {
         let text = format!(
-            "oscillator = {{ m = {m:?}, k = {k:?} }}\ndrift = {{ dt = [{dt:?}], steps = {steps} }}"
+            "system.oscillator = {{ m = {m:?}, k = {k:?} }}\ndrift = {{ dt = [{dt:?}], steps = {steps} }}"
         );
         let config = STUDIES.parse(&text, "").map_err(|e| TestCaseError::fail(e.to_string()))?;
         prop_assert_eq!((config.oscillator.m, config.oscillator.k), (m, k));

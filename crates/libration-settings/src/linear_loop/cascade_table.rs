@@ -226,7 +226,7 @@ fn pid(tables: &[CascadePidTable], side: &Side<'_>) -> Result<(DiscreteControlle
     if tables.is_empty() {
         return Err(wrong("there is no PID controller; expected at least one".into()));
     }
-    let key = |fault: Fault| Fault { key: side.key, ..fault };
+    let key = |fault: Fault| Fault { key: side.key.into(), ..fault };
     let outputs = side.measured.len() - side.references.len();
     let is_inner = side.key == INNER;
     let mut channels = Vec::new();

@@ -58,7 +58,8 @@ impl PartTable {
             (None, Some(name)) => ("outputs", name, &plant.outputs),
             _ => return Err(wrong("a part requires exactly one of `input` and `output`".into())),
         };
-        let channel = find(of, name, signals).map_err(|fault| Fault { key: "part", ..fault })?;
+        let channel =
+            find(of, name, signals).map_err(|fault| Fault { key: "part".into(), ..fault })?;
         let (input, output) = match of {
             "inputs" => (Some(channel), None),
             _ => (None, Some(channel)),

@@ -110,7 +110,7 @@ pub(super) fn pid(tables: &[PidTable], plant: &LinearPlant, period: f64) -> Resu
     let mut channels = Vec::new();
     let mut description = Vec::new();
     for table in tables {
-        let key = |fault: Fault| Fault { key: "controller.pid", ..fault };
+        let key = |fault: Fault| Fault { key: "controller.pid".into(), ..fault };
         let output = find("outputs", &table.output, &plant.outputs).map_err(key)?;
         let command = find("inputs", &table.input, &plant.inputs).map_err(key)?;
         let gains = Gains([table.proportional, table.integral, table.derivative, table.filter]);
