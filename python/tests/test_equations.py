@@ -155,6 +155,7 @@ def test_the_laboratory_finds_the_same_in_a_file_and_in_a_system_of_the_same_equ
         ({"config": {"start": {"q": 2.0}}}, ValueError, "config has `start`, which has no effect: the system `system` takes"),
         ({"config": {"drift": {"dt": [0.1]}}}, ValueError, "config has `drift`.*predictions are those of harmonic motion"),
         ({"config": {"convergence": {"systems": ["kepler"]}}}, ValueError, "config has `convergence.systems`"),
+        ({"config": {"controller": {}}}, ValueError, "config has `controller`.*`advise` reads it"),
         ({"config": {"precision": {}}}, ValueError, "`precision` of a system by equations has no settings"),
         ({"studies": ["determinism", "latency"]}, ValueError, "studies: the study `latency` does not apply to `system`"),
         ({"studies": ["nonlinear"]}, ValueError, "changes by .* of its size"),

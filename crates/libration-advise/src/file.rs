@@ -41,7 +41,7 @@ impl TryFrom<RequestFile> for Request {
 
     fn try_from(file: RequestFile) -> Result<Self, Fault> {
         let coordinates = |given: Option<Coordinates>| given.map_or(vec![0.0], Coordinates::list);
-        let (system, actuation) = file.system.catalogued(OTHER_SYSTEMS)?;
+        let (system, actuation) = file.system.build(OTHER_SYSTEMS)?;
         let control = match file.controller {
             None if file.looped.is_some() => {
                 let message = "`[loop]` requires a controller, as [controller.pd]";

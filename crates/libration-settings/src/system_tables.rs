@@ -53,7 +53,7 @@ impl<E> SystemTables<E> {
     ///
     /// # Errors
     /// A [`Fault`]: no or several systems, a system that is not of the catalogue, or a parameter that is not allowed.
-    pub fn catalogued(&self, instead: &str) -> Result<(AnySystem, Actuation), Fault> {
+    pub fn build(&self, instead: &str) -> Result<(AnySystem, Actuation), Fault> {
         self.check_single()?;
         let Some((name, parameters)) = self.catalogued.first_key_value() else {
             let name = if self.has_linear { "linear" } else { "equations" };

@@ -41,7 +41,7 @@ impl Spring {
     /// # Errors
     /// If there is another system or several, or for a value that is not allowed.
     pub(crate) fn from_tables(tables: &SystemTables) -> Result<Self, Fault> {
-        let (system, _) = tables.catalogued(OTHER_SYSTEMS)?;
+        let (system, _) = tables.build(OTHER_SYSTEMS)?;
         let AnySystem::Oscillator(Oscillator { omega2 }) = system else {
             let name = system.name();
             let message = format!("[system.{name}] is given; expected [system.oscillator]");

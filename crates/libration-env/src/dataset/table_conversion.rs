@@ -202,7 +202,7 @@ pub(super) fn each(
 }
 
 fn system(tables: &SystemTables<EquationsTable>) -> Result<(SingleDofSystem, Actuation), Fault> {
-    let (system, actuation) = tables.catalogued(OTHER_SYSTEMS)?;
+    let (system, actuation) = tables.build(OTHER_SYSTEMS)?;
     let lone = SingleDofSystem::new(system).ok_or_else(|| {
         let name = system.name();
         let message =

@@ -18,6 +18,7 @@ mod report;
 mod rollout;
 mod series;
 mod settings;
+mod shared_tables;
 mod studies;
 mod throughput;
 mod verdicts;
