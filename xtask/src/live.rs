@@ -23,7 +23,7 @@ pub(crate) fn build() -> Outcome {
     let flags: Vec<String> = folders
         .map(|(folder, name)| format!("--remap-path-prefix={}={name}", folder.display()))
         .collect();
-    run(cargo("build --package libration-live --lib --profile live --target")
+    run(cargo("rustc --package libration-live --lib --crate-type cdylib --profile live --target")
         .arg(TARGET)
         .env("RUSTFLAGS", flags.join(" ")))?;
     let module = target().join(TARGET).join("live/libration_live.wasm");
