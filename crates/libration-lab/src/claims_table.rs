@@ -34,11 +34,8 @@ fn without_evidence(results: &Results) -> impl Iterator<Item = &UnjudgedClaim> {
     results.unjudged.iter().filter(|claim| claim.missing.is_none())
 }
 
-/// Returns the number of claims of each verdict, for the head of the report.
-pub(crate) fn score(results: &Results, chapters: &[Chapter]) -> String {
-    if !exists(results, chapters) {
-        return String::new();
-    }
+/// Returns the number of claims of each verdict.
+fn score(results: &Results, chapters: &[Chapter]) -> String {
     let count = |v| claims(chapters).filter(|(_, claim)| claim.verdict == v).count();
     let boxes: String = VERDICTS
         .into_iter()
@@ -60,10 +57,7 @@ pub(crate) fn score(results: &Results, chapters: &[Chapter]) -> String {
         0 => String::new(),
         n => format!(", {n} cannot be judged with this configuration"),
     };
-    format!(
-        "<div class=\"four\">{boxes}</div>\n\
-         <p class=\"sub\">{all}{rest}: <a href=\"#ledger\">table of claims</a>.</p>\n"
-    )
+    format!("<div class=\"four\">{boxes}</div>\n<p class=\"sub\">{all}{rest}.</p>\n")
 }
 
 /// Returns the table of all claims with a verdict, in the order of their numbers.
@@ -77,11 +71,12 @@ pub(crate) fn render(results: &Results, chapters: &[Chapter]) -> String {
     let rows: String = claims.into_iter().map(row).collect();
     format!(
         "<section>\n<h2 id=\"ledger\">Claims of the source report</h2>\n<p class=\"q\">Which claims of the source \
-         report are true?</p>\n<p>Each verdict follows from the findings of the row, with the \
+         report are true?</p>\n{}<p>Each verdict follows from the findings of the row, with the \
          settings of this run. The source is the report whose claims and figures the studies reproduce; \
          § numbers are its sections.</p>\n{}<table class=\"ledger\"><thead><tr><th>claim</th><th>statement \
          of the source</th><th>findings</th><th>verdict</th></tr></thead><tbody>{rows}\
          </tbody></table></div>\n{}{}</section>\n",
+        score(results, chapters),
         scroll_container("Claims of the source report"),
         unjudged(results),
         claims_without_study()

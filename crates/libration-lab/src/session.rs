@@ -185,6 +185,17 @@ fn run_all(
     Ok(output.put_in_place()?)
 }
 
+/// The studies whose answers open the report, where they are in the run: which steps are stable, and which integrator costs least.
+const FIRST_ANSWERS: &[&str] = &["spectrum", "stability", "efficiency"];
+
+/// The findings whose numbers open the report, where they are in the run.
+const KEY_FINDINGS: &[&str] = &[
+    "stability.velocity-verlet.window-1-to",
+    "drift.velocity-verlet.dt-0.01.largest",
+    "convergence.oscillator.rk4.global-order-position",
+    "hierarchy.equal-7.latency.energy",
+];
+
 /// Returns the head and the end of the report.
 fn cover(results: &Results, chapters: &[Chapter]) -> Cover {
     let Results { config, machine, .. } = results;
@@ -222,12 +233,14 @@ fn cover(results: &Results, chapters: &[Chapter]) -> Cover {
         setting,
         machine: host,
         complete: results.complete,
-        score: system.map_or_else(|| claims_table::score(results, chapters), |_| String::new()),
+        first_answers: FIRST_ANSWERS,
+        key_findings: KEY_FINDINGS,
         live: live_page::settings(config, system),
-        ledger: match system {
-            Some(system) => system_page::states(system),
+        claims: match system {
+            Some(_) => String::new(),
             None => claims_table::render(results, chapters),
         },
+        system: system.map_or_else(String::new, system_page::states),
         scope: system_page::not_applicable(&results.not_applicable),
     }
 }

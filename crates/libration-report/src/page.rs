@@ -9,11 +9,11 @@ use crate::record::{Record, Table};
 pub struct Page {
     /// The chapter's heading.
     pub title: String,
-    /// A sentence for the head of the report; empty for none.
+    /// A sentence that opens the chapter; empty for none.
     pub headline: String,
-    /// The answer in one or two sentences, shown first.
+    /// The answer in one or two sentences, for the head of the report.
     pub answer: String,
-    /// The key numbers for the head of the report, most important first.
+    /// The key numbers of the chapter, most important first.
     pub highlights: Vec<Highlight>,
     /// The settings of the [live section](crate::live) of a single page, below its answer; without any there is none.
     pub live: Vec<LiveSetting>,

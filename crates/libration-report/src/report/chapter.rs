@@ -2,7 +2,7 @@
 
 use crate::figure;
 use crate::notation::number;
-use crate::page::{Block, Chapter};
+use crate::page::{Block, Chapter, Highlight, Page};
 use crate::record::{Cell, Finding, Quantity, Table, Verdict};
 use crate::text::{escape, plain, render_html};
 
@@ -22,14 +22,32 @@ pub(super) fn render(chapter: &Chapter, command: &str) -> String {
         [first, .., last] => format!(" · data: {first} … {last}"),
     };
     format!(
-        "<section>\n<h2 id=\"{name}\">{title}</h2>\n<p class=\"q\">{question}</p>\n{blocks}\
+        "<section>\n<h2 id=\"{name}\">{title}</h2>\n<p class=\"q\">{question}</p>\n{opening}{blocks}\
          {findings}<p class=\"sub\">Recompute this chapter alone: <code>{command} \
          {name}</code>; one finding: <code>{command} --only FINDING</code>{shown}</p>\n</section>\n",
         command = escape(command),
         title = render_html(&page.title),
         question = render_html(&record.question),
+        opening = opening(page),
         findings = findings(&record.findings),
     )
+}
+
+/// The sentence and the key numbers of a chapter.
+fn opening(page: &Page) -> String {
+    let sentence = match page.headline.as_str() {
+        "" => String::new(),
+        headline => format!("<p><b>{}</b></p>\n", render_html(headline)),
+    };
+    let number = |own: &Highlight| {
+        let (value, text) = (render_html(&own.value), render_html(&own.text));
+        format!("<div><strong>{value}</strong><span>{text}</span></div>")
+    };
+    let numbers: String = page.highlights.iter().map(number).collect();
+    match numbers.as_str() {
+        "" => sentence,
+        numbers => format!("{sentence}<div class=\"four\">{numbers}</div>\n"),
+    }
 }
 
 pub(super) fn block(block: &Block) -> String {

@@ -1,6 +1,7 @@
 //! The HTML report, a self-contained page rendered from records.
 
 mod chapter;
+mod first_screen;
 
 use crate::figure;
 use crate::live::{self, LIVE_ID, LiveSetting};
@@ -13,8 +14,12 @@ const SCRIPT: &str = include_str!("../../assets/report.js");
 /// The parts of a report around its chapters.
 #[derive(Clone, Debug)]
 pub struct Cover {
-    /// The headline; that of a chapter if it is empty.
+    /// The subject of the headline, before the verdict on all predictions; empty for none.
     pub headline: String,
+    /// The studies whose answers come first.
+    pub first_answers: &'static [&'static str],
+    /// The findings whose numbers come first.
+    pub key_findings: &'static [&'static str],
     /// The command of the run, without names of studies.
     pub command: String,
     /// The run, in a line of text.
@@ -23,29 +28,29 @@ pub struct Cover {
     pub machine: String,
     /// Whether the run had ended when the report was written.
     pub complete: bool,
-    /// HTML at the head of the report, above the answers; empty if there is none.
-    pub score: String,
     /// The settings of the [live section](crate::live); without any there is none.
     pub live: Vec<LiveSetting>,
-    /// HTML of a section between answers and chapters; empty if there is none.
-    pub ledger: String,
+    /// HTML of the section of claims, with the heading [`CLAIMS_ID`]; empty if there is none.
+    pub claims: String,
+    /// HTML of a section about the system before the chapters; empty if there is none.
+    pub system: String,
     /// HTML of a section with the heading [`SCOPE_ID`] after the chapters; empty if there is none.
     pub scope: String,
 }
+
+/// The identifier of the section of claims.
+pub const CLAIMS_ID: &str = "ledger";
 
 /// The identifier of the section of studies that were left out.
 pub const SCOPE_ID: &str = "scope";
 
 /// Renders the report: the cover and the chapters.
 pub fn render(cover: &Cover, chapters: &[Chapter]) -> String {
-    let headline = match cover.headline.as_str() {
-        "" => headline(chapters),
-        own => own.to_owned(),
-    };
+    let headline = first_screen::headline(cover, chapters);
     let mut links = String::from("<a href=\"#top\">The answer</a>");
     links += &live_link(&cover.live);
-    if !cover.score.is_empty() {
-        links += "<a href=\"#ledger\">Claims</a>";
+    if !cover.claims.is_empty() {
+        links += &format!("<a href=\"#{CLAIMS_ID}\">Claims</a>");
     }
     let mut body = String::new();
     for chapter in chapters {
@@ -62,17 +67,18 @@ pub fn render(cover: &Cover, chapters: &[Chapter]) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
          <title>{name}</title>\n<style>{STYLE}</style></head><body>\n\
          <nav aria-label=\"Chapters\"><b>Libration</b>{links}</nav>\n<main id=\"top\">\n\
-         <h1>{title}</h1>\n<p class=\"sub\">{setting}</p>\n{alarm}{score}{answers}{numbers}{live}{ledger}{body}\
-         {scope}{machine}</main>\n{scripts}<script>{SCRIPT}</script>\n</body></html>\n",
+         <h1>{title}</h1>\n<p class=\"sub\">{setting}</p>\n{alarm}{numbers}{first}{live}{others}{system}{body}\
+         {claims}{scope}{machine}</main>\n{scripts}<script>{SCRIPT}</script>\n</body></html>\n",
         name = escape(&plain(&headline)),
         title = render_html(&headline),
         setting = render_html(&cover.setting),
         alarm = alarm(cover, chapters),
-        score = cover.score,
-        answers = answers(chapters),
-        numbers = numbers(chapters),
+        numbers = first_screen::numbers(cover, chapters),
+        first = first_screen::first_answers(cover, chapters),
+        others = first_screen::other_answers(cover, chapters),
         live = live::section(&cover.live),
-        ledger = cover.ledger,
+        system = cover.system,
+        claims = cover.claims,
         scope = cover.scope,
         machine = machine(cover),
         scripts = figure::scripts(),
@@ -117,13 +123,6 @@ fn live_link(settings: &[LiveSetting]) -> String {
     format!("<a href=\"#{LIVE_ID}\">What happens if …?</a>")
 }
 
-/// The headline of the report. Later studies build on earlier ones, so it is the last headline of a
-/// chapter.
-fn headline(chapters: &[Chapter]) -> String {
-    let headlines = chapters.iter().rev().map(|c| c.page.headline.clone());
-    headlines.filter(|h| !h.is_empty()).chain(["Libration".to_owned()]).take(1).collect()
-}
-
 /// Renders the warnings at the head of the report: missing studies, and findings that contradict theory.
 fn alarm(cover: &Cover, chapters: &[Chapter]) -> String {
     let incomplete = match cover.complete {
@@ -150,33 +149,6 @@ fn disagreements(chapters: &[Chapter]) -> String {
         "<div class=\"alarm\"><b>Measurement and theory disagree:</b><ul>{}</ul></div>\n",
         broken.concat()
     )
-}
-
-fn answers(chapters: &[Chapter]) -> String {
-    let answers = chapters.iter().rev().filter(|c| !c.page.answer.is_empty());
-    answers
-        .enumerate()
-        .map(|(i, c)| {
-            let class = if i == 0 { " class=\"lead\"" } else { "" };
-            let (question, answer) = (render_html(&c.record.question), render_html(&c.page.answer));
-            format!("<p{class}><span class=\"asked\">{question}</span> {answer}</p>\n")
-        })
-        .collect()
-}
-
-/// Renders the key numbers of the chapters.
-fn numbers(chapters: &[Chapter]) -> String {
-    let boxes: String = chapters
-        .iter()
-        .rev()
-        .flat_map(|c| &c.page.highlights)
-        .take(4)
-        .map(|h| {
-            let (value, text) = (render_html(&h.value), render_html(&h.text));
-            format!("<div><strong>{value}</strong><span>{text}</span></div>")
-        })
-        .collect();
-    format!("<div class=\"four\">{boxes}</div>\n")
 }
 
 /// The opening tag of a container that scrolls wide content, with a name and keyboard focus.
