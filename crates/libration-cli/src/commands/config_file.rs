@@ -1,5 +1,6 @@
 //! Settings files.
 
+use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::Path;
 
@@ -26,7 +27,11 @@ pub(super) fn note_ignored_keys(text: &str, command: ConfigCommand, quiet: bool)
     if quiet || ignored.is_empty() {
         return;
     }
-    let keys = ignored.iter().map(|(key, reader)| format!("`{key}` (of `{reader}`)"));
-    let keys = keys.collect::<Vec<_>>().join(", ");
-    terminal::say(&format!("note: `{}` ignores {keys}", command.name));
+    let mut by_reader: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for (key, reader) in ignored {
+        by_reader.entry(reader).or_default().push(format!("`{key}`"));
+    }
+    let parts = by_reader.iter().map(|(reader, keys)| format!("{} of `{reader}`", keys.join(", ")));
+    let parts = parts.collect::<Vec<_>>().join("; ");
+    terminal::say(&format!("note: `{}` ignores {parts}", command.name));
 }

@@ -57,10 +57,12 @@ fn one_file_serves_the_three_commands() {
 fn a_note_names_the_tables_that_a_command_ignores() {
     let (_folder, file, out) = file(EXAMPLE);
     let (file, out) = (file.to_str().unwrap(), out.to_str().unwrap());
-    let note = "note: `advise` ignores `chunk` (of `rollout`)";
+    let note = "note: `advise` ignores `effort`, `spectrum`, `studies` of `lab`; `chunk`, ";
     libration(&words("advise", file, out)).success().stderr(contains(note));
     libration(&words("--quiet advise", file, out)).success().stderr(is_empty());
-    let note = contains("`rollout` ignores").and(contains("`controller` (of `advise`)"));
+    let note = contains(
+        "note: `rollout` ignores `controller`, `loop`, `request`, `tolerance` of `advise`; ",
+    );
     libration(&words("rollout", file, out)).success().stderr(note);
 }
 
