@@ -81,6 +81,15 @@ class Live {
     this.changed = true;
     if (this.working || !this.engine) return;
     this.working = true;
+    try {
+      await this.follow();
+    } finally {
+      this.working = false;
+    }
+  }
+
+  /** Shows the setting until it no longer changes. */
+  async follow() {
     while (this.changed) {
       this.changed = false;
       const started = performance.now();
@@ -93,7 +102,6 @@ class Live {
       this.section.dataset.frame = [...this.frames].sort((a, b) => a - b)[this.frames.length >> 1].toFixed(2);
       await new Promise(requestAnimationFrame);
     }
-    this.working = false;
   }
 
   show(view) {
