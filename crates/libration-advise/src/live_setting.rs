@@ -1,7 +1,6 @@
 //! The settings of the live sections of pages.
 
 use libration::AnyMethod;
-use libration::catalog::Actuation;
 use libration::control::Jitter;
 use libration::live::{Control as LiveControl, Setting};
 use libration_report::live::LiveSetting;
@@ -16,10 +15,7 @@ use super::request::Request;
 pub(super) fn of_request(request: &Request) -> Option<Setting> {
     let mut setting = match &request.system {
         AdvisedSystem::Equations { system, .. } => live_settings::of_equations(system),
-        AdvisedSystem::Catalogued { system, actuation } => {
-            let mass = matches!(actuation, Actuation::Force { .. }).then(|| actuation.mass());
-            Setting::of_system(*system, mass)
-        }
+        AdvisedSystem::Catalogued { system, actuation } => Setting::of_system(*system, *actuation),
     };
     let names = setting.definitions.coordinates.clone();
     if let AdvisedSystem::Catalogued { .. } = request.system {

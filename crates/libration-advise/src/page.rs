@@ -2,20 +2,25 @@
 
 use libration_report::figure::{Axis, ColorMap, Colors, Dash, Figure, Mark, Marker, Panel, Role};
 use libration_report::notation::number;
-use libration_report::page::Page;
+use libration_report::page::{Highlight, Page};
 use libration_report::record::{Cell, Table};
 use libration_report::report;
 
 use super::advice::{Advice, LoopAdvice};
 use super::budget::Budget;
+use super::imperfection::Imperfection;
 use super::live_setting;
 use super::stability_map::StabilityMap;
 use super::summary::{ANY_PROBABILITY, is_any_probability};
 
 /// The advice as an HTML page.
 pub fn page(advice: &Advice) -> String {
-    let mut page =
-        Page { title: "Budget of a simulation or a control loop".into(), ..Page::default() };
+    let title = match &advice.looped {
+        None => "The cheapest integrator and its step",
+        Some(own) if own.combined.growth < 0.0 => "The loop is stable: budget",
+        Some(_) => "The loop is unstable: budget",
+    };
+    let mut page = Page { title: title.into(), ..Page::default() };
     page.answer.clone_from(&advice.answer);
     page.live = live_setting::of_advice(advice);
     if page.live.is_empty() {
@@ -25,6 +30,7 @@ pub fn page(advice: &Advice) -> String {
         page.note(format!("Warning: {warning}."));
     }
     if let Some(looped) = &advice.looped {
+        page.highlights = budget_numbers(&looped.budgets);
         of_loop(&mut page, looped, advice.map.as_ref());
     }
     integrators(&mut page, advice);
@@ -32,7 +38,7 @@ pub fn page(advice: &Advice) -> String {
         advice.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let place = if advice.looped.is_some() { "held at" } else { "from" };
     let sub = format!(
-        "{} ({}), {place} q = {:?}, v = {:?} · {} ≤ {} · {} s · `libration advise`",
+        "{} ({}), {place} q = {:?}, v = {:?} · {} ≤ {} · {} s · `{}`",
         advice.system,
         parameters.join(", "),
         advice.q,
@@ -40,6 +46,7 @@ pub fn page(advice: &Advice) -> String {
         advice.tolerance.of,
         number(advice.tolerance.most, 3),
         number(advice.horizon, 4),
+        advice.repeat_command,
     );
     report::render_page(&page, &sub)
 }
@@ -129,6 +136,28 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&StabilityMap>) {
         );
     }
     page.table(&table, 4);
+}
+
+/// The limits of the stated imperfections, and of latency, most used first.
+pub(super) fn budget_numbers(budgets: &[Budget]) -> Vec<Highlight> {
+    let mut shown: Vec<&Budget> = budgets
+        .iter()
+        .filter(|own| own.stated != 0.0 || own.kind == Imperfection::Latency)
+        .filter(|own| own.stable_up_to.is_some())
+        .collect();
+    shown.sort_by(|a, b| b.used.unwrap_or(0.0).total_cmp(&a.used.unwrap_or(0.0)));
+    let number = |own: &Budget| {
+        let unit = if own.unit == "s" { " s" } else { "" };
+        Highlight {
+            value: own.stable_up_to.map_or_else(String::new, |x| number(x, 4) + unit),
+            text: format!(
+                "{} up to which the loop is stable; stated {}{unit}",
+                own.kind.name(),
+                number(own.stated, 4)
+            ),
+        }
+    };
+    shown.into_iter().map(number).collect()
 }
 
 /// The row of a budget in its table.

@@ -1,6 +1,6 @@
 //! The settings of the live section of a report.
 
-use libration::AnySystem;
+use libration::catalog;
 use libration::live::Setting;
 use libration_report::live::LiveSetting;
 use libration_settings::live_settings;
@@ -22,8 +22,8 @@ pub(crate) fn settings(config: &Config, system: Option<&StudiedSystem>) -> Vec<L
 fn oscillator(config: &Config) -> Option<Setting> {
     let (spring, start) = (config.oscillator, config.start);
     let values = [("m", spring.m), ("k", spring.k)];
-    let system = AnySystem::build("oscillator", &values).ok()?;
-    let mut setting = Setting::of_system(system, Some(spring.m));
+    let (system, actuation) = catalog::build("oscillator", &values).ok()?;
+    let mut setting = Setting::of_system(system, actuation);
     setting.system = "oscillator of this report".into();
     setting.start = vec![("q".into(), start.q), ("q'".into(), start.v)];
     Some(setting)

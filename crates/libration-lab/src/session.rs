@@ -212,10 +212,14 @@ fn cover(results: &Results, chapters: &[Chapter]) -> Cover {
         }
     };
     let setting = format!(
-        "{subject} · {} · {} · {} · `{command}`",
+        "{subject} · {} · {} · {} · `{command}{studies}`",
         plural(config.integrators.len(), "integrator"),
         machine.cpu,
         seconds(results.seconds, 2),
+        studies = match config.studies.as_slice() {
+            [] => String::new(),
+            names => format!(" {}", names.join(" ")),
+        },
     );
     let host = format!(
         "{}, {}, {} · Libration {} · {} · all numbers in `results.json`, all series in \

@@ -1,14 +1,15 @@
 //! Settings of the systems of the catalogue.
 
 use libration_core::AnySystem;
+use libration_core::catalog::Actuation;
 use libration_equations::Definitions;
 
 use crate::Setting;
 
 impl Setting {
-    /// A system of the catalogue by its equations, at the start of its entry. In one dimension it has an input `u`: a force if there
-    /// is a `mass`, else an acceleration.
-    pub fn of_system(system: AnySystem, mass: Option<f64>) -> Self {
+    /// A system of the catalogue by its equations, at the start of its entry. In one dimension it has an input `u`: a force on
+    /// its mass `m`, or an acceleration.
+    pub fn of_system(system: AnySystem, actuation: Actuation) -> Self {
         let (accelerations, energy): (&[(&str, &str)], &str) = match system {
             AnySystem::Oscillator(_) => (&[("q", "-omega2*q")], "q'^2/2 + omega2*q^2/2"),
             AnySystem::DampedOscillator(_) => {
@@ -30,25 +31,28 @@ impl Setting {
                 "(x'^2 + y'^2)/2 + (x^2 + y^2)/2 + lambda*(x^2*y - y^3/3)",
             ),
         };
-        let command = match (accelerations.len(), mass) {
-            (1, Some(_)) => " + u/m",
-            (1, None) => " + u",
+        let is_force = matches!(actuation, Actuation::Force { .. });
+        let command = match (accelerations.len(), is_force) {
+            (1, true) => " + u/m",
+            (1, false) => " + u",
             _ => "",
         };
-        let mut parameters: Vec<(String, f64)> =
-            system.parameters().into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
-        if let Some(mass) = mass.filter(|_| !command.is_empty()) {
-            parameters.push(("m".into(), mass));
-        }
+        // A mass and a stiffness stand in place of the frequency that they make.
+        let own = |text: &str| match is_force {
+            true => text.replace("omega2", "k/m"),
+            false => text.to_owned(),
+        };
+        let named = |(name, value): (&'static str, f64)| (name.to_owned(), value);
+        let parameters = actuation.parameters(system).into_iter().map(named).collect();
         let definitions = Definitions {
             coordinates: accelerations.iter().map(|(name, _)| (*name).to_owned()).collect(),
             accelerations: accelerations
                 .iter()
-                .map(|(name, text)| ((*name).to_owned(), format!("{text}{command}")))
+                .map(|(name, text)| ((*name).to_owned(), own(text) + command))
                 .collect(),
             parameters,
             inputs: if command.is_empty() { Vec::new() } else { vec!["u".into()] },
-            energy: Some(energy.into()),
+            energy: Some(own(energy)),
             ..Definitions::default()
         };
         let entry = system.entry();
@@ -64,7 +68,7 @@ impl Setting {
 
 #[cfg(test)]
 mod tests {
-    use libration_core::catalog::ENTRIES;
+    use libration_core::catalog::{ENTRIES, build};
     use libration_core::with_system;
     use libration_equations::{Dynamics, Equations};
 
@@ -78,7 +82,9 @@ mod tests {
         for entry in ENTRIES {
             let none: [(&str, f64); 0] = [];
             let system = AnySystem::build(entry.name, &none).unwrap();
-            let own = Equations::new(&Setting::of_system(system, None).definitions).unwrap();
+            let own =
+                Equations::new(&Setting::of_system(system, Actuation::Acceleration).definitions)
+                    .unwrap();
             let d = *entry.dimensions.start();
             let other = with_system!(system, d, |model, D| Dynamics::of::<D>(&model, None), {
                 panic!("{} has {d} dimensions", entry.name)
@@ -97,9 +103,9 @@ mod tests {
     }
 
     #[test]
-    fn a_force_moves_a_mass_by_its_part() {
-        let system = AnySystem::build("oscillator", &[("omega2", 4.0)]).unwrap();
-        let own = Equations::new(&Setting::of_system(system, Some(2.0)).definitions).unwrap();
+    fn a_force_moves_a_mass_on_its_spring() {
+        let (system, actuation) = build("oscillator", &[("m", 2.0), ("k", 8.0)]).unwrap();
+        let own = Equations::new(&Setting::of_system(system, actuation).definitions).unwrap();
         let acceleration: Vec<f64> =
             own.dynamics().accelerations().on::<f64>().run(&[1.0, 0.0, 3.0]).collect();
         assert_eq!(acceleration, [-2.5]);

@@ -68,12 +68,11 @@ pub(crate) fn limits(setting: &Setting, control: &Control) -> Result<Answer, Set
     let none = LoopTiming { input_latency: own.linear.ideal().input_latency, ..own.timing() };
     let channels = Channels::Inputs((0..own.gain.rows()).collect());
     let windows = own.linear.latency_windows(&none, &channels, [MOST_LATENCY as f64; 2]);
-    let first = windows.ok().and_then(|windows| windows.into_iter().next());
-    let largest = match first {
-        Some(window) if window.from == 0.0 => window.to.unwrap_or(f64::INFINITY),
-        _ => 0.0,
-    };
-    answer.number("latency.stable", largest * own.mean_period());
+    let windows = windows.unwrap_or_default();
+    let seconds = |periods: f64| periods * own.mean_period();
+    let ends = windows.iter().map(|window| window.to.map_or(f64::INFINITY, seconds));
+    answer.column("latency.to", ends.collect());
+    answer.column("latency.from", windows.iter().map(|window| seconds(window.from)).collect());
     answer.number("latency.tried", MOST_LATENCY as f64 * own.mean_period());
     let cost = |timing: &LoopTiming| own.linear.stationary(timing).ok().flatten();
     let rise = cost(&own.timing()).zip(cost(&own.linear.ideal()));

@@ -110,7 +110,8 @@ fn largest_stable_steps_are_those_of_textbooks() {
 #[test]
 fn a_loop_is_stable_up_to_the_latency_that_its_limits_tell() {
     let limits = ask("limits", &format!("{POLE}period=0.05\ndt=0.01\n"));
-    let limit = number(&limits, "latency.stable");
+    let limit = number(&limits, "latency.to");
+    assert_eq!(limits.get("latency.from"), [0.0]);
     let measured = |latency: f64| {
         number(
             &ask("view", &format!("{POLE}period=0.05\ndt=0.01\nlatency={latency}\n")),
@@ -118,6 +119,23 @@ fn a_loop_is_stable_up_to_the_latency_that_its_limits_tell() {
         )
     };
     assert!(measured(0.99 * limit) < -1e-3 && measured(1.01 * limit) > 1e-3, "{limit}");
+}
+
+#[test]
+fn a_loop_that_is_stable_again_beyond_a_latency_has_a_window_there() {
+    let loop_at = |latency: f64| format!("{POLE}period=0.3\ndt=0.01\nlatency={latency}\n");
+    let limits = ask("limits", &loop_at(0.0));
+    let windows: Vec<[f64; 2]> = limits
+        .get("latency.from")
+        .iter()
+        .zip(limits.get("latency.to"))
+        .map(|(from, to)| [*from, *to])
+        .collect();
+    assert!(!windows.is_empty() && windows[0][0] > 0.0, "{windows:?}");
+    for latency in [0.5 * windows[0][0], 0.5 * (windows[0][0] + windows[0][1])] {
+        let growth = number(&ask("view", &loop_at(latency)), "growth.measured");
+        assert_eq!(growth < 0.0, latency > windows[0][0], "{latency}: {growth}");
+    }
 }
 
 #[test]

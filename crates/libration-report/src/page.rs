@@ -13,7 +13,7 @@ pub struct Page {
     pub headline: String,
     /// The answer in one or two sentences, for the head of the report.
     pub answer: String,
-    /// The key numbers of the chapter, most important first.
+    /// The key numbers, most important first; four are shown.
     pub highlights: Vec<Highlight>,
     /// The settings of the [live section](crate::live) of a single page, below its answer; without any there is none.
     pub live: Vec<LiveSetting>,

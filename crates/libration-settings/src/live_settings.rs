@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use libration::catalog;
 use libration::live::Setting;
-use libration::{AnySystem, catalog};
 
 use crate::EquationExample;
 use crate::equations::EquationSystem;
@@ -31,8 +31,8 @@ pub fn of_plant_table(table: &PlantTable) -> Option<Setting> {
 pub fn examples() -> Vec<Setting> {
     let none: [(&str, f64); 0] = [];
     let catalogue = catalog::ENTRIES.into_iter().filter_map(|entry| {
-        let system = AnySystem::build(entry.name, &none).ok()?;
-        Some(Setting::of_system(system, None))
+        let (system, actuation) = catalog::build(entry.name, &none).ok()?;
+        Some(Setting::of_system(system, actuation))
     });
     let files = EquationExample::ALL.into_iter().filter_map(|example| {
         let system = EquationSystem::parse(example.text, example.name, &[]).ok()?;

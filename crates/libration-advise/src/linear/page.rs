@@ -8,7 +8,7 @@ use libration_report::report;
 use super::deadlines_page::deadlines;
 use super::{ChainLink, InputMargins, LinearAdvice, redesign_page};
 use crate::live_setting::{NO_LIVE_SECTION, shown};
-use crate::page::{budget_row, figure};
+use crate::page::{budget_numbers, budget_row, figure};
 use crate::{Budget, StabilityWindow};
 
 /// Why a cascade has no margins.
@@ -16,8 +16,10 @@ pub const NO_MARGINS: &str = "Gain and phase margins are not available for a cas
 
 /// The advice as an HTML page.
 pub fn page(advice: &LinearAdvice) -> String {
-    let mut page = Page { title: "Budget of a control loop".into(), ..Page::default() };
+    let state = if advice.growth < 0.0 { "stable" } else { "unstable" };
+    let mut page = Page { title: format!("The loop is {state}: budget"), ..Page::default() };
     page.answer.clone_from(&advice.answer);
+    page.highlights = budget_numbers(&advice.budgets);
     page.live = advice.live.as_ref().map(shown).unwrap_or_default();
     if page.live.is_empty() {
         page.note(NO_LIVE_SECTION);
@@ -36,11 +38,12 @@ pub fn page(advice: &LinearAdvice) -> String {
         signals.iter().map(|signal| signal.name.as_str()).collect::<Vec<_>>().join(", ")
     };
     let sub = format!(
-        "{} states · inputs {} · measured {} · {} s · `libration advise`",
+        "{} states · inputs {} · measured {} · {} s · `{}`",
         advice.states.len(),
         names(&advice.inputs),
         names(&advice.outputs),
         number(advice.period, 4),
+        advice.repeat_command,
     );
     report::render_page(&page, &sub)
 }

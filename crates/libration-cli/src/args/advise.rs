@@ -25,7 +25,7 @@ pub(crate) struct AdviseArgs {
     pub(super) system: Option<SystemArgs>,
     #[command(flatten)]
     pub(crate) linear: LinearArgs,
-    /// Gains of the feedback −KP·q − KD·v [default: no loop; in s⁻² and s⁻¹, with --set m= in N/m and N·s/m]
+    /// Gains of the feedback −KP·q − KD·v of a system of `libration list`; a file of equations takes --gain [default: no loop; in s⁻² and s⁻¹, with --set m= in N/m and N·s/m]
     #[arg(long, value_name = "KP,KD", value_parser = feedback, allow_hyphen_values = true)]
     pub(super) feedback: Option<Feedback>,
     /// Sample period of the loop in s, also as 2ms or 500Hz [default: 0.01, or that of a sampled plant]

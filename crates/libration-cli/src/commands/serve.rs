@@ -61,8 +61,7 @@ fn page(options: &SystemArgs) -> Result<String, Failure> {
         settings.push(live_settings::of_equations(&system?));
     } else if let Some(name) = &options.system {
         let (system, actuation) = catalog::build(name, &options.set).map_err(Failure::usage)?;
-        let mass = matches!(actuation, catalog::Actuation::Force { .. }).then(|| actuation.mass());
-        let mut setting = Setting::of_system(system, mass);
+        let mut setting = Setting::of_system(system, actuation);
         begin_at(&mut setting, options)?;
         settings.push(setting);
     } else if let Some(option) = first_of_start(options) {

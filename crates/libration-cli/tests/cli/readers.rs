@@ -167,8 +167,8 @@ valid = jsonschema.validators.validator_for(schema)(schema).is_valid
 # Fails here if the schema and the configuration have different keys.
 jsonschema.validate(default, schema)
 for path, bad in [
-    ('oscillator/k', 0),
-    ('oscillator/m', '1'),
+    ('system/oscillator/k', 0),
+    ('system/oscillator/m', '1'),
     ('drift/dt', []),
     ('drift/dt', [0.1, 0.1]),
     ('drift/steps', 0),

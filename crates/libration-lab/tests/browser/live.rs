@@ -224,7 +224,7 @@ fn a_loop_that_a_reader_switches_on_is_designed_and_latency_makes_it_unstable() 
         page.eval("document.getElementById('live-loop').click()");
         assert!(page.comes_true(&format!("{SECTION}.live.setting.has('gain')")));
         assert!(verdict(page).starts_with("Stable"), "{}", verdict(page));
-        let limit = page.number(&format!("{SECTION}.live.limits['latency.stable'][0]"));
+        let limit = page.number(&format!("{SECTION}.live.limits['latency.to'][0]"));
         for (factor, expected) in [(0.95, "Stable"), (1.05, "Unstable")] {
             page.eval(&format!("{SECTION}.live.set('latency', {})", factor * limit));
             assert!(verdict(page).starts_with(expected), "{}", verdict(page));

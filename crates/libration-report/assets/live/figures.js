@@ -204,17 +204,35 @@ const judge = (view, limits, setting) => {
   return view.kind === "loop" ? judgeLoop(view, limits, setting, growth) : judgeMotion(view, limits, setting, growth);
 };
 
+/** The latencies at which a loop is stable around one that is given, or the first: a pair; null if there are none. */
+const latencyWindow = (limits, latency) => {
+  const windows = [...(limits["latency.from"] || [])].map((from, i) => [from, limits["latency.to"][i]]);
+  return windows.find(([from, to]) => from <= latency && latency <= to) || windows[0] || null;
+};
+
+const latencyText = (limits, latency) => {
+  const [window, tried] = [latencyWindow(limits, latency), single(limits, "latency.tried")];
+  if (!window) return "none";
+  const to = window[1] === Infinity ? `above ${short(tried)}` : short(window[1]);
+  return window[0] > 0 ? `${short(window[0])} to ${to}` : to;
+};
+
 const judgeLoop = (view, limits, setting, growth) => {
-  const [limit, tried] = [single(limits, "latency.stable"), single(limits, "latency.tried")];
-  const random = Number(setting.get("jitter")) > 0 || Number(setting.get("loss")) > 0;
+  const [latency, number] = [Number(setting.get("latency")), (key) => Number(setting.get(key) ?? 0)];
+  const random = number("jitter") > 0 || number("loss") > 0;
   const without = random ? " Without jitter and losses it" : " It";
   let more = "";
-  if (limit === Infinity) more = `${without} is stable up to ${short(tried)} s, the longest latency of a page.`;
-  else if (limit > 0) more = `${without} is stable up to a latency of ${short(limit)} s.`;
-  const marginal = Math.abs(growth) * Number(setting.get("period")) < 1e-9;
+  if (limits["latency.from"]) {
+    const window = latencyWindow(limits, latency);
+    if (!window) more = `${without} is stable with no latency up to ${short(single(limits, "latency.tried"))} s.`;
+    else if (window[0] > 0) more = `${without} is stable with latencies of ${latencyText(limits, latency)} s, not below.`;
+    else more = `${without} is stable up to a latency of ${latencyText(limits, latency)} s.`;
+  }
+  const marginal = Math.abs(growth) * number("period") < 1e-9;
   if (marginal) return { verdict: `At the edge: deviations from the ${view.point} neither grow nor decay exponentially.`, good: false };
   const ideal = single(view, "growth.ideal");
-  const beside = Number.isNaN(ideal) || Math.abs(ideal) < 1e-9 ? "." : `; with perfect timing they ${times(ideal)}.`;
+  const perfect = !random && latency === 0 && number("skew") === 0;
+  const beside = perfect || Number.isNaN(ideal) || Math.abs(ideal) < 1e-9 ? "." : `; with perfect timing they ${times(ideal)}.`;
   const state = growth < 0 ? "Stable" : "Unstable";
   return { verdict: `${state}: deviations from the ${view.point} ${times(growth)}${beside}${more}`, good: growth < 0 };
 };
@@ -254,14 +272,16 @@ const numberRows = (view, limits, setting) => {
   if (view.kind === "motion") {
     if (view.energy.length) rows.push(["largest change of the energy", get("energy.predicted"), get("energy.largest")]);
     const limit = single(limits, "dt.stable");
-    if (limit >= 0 && (limit > 0 || single(view, "growth.exact") <= 1e-9)) rows.push(["largest stable step (s)", limit === 0 ? "none" : format(limit), "—"]);
+    const natural = single(view, "growth.exact") > 1e-9;
+    if (!limits["dt.stable"]) rows.push(["largest stable step (s)", "…", "—"]);
+    else if (!Number.isNaN(limit) && !(natural && limit === 0)) rows.push(["largest stable step (s)", limit === 0 ? "none" : format(limit), "—"]);
   } else {
-    const [limit, tried] = [single(limits, "latency.stable"), single(limits, "latency.tried")];
-    rows.push(["stable up to a latency of (s)", limit === Infinity ? `above ${format(tried)}` : format(limit), "—"]);
-    if (limits["cost.rise"]) rows.push(["rise of the mean square of the states under noise", format(single(limits, "cost.rise")), "—"]);
+    const fresh = limits["latency.from"];
+    rows.push(["stable up to a latency of (s)", fresh ? latencyText(limits, Number(setting.get("latency"))) : "…", "—"]);
+    rows.push(["rise of the mean square of the states under noise", fresh ? format(single(limits, "cost.rise")) : "…", "—"]);
     rows.push(["steps in a period", "—", get("steps")]);
   }
-  rows.push(["evaluations of the forces per simulated second", get("evaluations"), "—"]);
+  rows.push(["evaluations of the forces per simulated second, each step alone", get("evaluations"), "—"]);
   const [asked, shown] = [Number(setting.get("horizon")), single(view, "horizon")];
   if (shown < 0.5 * asked) rows.push(["time shown, of the time asked for (s)", "—", `${format(shown)} of ${format(asked)}`]);
   return rows;

@@ -56,7 +56,13 @@ class Live {
 
   set(key, value) {
     this.setting.set(key, String(value));
+    this.showRows();
     this.touch();
+  }
+
+  /** Shows the setting in all rows but the one that a reader types in. */
+  showRows() {
+    for (const row of this.rows) if (this.setting.has(row.key) && row.key !== "gain") row.show(Number(this.setting.get(row.key)));
   }
 
   /** The setting changed by other means than its equations, whose last right text returns. */
@@ -144,12 +150,12 @@ class Live {
 
   /** Lets the latency reach twice the largest stable one, once for each choice of a setting. */
   fit() {
-    const limit = single(this.limits, "latency.stable");
-    const row = this.rows.find((row) => row.key === "latency");
-    if (this.fitted || !row || !(limit > 0 && limit < Infinity)) return;
-    this.fitted = true;
     const latency = Number(this.setting.get("latency"));
-    row.scale = rangeOf("latency", latency, Math.min(2 * limit, single(this.limits, "latency.tried")));
+    const window = latencyWindow(this.limits, latency);
+    const row = this.rows.find((row) => row.key === "latency");
+    if (this.fitted || !row || !window || window[1] === Infinity) return;
+    this.fitted = true;
+    row.scale = rangeOf("latency", latency, Math.min(2 * window[1], single(this.limits, "latency.tried")));
     row.place(latency);
     this.map = null;
     drawMap(this);
@@ -171,8 +177,8 @@ class Live {
 
   /** Verdict and numbers. */
   numbers() {
-    // Until the setting rests, the limits are those of a moment ago.
-    const { limits } = this;
+    // Limits of another setting are not shown.
+    const limits = this.limitsOf === settingText(this.setting) ? this.limits : {};
     const { verdict, good } = judge(this.view, limits, this.setting);
     const line = this.find("verdict");
     if (line.textContent !== verdict) line.textContent = verdict;
@@ -351,7 +357,7 @@ class Live {
   moved(...entries) {
     this.touched = true;
     for (const [key, number] of entries) this.setting.set(key, String(Number(number.toPrecision(4))));
-    for (const row of this.rows) if (this.setting.has(row.key) && row.key !== "gain") row.show(Number(this.setting.get(row.key)));
+    this.showRows();
     this.touch();
   }
 }

@@ -39,14 +39,19 @@ fn opening(page: &Page) -> String {
         "" => String::new(),
         headline => format!("<p><b>{}</b></p>\n", render_html(headline)),
     };
+    sentence + &highlights(page)
+}
+
+/// The key numbers of a page or a chapter; empty without any.
+pub(super) fn highlights(page: &Page) -> String {
     let number = |own: &Highlight| {
         let (value, text) = (render_html(&own.value), render_html(&own.text));
         format!("<div><strong>{value}</strong><span>{text}</span></div>")
     };
-    let numbers: String = page.highlights.iter().map(number).collect();
+    let numbers: String = page.highlights.iter().take(4).map(number).collect();
     match numbers.as_str() {
-        "" => sentence,
-        numbers => format!("{sentence}<div class=\"four\">{numbers}</div>\n"),
+        "" => String::new(),
+        numbers => format!("<div class=\"four\">{numbers}</div>\n"),
     }
 }
 
