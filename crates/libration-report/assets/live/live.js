@@ -47,6 +47,7 @@ class Live {
     this.setting = setting;
     [this.sourceError, this.editError] = [error, ""];
     [this.view, this.map, this.axes, this.columns] = [null, null, null, null];
+    clearTimeout(this.idle);
     this.limits = {};
     this.limitsOf = "";
     this.fitted = false;
@@ -139,7 +140,7 @@ class Live {
   async rest() {
     const text = settingText(this.setting);
     const limits = await this.slow.ask(`limits\n${text}`);
-    if (this.failed || text !== settingText(this.setting)) return;
+    if (!this.view || this.failed || text !== settingText(this.setting)) return;
     [this.limits, this.limitsOf] = [limits, text];
     this.fit();
     this.numbers();
