@@ -8,21 +8,23 @@ const LOOP: [&str; 5] = ["advise", "--system", "oscillator", "--feedback", "10,2
 
 #[test]
 fn a_period_and_a_latency_with_units_are_those_in_seconds() {
-    let answer = |words: &[&str]| json(&[&LOOP[..], words].concat());
-    let seconds = answer(&["--period", "0.002", "--latency", "0.0015"]);
+    // Fifty periods are as good as many.
+    let short = [&LOOP[..], &["--horizon", "1"]].concat();
+    let answer = |words: &[&str]| json(&[&short[..], words].concat());
+    let seconds = answer(&["--period", "0.02", "--latency", "0.015"]);
     for words in [
-        ["--period", "2ms", "--latency", "1.5 ms"],
-        ["--period", "2000us", "--latency", "1500µs"],
-        ["--period", "500Hz", "--latency", "1.5ms"],
-        ["--rate", "500", "--latency", "0.75steps"],
-        ["--rate", "0.5 kHz", "--latency", "0.0015"],
+        ["--period", "20ms", "--latency", "15 ms"],
+        ["--period", "20000us", "--latency", "15000µs"],
+        ["--period", "50Hz", "--latency", "15ms"],
+        ["--rate", "50", "--latency", "0.75steps"],
+        ["--rate", "0.05 kHz", "--latency", "0.015"],
     ] {
         assert_eq!(answer(&words)["budget"], seconds["budget"], "{words:?}");
     }
     // The command that repeats the answer has the words of the user, those of its parts are in seconds.
-    let text = libration(&[&LOOP[..], &["--rate", "500"]].concat()).success();
+    let text = libration(&[&short[..], &["--rate", "50"]].concat()).success();
     let text = String::from_utf8_lossy(&text.get_output().stdout).into_owned();
-    assert!(text.contains("--rate 500\n") && text.contains("--dt 0.002 "), "{text}");
+    assert!(text.contains("--rate 50\n") && text.contains("--dt 0.02 "), "{text}");
 }
 
 #[test]
@@ -70,7 +72,7 @@ fn files_take_units() {
     let path = folder.path().join("loop.toml");
     let plant = "[system.linear]\na = [[0, 1], [0, 0]]\nb = [[0], [1]]\n[controller.lqr]\nstates = [1, 0]\ninputs = [1]\n";
     let system = "[system.oscillator]\nomega2 = 10\n[controller.pd]\nposition = 10\nvelocity = 2\n[request]\nhorizon = HORIZON\n";
-    for (text, each) in [(plant, "[\"1.5 ms\"]"), (system, "\"1.5ms\"")] {
+    for (text, each) in [(plant, "[\"15 ms\"]"), (system, "\"15ms\"")] {
         let write = |period: &str, latency: &str, horizon: &str| {
             let text = text.replace("HORIZON", horizon);
             let looped = format!("{text}[loop]\nperiod = {period}\nlatency = {latency}\n");
@@ -83,12 +85,12 @@ fn files_take_units() {
             answer.as_object_mut().unwrap().remove("throughput");
             answer
         };
-        let seconds = answer(write("0.002", "0.0015", "5"));
-        assert_eq!(answer(write("\"2ms\"", each, "\"5s\"")), seconds);
-        assert_eq!(answer(write("\"500Hz\"", each, "\"5000ms\"")), seconds);
+        let seconds = answer(write("0.02", "0.015", "0.1"));
+        assert_eq!(answer(write("\"20ms\"", each, "\"0.1s\"")), seconds);
+        assert_eq!(answer(write("\"50Hz\"", each, "\"100ms\"")), seconds);
         for (period, latency) in [("\"2 sec\"", "0"), ("0.002", "\"fast\""), ("0.002", "\"500Hz\"")]
         {
-            let failed = libration(&write(period, latency, "5")).code(2);
+            let failed = libration(&write(period, latency, "0.1")).code(2);
             let said = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
             assert!(said.contains("loop.toml") && said.contains("2ms"), "{said}");
         }
