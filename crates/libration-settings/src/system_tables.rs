@@ -37,7 +37,7 @@ impl<E> SystemTables<E> {
         SystemTables { catalogued, ..SystemTables::default() }
     }
 
-    /// Checks that there is a single system.
+    /// Refuses a second system.
     ///
     /// # Errors
     /// A [`Fault`] at `system`.
