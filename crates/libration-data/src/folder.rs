@@ -15,7 +15,7 @@ use crate::manifest::{LIMIT, NAME};
 use crate::{Chunk, DataError, Manifest, Stored, run_on_threads, write_file};
 
 /// Files that are written at once: to wait for the disk takes as long for one as for all of them.
-const AT_ONCE: usize = 16;
+pub(crate) const AT_ONCE: usize = 16;
 
 /// A folder of a data set, locked for this process.
 #[derive(Debug)]
@@ -76,7 +76,7 @@ impl Folder {
             let manifest = Manifest { settings: settings.clone(), chunks: Vec::new() };
             let mut folder = Folder { path, manifest, log };
             folder.cut(0)?;
-            folder.append(&Value::Object(settings.clone()))?;
+            folder.append(&[Value::Object(settings.clone())])?;
             // The folder may be new as well.
             sync_folder(&folder.path)?;
             folder.path.parent().map_or(Ok(()), |parent| sync_folder(named(parent)))?;
@@ -126,18 +126,26 @@ impl Folder {
         holds: Map<String, Value>,
         files: Vec<Stored>,
     ) -> Result<(), DataError> {
-        let chunk = Chunk { chunk: chunk.to_owned(), holds, files };
-        let line = serde_json::to_value(&chunk)
-            .map_err(|error| DataError::io("write", &self.path.join(NAME))(error.into()))?;
-        self.append(&line)?;
-        self.manifest.chunks.push(chunk);
+        self.record_all(&[Chunk { chunk: chunk.to_owned(), holds, files }])
+    }
+
+    /// Records in the manifest chunks whose files are on the disk.
+    ///
+    /// # Errors
+    /// As for [`record`](Self::record).
+    pub fn record_all(&mut self, chunks: &[Chunk]) -> Result<(), DataError> {
+        let lines = chunks.iter().map(serde_json::to_value).collect::<Result<Vec<_>, _>>();
+        let failed =
+            |error: serde_json::Error| DataError::io("write", &self.path.join(NAME))(error.into());
+        self.append(&lines.map_err(failed)?)?;
+        self.manifest.chunks.extend_from_slice(chunks);
         Ok(())
     }
 
-    /// Appends a line to the manifest.
-    fn append(&mut self, line: &Value) -> Result<(), DataError> {
+    /// Appends lines to the manifest.
+    fn append(&mut self, lines: &[Value]) -> Result<(), DataError> {
         let name = self.path.join(NAME);
-        let text = format!("{line}\n");
+        let text: String = lines.iter().map(|line| format!("{line}\n")).collect();
         let written = (&*self.log).write_all(text.as_bytes()).and_then(|()| self.log.sync_data());
         written.map_err(DataError::io("write", &name))
     }
@@ -155,15 +163,7 @@ impl Folder {
 /// # Errors
 /// If the system reports an error, such as a full disk.
 pub fn write_files(folder: &Path, files: &[NewFile<'_>]) -> Result<Vec<Stored>, DataError> {
-    // Every folder that has something new in it, the innermost first.
-    let mut folders = BTreeSet::new();
-    for file in files {
-        let parents = file.path.ancestors().skip(1);
-        folders.extend(parents.map(|parent| Reverse(folder.join(parent))));
-    }
-    for Reverse(folder) in folders.iter().rev() {
-        fs::create_dir_all(folder).map_err(DataError::io("create", folder))?;
-    }
+    let folders = NewFolders::create(folder, files.iter().map(|file| &*file.path))?;
     let at_once = files.len().min(AT_ONCE);
     let one = |i: usize| -> Result<Stored, DataError> {
         let path = files[i].path.clone();
@@ -172,10 +172,34 @@ pub fn write_files(folder: &Path, files: &[NewFile<'_>]) -> Result<Vec<Stored>, 
     };
     let stored = run_on_threads(at_once, files.len(), one);
     let stored = stored.into_iter().collect::<Result<_, _>>()?;
-    let folders: Vec<_> = folders.into_iter().collect();
-    let synced = run_on_threads(at_once, folders.len(), |i| sync_folder(&folders[i].0));
-    synced.into_iter().collect::<Result<Vec<()>, _>>()?;
+    folders.sync(at_once)?;
     Ok(stored)
+}
+
+/// Every folder that has something new in it, the innermost first.
+pub(crate) struct NewFolders(Vec<PathBuf>);
+
+impl NewFolders {
+    /// Creates the folders of files whose paths are relative to `folder`.
+    pub(crate) fn create<'a>(
+        folder: &Path,
+        files: impl Iterator<Item = &'a Path>,
+    ) -> Result<Self, DataError> {
+        let parents: BTreeSet<_> =
+            files.flat_map(|file| file.ancestors().skip(1)).map(Reverse).collect();
+        let folders: Vec<_> =
+            parents.into_iter().map(|Reverse(inner)| folder.join(inner)).collect();
+        for folder in folders.iter().rev() {
+            fs::create_dir_all(folder).map_err(DataError::io("create", folder))?;
+        }
+        Ok(NewFolders(folders))
+    }
+
+    /// Waits until the names in them are on the disk.
+    pub(crate) fn sync(&self, threads: usize) -> Result<(), DataError> {
+        let synced = run_on_threads(threads, self.0.len(), |i| sync_folder(&self.0[i]));
+        synced.into_iter().collect()
+    }
 }
 
 /// Compares the settings of a data set with the required ones.

@@ -21,6 +21,7 @@ mod replay_file;
 mod state_file;
 mod table;
 mod thread_work;
+mod transfer;
 mod verification;
 
 pub use array_file::{ArrayValues, NamedArray, parse_npy, parse_npy_records, read_mat, read_npz};
@@ -37,4 +38,5 @@ pub use replay_file::ReplayFile;
 pub use state_file::{load_state, save_state};
 pub use table::{Column, Table, Values};
 pub use thread_work::run_on_threads;
-pub use verification::{Flaw, find_unlisted, verify};
+pub use transfer::{Transfer, transfer_files};
+pub use verification::{Comparison, Flaw, find_unlisted, verify};

@@ -4,8 +4,13 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::ops::Deref;
 use std::path::Path;
 use std::process;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use crate::DataError;
+
+/// How long to wait for a lock: a process that was killed holds it until the system has taken it down.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// A file that is locked until this is dropped, or until its process and all that it forked have ended.
 ///
@@ -19,14 +24,23 @@ pub struct LockedFile {
 }
 
 impl LockedFile {
-    /// Opens a file, makes it if there is none, and locks it.
+    /// Opens a file, makes it if there is none, and locks it; waits a moment for a process that holds it.
     ///
     /// # Errors
     /// [`DataError::Locked`] if it is locked, by this process or another; [`DataError::Io`] if the system refuses.
     pub fn open(path: &Path) -> Result<Self, DataError> {
         let mut options = OpenOptions::new();
         options.read(true).write(true).create(true).truncate(false);
-        LockedFile::lock(options.open(path).map_err(DataError::io("write", path))?, path)
+        let until = Instant::now() + PATIENCE;
+        loop {
+            let file = options.open(path).map_err(DataError::io("write", path))?;
+            match LockedFile::lock(file, path) {
+                Err(DataError::Locked(_)) if Instant::now() < until => {
+                    sleep(Duration::from_millis(10));
+                }
+                ended => return ended,
+            }
+        }
     }
 
     /// Locks an open file.

@@ -53,7 +53,7 @@ pub(crate) use measure_jitter::MeasureJitterArgs;
 pub(crate) use number::Coordinates;
 pub(crate) use probe::ProbeArgs;
 pub(crate) use quoted::quoted;
-pub(crate) use rollout::{RolloutArgs, VerifyArgs};
+pub(crate) use rollout::{JoinArgs, RolloutArgs, VerifyArgs};
 pub(crate) use serve::ServeArgs;
 pub(crate) use simulate::SimulateArgs;
 pub(crate) use system::{StepArgs, SystemArgs};
@@ -130,6 +130,8 @@ pub(crate) enum Command {
     Bodies(BodiesArgs),
     /// Write a data set of rollouts, or resume an interrupted one
     Rollout(RolloutArgs),
+    /// Join the shards of a data set
+    Join(JoinArgs),
     /// Check the files of a data set, recompute it or repair it; recompute a report
     Verify(VerifyArgs),
     /// Compare the findings of two runs of `lab`: what became worse, better, or differs

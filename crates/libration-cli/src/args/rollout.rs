@@ -1,4 +1,4 @@
-//! Arguments of `rollout` and `verify`.
+//! Arguments of `rollout`, `join` and `verify`.
 
 use std::path::PathBuf;
 
@@ -39,7 +39,7 @@ pub(crate) struct RolloutArgs {
     /// Write only the I-th of N shards of the environments
     #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
     pub(crate) shard: [usize; 2],
-    /// Resume an interrupted data set; checks all chunks first and repairs broken ones
+    /// Resume an interrupted data set after its last chunk; writes missing and truncated files again
     #[arg(long)]
     pub(crate) resume: bool,
     /// Number of threads (0: one per core)
@@ -57,7 +57,7 @@ Examples:
   libration rollout --config mine.toml --out data --transitions 1e9 --format npy
   libration rollout --system cart_pole.toml --set pole=0.2 --out falls
   libration rollout --config mine.toml --out data --transitions 1e9 --format npy --resume
-  libration rollout --config mine.toml --out part-2 --shard 2/3
+  libration rollout --config mine.toml --out part-2 --shard 2/3      (then join part-1 part-2 part-3)
 
 parquet: transitions/*.parquet has one row per transition.
 npy: one folder per field has tensors [step, environment, …].
@@ -65,6 +65,34 @@ Both: ends/* has the final observation of each episode. For an episode that cont
 chunk, it has the observation after the last step of the chunk.
 manifest.jsonl lists each chunk with checksums as soon as the chunk is on the disk.
 The settings determine every byte: a resumed data set equals one without interruption.";
+
+/// Arguments of `join`.
+#[derive(Args, Debug)]
+#[command(after_help = JOIN_EXAMPLES)]
+pub(crate) struct JoinArgs {
+    /// Folders of all shards, in any order
+    #[arg(required = true, value_name = "PART")]
+    pub(crate) parts: Vec<PathBuf>,
+    /// Output folder of the data set
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Link files instead of copying them, where the file system can; they are not read
+    #[arg(long)]
+    pub(crate) link: bool,
+    /// Resume an interrupted join
+    #[arg(long)]
+    pub(crate) resume: bool,
+}
+
+const JOIN_EXAMPLES: &str = "\
+Examples:
+  libration join part-1 part-2 part-3 --out data
+  libration join part-* --out data --link
+  libration verify data
+
+The shards must be finished, of the same settings, complete, and none may be there twice.
+The joined data set has the bytes that a single run writes. The shards stay as they are.
+Linked files share their bytes with the shards, which may then be removed.";
 
 /// Arguments of `verify`.
 #[derive(Args, Debug)]

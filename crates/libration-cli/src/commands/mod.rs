@@ -21,6 +21,7 @@ mod compare;
 mod compare_integrators;
 mod completions;
 mod config_file;
+mod dataset_progress;
 mod digits;
 mod disagreements;
 mod equation_file;
@@ -62,6 +63,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::Serve(args) => serve::run(&args),
         Command::Bodies(args) => bodies::run(&args, arguments.quiet),
         Command::Rollout(args) => rollout::run(&args, arguments.quiet),
+        Command::Join(args) => rollout::join(&args, arguments.quiet),
         Command::Verify(args) => rollout::verify(&args, arguments.quiet),
         Command::Bench(args) => bench::run(&args, arguments.quiet),
         Command::Gains(args) => gains::run(&args),

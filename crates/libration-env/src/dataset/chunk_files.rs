@@ -89,6 +89,13 @@ impl<T: Number> ChunkRollout<T> {
         format!("{:06}-{:08}", self.group.number, self.chunk)
     }
 
+    /// The size of the rollout in memory, in bytes.
+    pub(super) fn bytes(&self) -> u64 {
+        let [observations, actions] = self.rollout.sizes();
+        let bytes = self.rollout.plan().bytes(observations, actions, size_of::<T>());
+        u64::try_from(bytes).unwrap_or(u64::MAX)
+    }
+
     /// The entry of the chunk in the manifest.
     pub(super) fn manifest_entry(
         &self,

@@ -113,6 +113,45 @@ impl<T: Number> Episodes<T> {
         Ok(ended)
     }
 
+    /// Appends the open episodes to the bytes of a state.
+    pub(super) fn save(&self, to: &mut Vec<u8>) {
+        for open in &self.open {
+            to.extend(open.first.to_le_bytes());
+            to.extend((open.len() as u64).to_le_bytes());
+            for numbers in [&open.observation, &open.action, &open.reward] {
+                to.extend_from_slice(bytemuck::cast_slice(numbers));
+            }
+        }
+    }
+
+    /// Episodes like these with the open ones of [`save`](Self::save); none if the bytes are those of others.
+    pub(super) fn restored(&self, mut from: &[u8]) -> Option<Self> {
+        let mut open = Vec::with_capacity(self.open.len());
+        for Episode { environment, .. } in &self.open {
+            let mut word = || {
+                let (word, rest) = from.split_first_chunk()?;
+                from = rest;
+                Some(u64::from_le_bytes(*word))
+            };
+            let (first, len) = (word()?, usize::try_from(word()?).ok()?);
+            let mut numbers = |width: usize| {
+                let count = len.checked_mul(width)?;
+                let (taken, rest) = from.split_at_checked(count.checked_mul(size_of::<T>())?)?;
+                from = rest;
+                let mut numbers = vec![T::zero(); count];
+                bytemuck::cast_slice_mut(&mut numbers).copy_from_slice(taken);
+                Some(numbers)
+            };
+            let [observations, actions] = self.sizes;
+            let (observation, action) = (numbers(observations)?, numbers(actions)?);
+            let reward = numbers(1)?;
+            let episode =
+                Episode { first, observation, action, reward, ..Episode::new(*environment) };
+            open.push(episode);
+        }
+        from.is_empty().then_some(Episodes { open, ..*self })
+    }
+
     /// Truncates the open episodes; `next` has their final observations.
     pub(super) fn cut(&mut self, next: &[T]) -> Vec<Episode<T>> {
         let open = self.open.iter_mut().zip(next.chunks_exact(self.sizes[0]));

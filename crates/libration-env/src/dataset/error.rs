@@ -31,8 +31,8 @@ pub enum DatasetError {
     Table(#[from] TableError),
     /// The shard does not exist, or there are more shards than groups of environments.
     #[error(
-        "shard {index} of {of}: expected a shard from 1 on, and at most {groups} shards, one per group of environments \
-         (chunk.environments)"
+        "shard {index} of {of}: expected a shard from 1 to {of}, and at most as many shards as groups of \
+         `chunk.environments` environments ({groups})"
     )]
     Shard {
         /// Which one.
@@ -49,6 +49,20 @@ pub enum DatasetError {
     Whole {
         /// The number of shards.
         of: usize,
+    },
+    /// The folders are not all shards of one data set, each of them once.
+    #[error("the folders are no data set together: {what}")]
+    Parts {
+        /// The shard that is missing or there twice.
+        what: String,
+    },
+    /// A shard cannot be joined.
+    #[error("{}: {what}", folder.display())]
+    Part {
+        /// The folder of the shard.
+        folder: PathBuf,
+        /// The reason and a suggestion.
+        what: String,
     },
     /// The settings in the manifest cannot be read.
     #[error("the settings in the manifest of {} cannot be read: {what}", folder.display())]

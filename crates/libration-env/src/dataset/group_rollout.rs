@@ -32,6 +32,40 @@ impl<'a, T: Number> GroupRollout<'a, T> {
         GroupRollout { dataset, group, all, format, episodes }
     }
 
+    /// The state after the chunks so far, from which [`restore`](Self::restore) goes on: the open episodes after the environments.
+    pub(super) fn to_bytes(&self) -> Vec<u8> {
+        let environments = self.all.to_bytes();
+        let mut bytes = (environments.len() as u64).to_le_bytes().to_vec();
+        bytes.extend(environments);
+        if let Some(episodes) = &self.episodes {
+            episodes.save(&mut bytes);
+        }
+        bytes
+    }
+
+    /// Goes on from a state of [`to_bytes`](Self::to_bytes) after `chunks` chunks. Returns whether it fits; otherwise nothing changes.
+    pub(super) fn restore(&mut self, state: &[u8], chunks: u64) -> bool {
+        let Some((len, rest)) = state.split_first_chunk() else { return false };
+        let len = usize::try_from(u64::from_le_bytes(*len)).unwrap_or(usize::MAX);
+        let Some((environments, rest)) = rest.split_at_checked(len) else { return false };
+        let episodes = match &self.episodes {
+            None => rest.is_empty().then_some(None),
+            Some(episodes) => episodes.restored(rest).map(Some),
+        };
+        let Some(episodes) = episodes else { return false };
+        let start = self.all.to_bytes();
+        if self.all.restore(environments).is_err() {
+            return false;
+        }
+        if self.all.step() != chunks.saturating_mul(self.dataset.chunk.steps as u64) {
+            // A state of these environments, which fits.
+            let _ = self.all.restore(&start);
+            return false;
+        }
+        self.episodes = episodes;
+        true
+    }
+
     /// Computes the next chunk, in the memory of an older one of the same size.
     pub(super) fn next(
         &mut self,

@@ -5,7 +5,9 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use libration::ensemble::Execution;
-use libration_data::{Chunk, Flaw, Folder, Manifest, NewFile, checksum, verify, write_files};
+use libration_data::{
+    Chunk, Comparison, Flaw, Folder, Manifest, NewFile, checksum, verify, write_files,
+};
 
 use super::group::{Group, GroupVisitor, Number};
 use super::group_rollout::GroupRollout;
@@ -21,15 +23,18 @@ pub(super) struct DatasetPart<'a> {
     pub(super) groups: [usize; 2],
 }
 
-/// Reads all files and returns those that differ from the manifest.
+/// Compares all files with the manifest and returns those that differ.
 pub(super) fn find_broken(
     folder: &Path,
     manifest: &Manifest,
+    comparison: Comparison,
     monitor: &dyn Monitor,
 ) -> Result<Vec<Flaw>, DatasetError> {
     let of = manifest.bytes();
-    let flaws = verify(folder, manifest, |bytes| {
-        monitor.on_verified(bytes, of);
+    let flaws = verify(folder, manifest, comparison, |bytes| {
+        if comparison == Comparison::Checksum {
+            monitor.on_verified(bytes, of);
+        }
         !monitor.should_stop()
     });
     if monitor.should_stop() { Err(DatasetError::Interrupted) } else { Ok(flaws) }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use libration::ensemble::Execution;
-use libration_data::{Chunk, Flaw, Folder, Manifest, checksum, find_unlisted};
+use libration_data::{Chunk, Comparison, Flaw, Folder, Manifest, checksum, find_unlisted};
 use serde_json::Value;
 
 use super::chunk_order::find_misplaced;
@@ -16,7 +16,7 @@ use super::memory_check::TrialStep;
 use super::minari::Totals;
 use super::repair::{DatasetPart, find_broken, repair};
 use super::tables::File;
-use super::{DataFormat, Dataset, DatasetError, Monitor};
+use super::{DataFormat, Dataset, DatasetError, Monitor, resume_state};
 use crate::environments::AnyEnvironments;
 
 /// Options of a verification beyond the comparison of checksums.
@@ -42,7 +42,7 @@ pub fn verify(
     let mut manifest = Manifest::read(folder)?;
     let value = settings(folder, &manifest);
     let (flaws, value) = match how.repair {
-        None => (find_broken(folder, &manifest, monitor)?, value),
+        None => (find_broken(folder, &manifest, Comparison::Checksum, monitor)?, value),
         Some(execution) => {
             let (dataset, format, groups) = value?;
             let part = DatasetPart { dataset: &dataset, format, groups };
@@ -54,7 +54,7 @@ pub fn verify(
             }
             let folder = Folder::open(folder, &manifest.settings, true)?;
             manifest = folder.manifest().clone();
-            let flaws = find_broken(folder.path(), &manifest, monitor)?;
+            let flaws = find_broken(folder.path(), &manifest, Comparison::Checksum, monitor)?;
             let lost = repair(&folder, &part, &flaws, execution, monitor)?;
             (lost, Ok((dataset, format, groups)))
         }
@@ -110,7 +110,9 @@ fn check_completeness(
         broken: false,
     });
     let unlisted = find_unlisted(folder, manifest)?;
-    let unlisted = unlisted.iter().map(|path| of_all(path, "is not in the manifest".to_owned()));
+    // Killed before it was removed, or not yet finished.
+    let unlisted = unlisted.iter().filter(|path| **path != Path::new(resume_state::NAME));
+    let unlisted = unlisted.map(|path| of_all(path, "is not in the manifest".to_owned()));
     Ok(extra.chain(unlisted).collect())
 }
 

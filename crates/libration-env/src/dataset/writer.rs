@@ -6,7 +6,7 @@ use std::thread::{Builder, ScopedJoinHandle};
 use std::{io, thread};
 
 use libration::ensemble::{EnsembleError, Execution};
-use libration_data::{Flaw, Folder, Manifest, Stored, write_files};
+use libration_data::{Comparison, Flaw, Folder, Manifest, Stored, write_files};
 use serde_json::{Map, Value};
 
 use super::chunk_files::ChunkRollout;
@@ -17,6 +17,7 @@ use super::manifest_settings::manifest_head;
 use super::memory_check::TrialStep;
 use super::minari::Totals;
 use super::repair::{DatasetPart, find_broken, repair};
+use super::resume_state::ResumeState;
 use super::{DataFormat, Dataset, DatasetError, Monitor};
 use crate::environments::AnyEnvironments;
 
@@ -55,7 +56,8 @@ pub(super) fn groups(
 
 /// Writes a data set or a shard: computes a chunk while it writes the one before. Returns the manifest.
 ///
-/// With `resume` it first verifies the checksums of present chunks and recomputes broken ones.
+/// With `resume` it goes on from the state that the interrupted run wrote last. It compares the lengths of all files with the manifest, and
+/// recomputes files that are missing or have another length; it reads none of them ([`verify`](super::verify) does).
 ///
 /// # Errors
 /// See [`DatasetError`]. After an error the reported chunks are on the disk, and a run with `resume` continues after them.
@@ -75,7 +77,7 @@ pub fn write(job: &WriteJob<'_>, monitor: &dyn Monitor) -> Result<Manifest, Data
         let number = |name: &str| chunk.holds.get(name).and_then(Value::as_u64).unwrap_or(0);
         monitor.on_present(number("transitions"), chunk.bytes());
     }
-    let flaws = find_broken(out, folder.manifest(), monitor)?;
+    let flaws = find_broken(out, folder.manifest(), Comparison::Length, monitor)?;
     let part = DatasetPart { dataset, format, groups: [first, end] };
     let mut lost = repair(&folder, &part, &flaws, execution, monitor)?.into_iter();
     if let Some(Flaw { path, what, .. }) = lost.next() {
@@ -99,6 +101,7 @@ pub fn write(job: &WriteJob<'_>, monitor: &dyn Monitor) -> Result<Manifest, Data
         dataset.with(group, execution, stream)??;
         there = 0;
     }
+    ResumeState::remove(out)?;
     Ok(folder.manifest().clone())
 }
 
@@ -119,9 +122,15 @@ impl GroupVisitor for Stream<'_> {
     fn visit<T: Number>(self, all: Box<dyn AnyEnvironments<T>>) -> Self::Output {
         let Stream { dataset, format, group, from, folder, threads, monitor } = self;
         let mut rollout = GroupRollout::new(dataset, format, group, all);
-        // Recomputing the state is faster than reading it.
+        let head = folder.manifest().settings.clone();
+        let state = if from > 0 { ResumeState::load(folder.path(), &head) } else { None };
+        let state = state.filter(|state| {
+            state.group == group.number
+                && state.chunks <= from
+                && rollout.restore(state.bytes(), state.chunks)
+        });
         let mut used = None;
-        for _ in 0..from {
+        for _ in state.map_or(0, |state| state.chunks)..from {
             used = Some(rollout.next(used)?);
             if monitor.should_stop() {
                 return Err(DatasetError::Interrupted);
@@ -129,8 +138,9 @@ impl GroupVisitor for Stream<'_> {
         }
         let mut before = Totals::of_chunks(&folder.manifest().chunks);
         let path = folder.path().to_owned();
-        let write = |done: ChunkRollout<T>, before: Totals| {
-            stored(done, before, dataset, format, threads, &path)
+        let write = |done: ChunkRollout<T>, before: Totals, state: Option<ResumeState>| {
+            let written = stored(done, before, dataset, format, threads, &path)?;
+            Ok(Written { state, ..written })
         };
         let write = &write;
         thread::scope(|scope| {
@@ -140,9 +150,11 @@ impl GroupVisitor for Stream<'_> {
             let tell = move || {
                 for turn in turns {
                     let turn = turn.join().unwrap_or(Err(DatasetError::Interrupted))?;
-                    let Written { done, after, holds, files } = turn;
+                    let Written { done, after, holds, files, state } = turn;
                     let bytes = files.iter().map(|file| file.bytes).sum();
                     folder.record(&done.name(), holds, files)?;
+                    // Never ahead of the manifest.
+                    state.map_or(Ok(()), |state| state.save(folder.path()))?;
                     monitor.on_written(done.rollout.plan().transitions() as u64, bytes);
                     // The receiver may have finished.
                     let _ = give_back.send((done, after));
@@ -150,13 +162,21 @@ impl GroupVisitor for Stream<'_> {
                 Ok(())
             };
             let teller = Builder::new().spawn_scoped(scope, tell).map_err(no_thread)?;
+            let mut due = StateDue::default();
             let mut compute = || {
-                for _ in from..dataset.chunks() {
+                for chunk in from..dataset.chunks() {
                     if monitor.should_stop() {
                         return Err(DatasetError::Interrupted);
                     }
                     let done = rollout.next(used.take())?;
-                    let writer = Builder::new().spawn_scoped(scope, move || write(done, before));
+                    // The group after the last chunk begins anew.
+                    let is_due = due.after(done.bytes()) && chunk + 1 < dataset.chunks();
+                    let state = is_due.then(|| {
+                        let bytes = due.taken(rollout.to_bytes());
+                        ResumeState::new(&head, group.number, chunk + 1, bytes)
+                    });
+                    let turn = move || write(done, before, state);
+                    let writer = Builder::new().spawn_scoped(scope, turn);
                     if send.send(writer.map_err(no_thread)?).is_err() {
                         break;
                     }
@@ -194,6 +214,31 @@ struct Written<T> {
     after: Totals,
     holds: Map<String, Value>,
     files: Vec<Stored>,
+    /// The state after the chunk, if it is written.
+    state: Option<ResumeState>,
+}
+
+/// Decides after which chunks the state is written: when the chunks since the last one hold as many bytes as it.
+///
+/// To write states then takes at most as long as to write chunks, also where an episode of Minari stays open for a long time.
+#[derive(Default)]
+struct StateDue {
+    state: u64,
+    since: u64,
+}
+
+impl StateDue {
+    /// Counts a chunk of `bytes` bytes. Returns whether the state after it is due.
+    fn after(&mut self, bytes: u64) -> bool {
+        self.since += bytes;
+        self.since >= self.state
+    }
+
+    /// Counts a state, and returns it.
+    fn taken(&mut self, state: Vec<u8>) -> Vec<u8> {
+        (self.state, self.since) = (state.len() as u64, 0);
+        state
+    }
 }
 
 /// Writes the files of a chunk.
@@ -208,5 +253,5 @@ fn stored<T: Number>(
     let holds = done.manifest_entry(dataset, format, before);
     let files = done.files(dataset, format, threads, before)?;
     let (after, files) = (files.after, write_files(folder, &files.list())?);
-    Ok(Written { done, after, holds, files })
+    Ok(Written { done, after, holds, files, state: None })
 }
