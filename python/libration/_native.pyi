@@ -51,6 +51,7 @@ __all__ = [
     "_splitting_methods",
     "_studies",
     "_systems",
+    "_join_datasets",
     "_verify_dataset",
     "_write_dataset",
 ]
@@ -158,6 +159,13 @@ def _write_dataset(
     settings: str,
     system: _Equations | None,
     writing: Mapping[str, Any],
+    progress: Callable[[int, int, int], Any] | None,
+) -> tuple[int, int, int]: ...
+def _join_datasets(
+    parts: Sequence[PathLike[str]],
+    out: PathLike[str],
+    link: bool,
+    resume: bool,
     progress: Callable[[int, int, int], Any] | None,
 ) -> tuple[int, int, int]: ...
 def _verify_dataset(

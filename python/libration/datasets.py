@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Mapping
+from typing import Any, Mapping, Sequence
 
 from . import _native
 from ._dataset_environments import keywords_of_settings, read_settings
@@ -16,7 +16,7 @@ from ._toml import text_of
 from .equations import EquationSystem, check_system
 from .systems import System, with_commands
 
-__all__ = ["Flaw", "SETTINGS", "Written", "environment_spec", "recover_environment", "verify", "write"]
+__all__ = ["Flaw", "SETTINGS", "Written", "environment_spec", "join", "recover_environment", "verify", "write"]
 
 SETTINGS: str = _native._dataset_settings()
 """Default settings file, with comments."""
@@ -81,8 +81,8 @@ def write(
     shard:
         Shard ``(index, number)`` of the environments, with an index from 1 to number.
     resume:
-        Resume an interrupted run, with the same bytes as without interruption. All chunks are checked first, and broken ones are
-        recomputed.
+        Resume an interrupted run after its last chunk, with the same bytes as without interruption. Files that are missing or truncated are
+        written again; :func:`verify` reads all of them.
     threads:
         Number of threads (0: one per core).
 
@@ -142,6 +142,49 @@ def _check_replaced(settings: Mapping[str, Any]) -> None:
                 raise ValueError(
                     f"settings has '{path}.{key}', which a system by equations replaces; expected '{path}.{allowed}' or none"
                 )
+
+
+@check_keywords
+def join(
+    parts: Sequence[str | os.PathLike[str]],
+    out: str | os.PathLike[str],
+    *,
+    link: bool = False,
+    resume: bool = False,
+    progress: Progress = None,
+) -> Written:
+    """Join the shards of a data set, as ``libration join`` does. The result has the bytes that a single run writes.
+
+    Parameters
+    ----------
+    parts:
+        Folders of all shards, in any order.
+    out:
+        Output folder of the data set.
+    link:
+        Link files instead of copying them, where the file system can. They are not read, and share their bytes with the shards, which may then be
+        removed.
+    resume:
+        Resume an interrupted join.
+
+    Raises
+    ------
+    ValueError
+        If the shards are not those of one data set, or one is missing, unfinished or there twice, before anything is written.
+    OSError
+        If a file cannot be read or written.
+    """
+    if isinstance(parts, (str, os.PathLike)):
+        raise TypeError(f"parts is {parts!r}, but it must be a list of folders")
+    folders = [Path(part) for part in parts]
+    with ProgressDisplay(progress) as display:
+
+        def report(done: int, _: int, size: int) -> None:
+            display.update(0.0, f"{done:,} transitions, {size / 1e9:.2f} GB")
+
+        callback = report if display.enabled else None
+        counts = _native._join_datasets(folders, Path(out), bool(link), bool(resume), callback)
+    return Written(Path(out), *counts)
 
 
 @check_keywords

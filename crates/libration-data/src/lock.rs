@@ -93,4 +93,18 @@ mod tests {
         drop(first);
         LockedFile::open(&path).unwrap();
     }
+
+    #[test]
+    fn who_follows_another_waits_a_moment_for_its_lock() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("locked");
+        let first = LockedFile::open(&path).unwrap();
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                sleep(Duration::from_millis(100));
+                drop(first);
+            });
+            LockedFile::open(&path).unwrap();
+        });
+    }
 }

@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use libration::ensemble::Execution;
 use libration_env::dataset;
 use libration_env::dataset::{
-    DataFormat, Dataset, EquationSource, Flaw, Monitor, VerifyOptions, WriteJob,
+    DataFormat, Dataset, EquationSource, Flaw, JoinJob, Monitor, Transfer, VerifyOptions, WriteJob,
 };
 use pyo3::prelude::*;
 
@@ -109,6 +109,37 @@ pub(crate) fn _write_dataset(
         progress_callback(&transitions, &bytes, all, progress.as_ref()),
     )?;
     let chunks = manifest.map_err(Raised::raised)?.chunks.len();
+    Ok((transitions.into_inner(), bytes.into_inner(), chunks))
+}
+
+/// Joins the shards of a data set. Gives transitions, bytes and chunks.
+#[pyfunction]
+pub(crate) fn _join_datasets(
+    py: Python<'_>,
+    parts: Vec<PathBuf>,
+    out: PathBuf,
+    link: bool,
+    resume: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(u64, u64, usize)> {
+    let (transitions, bytes, repaired) =
+        (AtomicU64::new(0), AtomicU64::new(0), Mutex::new(Vec::new()));
+    let joined = run_in_background(
+        py,
+        |stop| {
+            let transfer = if link { Transfer::Link } else { Transfer::Copy };
+            let job = JoinJob { parts: &parts, out: &out, transfer, resume };
+            let watch = ProgressWatch {
+                transitions: &transitions,
+                bytes: &bytes,
+                repaired: &repaired,
+                stop,
+            };
+            dataset::join(&job, &watch)
+        },
+        progress_callback(&transitions, &bytes, 0, progress.as_ref()),
+    )?;
+    let chunks = joined.map_err(Raised::raised)?.chunks.len();
     Ok((transitions.into_inner(), bytes.into_inner(), chunks))
 }
 

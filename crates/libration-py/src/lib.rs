@@ -53,7 +53,7 @@ mod _native {
     #[pymodule_export]
     use crate::comparison::_compare_integrators;
     #[pymodule_export]
-    use crate::datasets::{_dataset_settings, _verify_dataset, _write_dataset};
+    use crate::datasets::{_dataset_settings, _join_datasets, _verify_dataset, _write_dataset};
     #[pymodule_export]
     use crate::energy::_audit_energy;
     #[pymodule_export]

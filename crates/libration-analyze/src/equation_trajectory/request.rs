@@ -8,9 +8,6 @@ use libration_settings::limits;
 
 use crate::trajectory::{EnsembleFloat, EnsembleOptions, FloatType, TrajectoryError, rows};
 
-/// Largest number of values in a table: 8 GB.
-const MOST_VALUES: u64 = 1_000_000_000;
-
 /// A system by equations with its integrator and the steps to keep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EquationRequest {
@@ -80,12 +77,6 @@ impl EquationRequest {
         if let Some(ensemble) = &self.ensemble {
             ensemble.check()?;
             S::check_ensemble(self.system.equations.degrees().len(), ensemble)?;
-        }
-        let values = self.rows().saturating_mul(self.columns().len() as u64);
-        if values > MOST_VALUES {
-            let allowed =
-                format!("such that rows × columns is at most {MOST_VALUES}; it is {values}");
-            return value("every", self.every.to_string(), allowed);
         }
         Ok(())
     }

@@ -10,9 +10,6 @@ use super::exact_step::exact;
 use super::{EnsembleOptions, FloatType, TrajectoryError};
 use crate::{Stepping, Timing};
 
-/// Largest number of values in a table: 8 GB of them, 2·10⁸ rows in one dimension.
-const MOST_VALUES: u64 = 1_000_000_000;
-
 /// Largest number of degrees of freedom of a loop: kernels for more take long to compile.
 pub(super) const MOST_DIMENSIONS: usize = 2;
 
@@ -110,7 +107,7 @@ impl Request {
             let allowed = format!("at most {}, the steps between the time stamps", record.len());
             return Err(value_error("steps", self.steps, allowed));
         }
-        self.check_rows()
+        Ok(())
     }
 
     fn check_start<S: Float>(&self) -> Result<(), TrajectoryError> {
@@ -206,27 +203,6 @@ impl Request {
             }
         }
         Ok(())
-    }
-
-    fn check_rows(&self) -> Result<(), TrajectoryError> {
-        let columns = self.column_names().len() as u64;
-        let most = MOST_VALUES / columns;
-        let rows = self.rows();
-        if rows <= most {
-            return Ok(());
-        }
-        let count = self.ensemble.map_or(1, |ensemble| ensemble.count as u64);
-        if count.saturating_mul(2) > most {
-            let allowed = format!("at most {}: a table holds {most} rows", most / 2);
-            return Err(value_error("count", count, allowed));
-        }
-        // The start and perhaps the last step are kept as well.
-        let least = self.steps.div_ceil((most / count).saturating_sub(2).max(1));
-        let allowed = format!(
-            "at least {least}: {} steps make {rows} rows, and a table holds at most {most}",
-            self.steps
-        );
-        Err(value_error("every", self.every, allowed))
     }
 }
 

@@ -194,7 +194,7 @@ fn wrong_requests_are_refused_before_any_work() {
             Request { v: vec![1.0, 2.0], ..good.clone() },
             ["`v`", "1,2", "as many numbers as `q`: 1"],
         ),
-        (Request { steps: 1_000_000_000, ..good.clone() }, ["`every`", "at least 6", "200000000"]),
+        (Request { steps: 1 << 50, ..good.clone() }, ["GB of memory are needed", "--every", ""]),
     ];
     for (request, parts) in cases {
         let error = simulate(&request).unwrap_err().to_string();
@@ -202,9 +202,6 @@ fn wrong_requests_are_refused_before_any_work() {
             assert!(error.contains(part), "`{error}` does not mention `{part}`");
         }
     }
-    // The stride that the message names is enough.
-    let long = Request { steps: 1_000_000_000, every: 6, ..good };
-    assert!(long.rows() <= 200_000_000);
 }
 
 #[test]
@@ -266,11 +263,7 @@ fn what_no_ensemble_can_do_is_refused_before_any_work() {
     let (f64, f16) = (FloatType::F64, FloatType::F16);
     for (ensemble, float, told) in [
         (EnsembleOptions { count: 0, ..COPIES }, f64, "`count` is 0, but it must be at least 1"),
-        (
-            EnsembleOptions { count: 1 << 40, ..COPIES },
-            f64,
-            "`count` is 1099511627776, but it must be at most",
-        ),
+        (EnsembleOptions { count: 1 << 40, ..COPIES }, f64, "GB of memory are needed"),
         (EnsembleOptions { count: 2, spread: f64::INFINITY, ..COPIES }, f64, "`spread` is inf"),
         (
             EnsembleOptions { count: 2, spread: 1e300, ..COPIES },

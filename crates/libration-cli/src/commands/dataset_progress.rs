@@ -122,6 +122,12 @@ impl Monitor for Watcher {
         }
     }
 
+    fn on_recomputed(&self) {
+        if let Some(bar) = &self.bar {
+            bar.set_message("computing the state after the last chunk");
+        }
+    }
+
     fn on_repaired(&self, flaw: &Flaw) {
         if !self.quiet {
             let print = || terminal::say(&format!("repaired: {}", shown(flaw, &self.folder)));

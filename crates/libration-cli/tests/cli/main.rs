@@ -24,6 +24,7 @@ mod implicit;
 #[cfg(unix)]
 mod interrupt;
 #[cfg(unix)]
+mod join;
 mod kills;
 mod lab;
 mod linear;

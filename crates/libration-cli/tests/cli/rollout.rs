@@ -233,7 +233,10 @@ fn what_cannot_be_is_refused_before_a_folder_is_made() {
     let found = refused("", "--shard 3/2");
     assert!(found.contains("e.g. 2/3"), "{found}");
     let found = refused("", "--shard 2/2");
-    assert!(found.contains("at most 1 shards, one per group of environments"), "{found}");
+    assert!(
+        found.contains("at most as many shards as groups of `chunk.environments` environments (1)"),
+        "{found}"
+    );
     assert!(refused("", "--transitions 0").contains("from 1 to 1e15"));
     let found = refused("environments = 1", "--transitions 1e15");
     assert!(found.contains("would take 1000000000000000 steps"), "{found}");

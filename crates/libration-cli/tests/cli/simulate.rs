@@ -2,7 +2,7 @@
 
 use std::env;
 use std::fs;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Command as Process, Stdio};
 
@@ -139,7 +139,8 @@ fn wrong_input_is_named_with_what_is_allowed() {
         ("--float f128", &["--float", "f128", "f64, f32, f16, bf16"]),
         ("--steps 0", &["--steps", "0", "1 to"]),
         ("--steps 1.5", &["--steps", "1.5"]),
-        ("--steps 1e9", &["--every", "1", "at least 6"]),
+        ("--steps 1e15 --format npy", &["GB of memory are needed", "--every"]),
+        ("--steps 1e15 --format parquet", &["GB of memory are needed", "--every"]),
         ("--every 0", &["--every", "0", "at least 1"]),
         ("--every -3", &["--every", "-3", "at least 1"]),
         ("--format xml", &["--format", "xml", "csv, json, npy, parquet"]),
@@ -173,6 +174,24 @@ fn wrong_input_is_named_with_what_is_allowed() {
         }
     }
     assert_eq!(names(&folder), ["taken"]);
+}
+
+#[test]
+fn rows_of_csv_and_json_are_streamed_however_many_there_are() {
+    for (format, count) in [("csv", ""), ("json", ""), ("csv", "--count 100")] {
+        let words = format!(
+            "simulate --system oscillator --integrator rk4 --dt 0.01 --steps 1e15 {count} --format {format}"
+        );
+        let mut child = Process::new(assert_cmd::cargo::cargo_bin("libration"))
+            .args(words.split_whitespace())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut first = [0; 100];
+        child.stdout.take().unwrap().read_exact(&mut first).unwrap();
+        // Its reader is gone.
+        assert!(child.wait().unwrap().success(), "{words}");
+    }
 }
 
 #[cfg(unix)]

@@ -86,18 +86,18 @@ q = [-1.0, 1.0]
 [policy.random]
 ";
 
-/// Every third file but the manifest: its middle byte flipped, cut off, or gone.
-fn damage(folder: &Path) -> usize {
+/// Every third file but the manifest: its middle byte flipped (if `flips`), cut off, or gone.
+fn damage(folder: &Path, flips: bool) -> usize {
     let files = contents(folder).into_iter().filter(|(name, _)| name != "manifest.jsonl");
     let mut count = 0;
     for (i, (name, mut bytes)) in files.enumerate().filter(|(i, _)| i % 3 == 1) {
         let (path, middle) = (folder.join(name), bytes.len() / 2);
         match i % 9 {
-            1 => {
+            1 if flips => {
                 bytes[middle] ^= 0x10;
                 fs::write(path, bytes).unwrap();
             }
-            4 => fs::write(path, &bytes[..middle]).unwrap(),
+            1 | 4 => fs::write(path, &bytes[..middle]).unwrap(),
             _ => fs::remove_file(path).unwrap(),
         }
         count += 1;
@@ -113,7 +113,7 @@ fn broken_chunks_are_named_with_the_command_that_computes_them_again_byte_for_by
         let path = dir.path().join("set");
         let whole = contents(&path);
         let verify = |words: &str| libration(words).current_dir(dir.path()).assert();
-        let broken = damage(&path);
+        let broken = damage(&path, true);
         let named = verify("verify set").code(1).stdout(is_empty());
         let said = String::from_utf8(named.get_output().stderr.clone()).unwrap();
         assert_eq!(said.lines().count(), broken + 1, "{said}");
@@ -123,7 +123,7 @@ fn broken_chunks_are_named_with_the_command_that_computes_them_again_byte_for_by
         let said = String::from_utf8(repaired.get_output().stderr.clone()).unwrap();
         assert_eq!(said.matches("repaired: chunk 0000").count(), broken, "{said}");
         assert!(contents(&path) == whole, "{format}");
-        damage(&path);
+        damage(&path, true);
         verify("--quiet verify set --repair --threads 1").success().stderr(is_empty());
         assert!(contents(&path) == whole, "{format}");
     }
@@ -143,7 +143,8 @@ fn a_resumed_run_repairs_what_is_broken_before_it_goes_on() {
         // Finished, and interrupted after half of its chunks.
         for kept in [lines.len(), 1 + lines.len() / 2] {
             fs::write(&manifest, lines[..kept].join("\n") + "\n").unwrap();
-            damage(&path);
+            // What a disk without room leaves; a changed byte is for `verify`.
+            damage(&path, false);
             write(&dir, "set", &format!("{flags} --resume")).success().stderr(is_empty());
             assert!(contents(&path) == whole, "{format} {kept}");
         }
@@ -171,8 +172,6 @@ fn what_the_settings_do_not_lead_to_is_left_as_it_is_and_said() {
     );
     assert!(other.exists());
     assert_eq!(fs::read(&path).unwrap(), good);
-    let resumed = write(&dir, "set", "--format npy --resume").code(1);
-    resumed.stderr(contains(said).and(contains(cannot)));
     fs::write(&manifest, text.replace("\"version\":\"0", "\"version\":\"7")).unwrap();
     let run = libration("verify set --repair").current_dir(dir.path()).assert().code(2);
     run.stderr(contains("was written by version"));

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use libration_data::{DataError, Folder, Manifest, NewFile, verify};
+use libration_data::{Comparison, DataError, Folder, Manifest, NewFile, verify};
 use serde_json::{Map, Value, json};
 use tempfile::TempDir;
 
@@ -82,7 +82,7 @@ fn a_manifest_cut_anywhere_and_parts_of_files_lead_to_the_same_bytes_in_the_end(
             found.into_iter().filter(|(name, _)| !name.ends_with("-part")).collect();
         assert!(found == wanted, "cut at {len}");
         let manifest = Manifest::read(&path).unwrap();
-        assert_eq!(verify(&path, &manifest, |_| true), []);
+        assert_eq!(verify(&path, &manifest, Comparison::Checksum, |_| true), []);
     }
 }
 
@@ -97,21 +97,30 @@ fn every_flipped_bit_missing_file_and_lie_of_the_manifest_is_named() {
         let mut bad = good.clone();
         bad[bit / 8] ^= 1 << (bit % 8);
         fs::write(&file, bad).unwrap();
-        let flaws = verify(&path, &manifest, |_| true);
+        let flaws = verify(&path, &manifest, Comparison::Checksum, |_| true);
         assert_eq!(flaws.len(), 1);
         assert_eq!((flaws[0].chunk.as_str(), flaws[0].path.to_str()), ("1", Some("one/1.bin")));
         assert!(flaws[0].what.contains("checksum"), "{}", flaws[0].what);
     }
+    // The length alone says nothing of the bytes, and a file of another length need not be read.
+    fs::write(&file, vec![0; good.len()]).unwrap();
+    assert_eq!(verify(&path, &manifest, Comparison::Length, |_| true), []);
     fs::write(&file, &good[1..]).unwrap();
+    let flaws = verify(&path, &manifest, Comparison::Length, |_| true);
+    assert!(flaws[0].what.contains("1004 bytes; the manifest says 1005"), "{flaws:?}");
     assert!(
-        verify(&path, &manifest, |_| true)[0].what.contains("1004 bytes; the manifest says 1005")
+        verify(&path, &manifest, Comparison::Checksum, |_| true)[0]
+            .what
+            .contains("1004 bytes; the manifest says 1005")
     );
     fs::remove_file(&file).unwrap();
-    assert!(verify(&path, &manifest, |_| true)[0].what.contains("cannot be read"));
+    assert!(
+        verify(&path, &manifest, Comparison::Checksum, |_| true)[0].what.contains("cannot be read")
+    );
     // The caller may stop early: the first chunk is sound.
-    assert_eq!(verify(&path, &manifest, |_| false), []);
+    assert_eq!(verify(&path, &manifest, Comparison::Checksum, |_| false), []);
     let mut seen = Vec::new();
-    verify(&path, &manifest, |bytes| {
+    verify(&path, &manifest, Comparison::Checksum, |bytes| {
         seen.push(bytes);
         true
     });

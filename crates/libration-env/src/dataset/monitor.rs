@@ -12,6 +12,9 @@ pub trait Monitor: Sync {
         self.on_written(transitions, bytes);
     }
 
+    /// Called when a chunk that is on the disk was computed again, because no state was there to go on from.
+    fn on_recomputed(&self) {}
+
     /// Called when `bytes` bytes of `of` were verified.
     fn on_verified(&self, bytes: u64, of: u64) {
         let _ = (bytes, of);

@@ -132,6 +132,7 @@ impl GroupVisitor for Stream<'_> {
         let mut used = None;
         for _ in state.map_or(0, |state| state.chunks)..from {
             used = Some(rollout.next(used)?);
+            monitor.on_recomputed();
             if monitor.should_stop() {
                 return Err(DatasetError::Interrupted);
             }
