@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::DataError;
+use crate::bounded_read::read_bounded;
 use crate::checksum::{ChecksumWriter, checksum_at_once};
 use crate::durable_file::{make, named, sync_folder};
 
@@ -33,6 +34,9 @@ struct Head {
 const FORMAT: u64 = 1;
 /// The version of this program. Another version may continue differently.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// Bytes of the longest state file.
+const LIMIT: u64 = 1 << 36;
 
 /// Bytes of the checksum at the end, over all before it.
 const SUM: usize = 64;
@@ -82,7 +86,7 @@ pub fn save_state(path: &Path, of: &impl Checkpoint, note: &Value) -> Result<(),
 /// # Errors
 /// If the file cannot be read, is of another version or damaged, or its state does not match. The object is then unchanged.
 pub fn load_state(path: &Path, into: &mut impl Checkpoint) -> Result<Value, DataError> {
-    let bytes = std::fs::read(path).map_err(DataError::io("read", path))?;
+    let bytes = read_bounded(path, LIMIT).map_err(DataError::io("read", path))?;
     let damaged = |what: &str| DataError::Damaged { path: path.to_owned(), what: what.to_owned() };
     if !bytes.starts_with(MAGIC) {
         return Err(damaged("it is not a state file"));
