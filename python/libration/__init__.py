@@ -10,7 +10,7 @@ import os as _os
 
 from . import _native
 from ._native import __version__
-from . import datasets, hosts, plants, policies
+from . import datasets, hosts, plants, policies, sweeps
 from .analysis import Advice, Analysis, advise, analyze
 from .bits import FirstDifference, first_difference
 from .bodies import Bodies, BodyMotion, simulate_bodies
@@ -41,6 +41,7 @@ from .probing import probe
 from .replay import ReplayBuffer
 from .rollout import Rollout
 from .simulation import Trajectory, simulate
+from .sweeps import Sweep, SweepTable, sweep
 from .systems import IMPLICIT_INTEGRATORS, INTEGRATORS, RUNGE_KUTTA_METHODS, SPLITTING_METHODS, SYSTEMS, CustomSystem, System
 from .temperature import TemperatureAnalysis, analyze_temperature
 
@@ -89,6 +90,8 @@ __all__ = [
     "StateFeedback",
     "StateSpace",
     "Steps",
+    "Sweep",
+    "SweepTable",
     "System",
     "TemperatureAnalysis",
     "Trajectory",
@@ -110,6 +113,8 @@ __all__ = [
     "run_lab",
     "simulate",
     "simulate_bodies",
+    "sweep",
+    "sweeps",
 ]
 
 if hasattr(_os, "register_at_fork"):
