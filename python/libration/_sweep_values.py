@@ -6,6 +6,7 @@ import dataclasses
 import re
 from typing import Any, Iterator, Mapping, Sequence
 
+from .analysis import Advice
 from .laboratory import Results
 from .probe_report import ProbeReport
 
@@ -53,8 +54,10 @@ def _mapping(result: Any) -> Any:
     if isinstance(result, ProbeReport):
         return {"holds": result.holds, **result.results}
     if isinstance(result, Mapping):
-        holds = getattr(result, "holds", None)
-        return dict(result) if holds is None else {"holds": holds, **result}
+        if isinstance(result, Advice):
+            # Its throughput is the speed of a machine.
+            return {"holds": result.holds, **{key: one for key, one in result.items() if key != "throughput"}}
+        return result
     if dataclasses.is_dataclass(result) and not isinstance(result, type):
         return {field.name: getattr(result, field.name) for field in dataclasses.fields(result)}
     return {"value": result}
