@@ -10,8 +10,8 @@ from ._heat_map import Axis, ColorScale, heat_map, is_drawn, line_plot, notation
 from ._settings import nearest
 
 _UNITS = {name: "s" for name in ("dt", "latency", "period", "output_latency", "horizon", "action_delay", "observation_delay", "delay")}
-_SUFFIXES = {"_seconds": "s", "_steps": "steps", "_per_step": "per step", "log10_max_energy_drift": "decades"}
-_OF_RELATIVE = ("stated", "stable_up_to", "tried_up_to", "measured", "predicted", "tolerance")
+_SUFFIXES = {"_seconds": "s", "_steps": "steps", "phase_error_per_step": "rad"}
+_BESIDE_UNIT = ("stated", "stable_up_to", "tried_up_to", "measured", "predicted", "tolerance")
 """Columns whose unit is the column ``unit`` beside them."""
 
 _MOST_MAPS = 60
@@ -53,6 +53,8 @@ def page_of(
     found = [name for name in columns if name not in over and name != "error"]
     numeric = [name for name in found if any(is_drawn(value) for value in columns[name])]
     varied = [name for name in numeric if len(set(map(repr, columns[name]))) > 1]
+    # First those that need a map.
+    varied.sort(key=lambda name: -_dependences(columns[name], over))
     drawn = varied[:_MOST_MAPS] if results is None else list(results)
     for name in drawn:
         if name not in columns:
@@ -70,6 +72,15 @@ def page_of(
         "<!doctype html><html lang='en'><head><meta charset='utf-8'><meta name='viewport' content='width=device-width'>"
         f"<title>{html.escape(heading)}</title><style>{_STYLE}</style></head><body><main>{''.join(body)}</main></body></html>\n"
     )
+
+
+def _dependences(values: Sequence[Any], over: Mapping[str, Sequence[Any]]) -> int:
+    """Return the number of swept keys on which a result depends."""
+    found, stride = 0, len(values)
+    for labels in over.values():
+        block, stride = stride, stride // len(labels)
+        found += any(repr(values[i]) != repr(values[i + stride]) for i in range(len(values) - stride) if (i + stride) % block >= stride)
+    return found
 
 
 def _answer(over: Mapping[str, Sequence[Any]], errors: Sequence[str | None]) -> str:
@@ -149,7 +160,7 @@ def _unit(name: str, columns: Mapping[str, Sequence[Any]], units: Mapping[str, s
         return units[name]
     table, _, last = name.rpartition(".")
     beside = columns.get(f"{table}.unit")
-    if beside is not None and last in _OF_RELATIVE:
+    if beside is not None and last in _BESIDE_UNIT:
         found = {text for text in beside if isinstance(text, str)} - {"1"}
         return found.pop() if len(found) == 1 else ""
     return _UNITS.get(last) or next((unit for suffix, unit in _SUFFIXES.items() if last.endswith(suffix)), "")

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from typing import Any, Callable, Iterable, Mapping
 
+# First, for its error message without Ray.
+from ._ray_tasks import attempts, cpus, ray, results_of, start
 from ._cluster_collector import CollectedRollout, Collector, collect
 from ._cluster_rollout import rollout
 from ._keywords import check_keywords
 from ._progress import Progress, ProgressDisplay
-from ._ray_tasks import attempts, cpus, ray, results_of, start
 from .sweeps import Row, Sweep, SweepTable
 
 __all__ = ["CollectedRollout", "Collector", "collect", "rollout", "sweep"]
