@@ -87,7 +87,7 @@ def rollout(
     text = text_of("settings", settings)
     folder = Path(out).absolute()
     parts = folder.with_name(folder.name + ".parts")
-    given = {"system": system, "transitions": transitions, "format": format, "resume": True, "progress": False}
+    given: dict[str, Any] = {"system": system, "transitions": transitions, "format": format, "resume": True, "progress": False}
     if resume and not parts.exists() and folder.exists():
         # The run was interrupted after the join, or it was one of a single process.
         return datasets.write(folder, settings, **{**given, "progress": progress})

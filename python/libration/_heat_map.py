@@ -87,11 +87,11 @@ def heat_map(name: str, x: Axis, y: Axis, rows: Sequence[Sequence[Any]], scale: 
             if columns * lines <= _MOST_TITLES:
                 text = html.escape(f"{x.at(i)}, {y.at(j)}: {notation(value)}")
                 titles.append(f"<path class='cell' d='{cell}'><title>{text}</title></path>")
-    parts = [f"<path fill='{_color(level)}' d='{''.join(cells)}'/>" for level, cells in sorted(by_level.items())]
+    parts = ["<g shape-rendering='crispEdges'>"]
+    parts += [f"<path fill='{_color(level)}' d='{''.join(cells)}'/>" for level, cells in sorted(by_level.items())]
     if missing:
         parts.append(f"<path class='missing' d='{''.join(missing)}'/>")
-    parts += titles
-    parts.append(_frame())
+    parts += [*titles, "</g>", _frame()]
     parts += _bottom_ticks(x, [_LEFT + (i + 0.5) * width for i in range(columns)])
     parts += _left_ticks([(_TOP + _HEIGHT - (j + 0.5) * height, notation(y.values[j])) for j in _chosen(lines, 10)], y.label)
     parts.append(_legend(scale, boolean, unit))
@@ -100,9 +100,8 @@ def heat_map(name: str, x: Axis, y: Axis, rows: Sequence[Sequence[Any]], scale: 
 
 def line_plot(name: str, x: Axis, values: Sequence[Any], scale: ColorScale, boolean: bool, unit: str) -> str:
     """Return the line of a result over one key; lines break at points without a number."""
-    low, high = (x.values[0], x.values[-1]) if all(is_drawn(v) and not isinstance(v, bool) for v in x.values) else (None, None)
-    by_value = low is not None and low != high
-    axis = ColorScale([float(v) for v in x.values]) if by_value else None
+    by_value = all(is_drawn(value) and not isinstance(value, bool) for value in x.values)
+    axis = ColorScale([float(value) for value in x.values]) if by_value else None
     places = [
         _LEFT + _WIDTH * (0.03 + 0.94 * (axis.part(float(v)) if axis else i / max(len(x.values) - 1, 1))) for i, v in enumerate(x.values)
     ]
@@ -133,15 +132,15 @@ def _svg(name: str, parts: Sequence[str]) -> str:
 
 
 def _frame() -> str:
-    return f"<rect class='frame' x='{_LEFT}' y='{_TOP}' width='{_WIDTH}' height='{_HEIGHT}'/>"
+    return f"<rect class='frame' shape-rendering='crispEdges' x='{_LEFT}' y='{_TOP}' width='{_WIDTH}' height='{_HEIGHT}'/>"
 
 
 def _bottom_ticks(x: Axis, places: Sequence[float]) -> list[str]:
     longest = max(len(notation(value)) for value in x.values)
     top = _TOP + _HEIGHT
     parts, last = [], -math.inf
-    for i in _chosen(len(places), max(2, min(10, int(_WIDTH / (8.0 * longest + 10))))):
-        if abs(places[i] - last) < 7.0 * longest:
+    for i in range(len(places)):
+        if abs(places[i] - last) < max(44.0, 7.0 * longest + 10.0):
             continue
         last = places[i]
         parts.append(f"<path class='tick' d='M{last:.2f} {top}v5'/>")
@@ -155,8 +154,8 @@ def _left_ticks(marks: Sequence[tuple[float, str]], label: str) -> list[str]:
     for place, text in marks:
         parts.append(f"<path class='tick' d='M{_LEFT} {place:.2f}h-5'/>")
         parts.append(f"<text x='{_LEFT - 8}' y='{place + 4:.2f}' text-anchor='end'>{html.escape(text[:10])}</text>")
-    middle = _TOP + _HEIGHT / 2
-    parts.append(f"<text class='label' transform='translate(14 {middle}) rotate(-90)' text-anchor='middle'>{html.escape(label)}</text>")
+    place = f"translate(14 {_TOP + _HEIGHT / 2}) rotate(-90)"
+    parts.append(f"<text class='label' transform='{place}' text-anchor='middle'>{html.escape(label)}</text>")
     return parts
 
 
@@ -165,12 +164,13 @@ def _legend(scale: ColorScale, boolean: bool, unit: str) -> str:
     levels = (0, _LEVELS - 1) if boolean else range(_LEVELS)
     step = _HEIGHT / len(levels)
     parts = [
-        f"<rect fill='{_color(level)}' x='{left}' y='{_TOP + _HEIGHT - (i + 1) * step:.2f}' width='14' height='{step + 0.3:.2f}'/>"
+        f"<rect shape-rendering='crispEdges' fill='{_color(level)}' x='{left}' y='{_TOP + _HEIGHT - (i + 1) * step:.2f}' width='14' height='{step + 0.3:.2f}'/>"
         for i, level in enumerate(levels)
     ]
     for share in (0.0, 1.0) if boolean else (0.0, 0.25, 0.5, 0.75, 1.0):
         top = _TOP + _HEIGHT * (1 - share)
-        parts.append(f"<text x='{left + 20}' y='{min(max(top + 4, _TOP + 10), _TOP + _HEIGHT):.2f}'>{html.escape(_end(scale, share, boolean))}</text>")
+        base = min(max(top + 4, _TOP + 10), _TOP + _HEIGHT)
+        parts.append(f"<text x='{left + 20}' y='{base:.2f}'>{html.escape(_end(scale, share, boolean))}</text>")
     if unit:
         parts.append(f"<text class='label' x='{left}' y='{_TOP + _HEIGHT + 19}'>{html.escape(unit)}</text>")
     return "".join(parts)

@@ -68,7 +68,8 @@ class SweepTable:
             Without pandas: ``pip install 'libration[pandas]'``.
         """
         pandas = _required("pandas", "pandas")
-        return pandas.DataFrame({name: pandas.Series(values, dtype=kind) for name, (values, kind) in ((n, _typed(c)) for n, c in self.columns.items())})
+        typed = {name: _typed(values) for name, values in self.columns.items()}
+        return pandas.DataFrame({name: pandas.Series(values, dtype=kind) for name, (values, kind) in typed.items()})
 
     def to_parquet(self, path: str | PathLike[str]) -> None:
         """Write the table as a Parquet file, whose metadata key ``libration.sweep`` has function, swept values, units and digest.
@@ -82,7 +83,8 @@ class SweepTable:
         """
         pyarrow, parquet = (_required(name, "parquet") for name in ("pyarrow", "pyarrow.parquet"))
         types = {"float64": pyarrow.float64(), "Int64": pyarrow.int64(), "boolean": pyarrow.bool_(), "object": pyarrow.string()}
-        arrays = {name: pyarrow.array(values, types[kind]) for name, (values, kind) in ((n, _typed(c)) for n, c in self.columns.items())}
+        typed = {name: _typed(values) for name, values in self.columns.items()}
+        arrays = {name: pyarrow.array(values, types[kind]) for name, (values, kind) in typed.items()}
         about = {"function": self.name, "over": self.over, "units": self.units, "digest": self.digest()}
         found = pyarrow.table(arrays).replace_schema_metadata({"libration.sweep": json.dumps(about)})
         parquet.write_table(found, Path(path), compression="zstd")

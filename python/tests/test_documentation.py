@@ -13,7 +13,7 @@ PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 # A block that needs a library beyond NumPy and Gymnasium has a line ``<!-- requires: NAME -->`` above it, and is left out without the library.
 BLOCK = re.compile(r"(?:<!-- requires: (?P<modules>[a-z0-9_, ]+) -->\n+)?^```python\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL)
-LIBRARIES = {"stable_baselines3", "matplotlib", "mujoco", "scipy"}
+LIBRARIES = {"stable_baselines3", "matplotlib", "mujoco", "scipy", "ray", "joblib"}
 
 
 def blocks_of(page: Path) -> list[tuple[int, str, list[str]]]:

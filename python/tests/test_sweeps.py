@@ -123,13 +123,13 @@ def test_values_without_a_notation_have_their_number_and_others_their_notation()
 
 
 def test_advice_probes_and_studies_are_tables_too():
-    advice = sweep(libration.advise, {"system": "oscillator", "controller": (10.0, 2.0)}, over={"latency": [0.01, 0.3]})
+    advice = sweep(libration.advise, {"system": "oscillator", "controller": (10.0, 2.0), "horizon": 1.0}, over={"latency": [0.01, 0.3]})
     assert advice["holds"] == [True, False] and advice["loop.budgets.latency.stated"] == [0.01, 0.3]
     # The speed of the machine is no result.
     assert not any(name.startswith("throughput") for name in advice.columns)
     probed = sweep(libration.probe, {"step": lambda x, u, dt: x * (1 - dt), "state": [1.0]}, over={"dt": [0.1, 0.2]})
     assert probed["spectral_radius"] == pytest.approx([0.9, 0.8]) and probed.errors == []
-    studies = sweep(libration.run_lab, {"studies": ["drift"], "effort": "quick"}, over={"config.oscillator.k": [10.0, 20.0]})
+    studies = sweep(libration.run_lab, {"studies": ["spectrum"], "effort": "quick"}, over={"config.oscillator.k": [10.0, 20.0]})
     assert studies.errors == [] and any(name.endswith(".measured") for name in studies.columns)
 
 
