@@ -14,7 +14,6 @@ from typing import Any, Mapping
 import ray
 
 from . import datasets
-from ._join_parts import join_parts
 from ._keywords import check_keywords
 from ._progress import Progress, ProgressDisplay
 from ._ray_tasks import attempts, cpus, granted_threads, results_of, start
@@ -105,7 +104,9 @@ def rollout(
         if not any(parts.glob("*/manifest.jsonl")):
             shutil.rmtree(parts)
         raise
-    return join_parts([parts / _name(i, shards) for i in range(1, shards + 1)], folder, parts)
+    joined = datasets.join([parts / _name(i, shards) for i in range(1, shards + 1)], folder, link=True, resume=folder.exists(), progress=False)
+    shutil.rmtree(parts)
+    return joined
 
 
 def _name(index: int, shards: int) -> str:
@@ -146,7 +147,7 @@ def _write_shard(parts: str, text: str, shard: tuple[int, int], given: dict[str,
             datasets.write(settings.with_name(_name(*shard)), settings, shard=shard, threads=granted_threads(), **given)
             return
         except (OSError, ValueError) as error:
-            if "another" not in str(error) or time.monotonic() > deadline:
+            if "another process" not in str(error) or time.monotonic() > deadline:
                 raise
             time.sleep(0.2)
 
