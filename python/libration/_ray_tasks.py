@@ -8,7 +8,7 @@ from ._settings import count, positive
 
 try:
     import ray
-    from ray.exceptions import RayTaskError
+    from ray.exceptions import NodeDiedError, OutOfMemoryError, RayTaskError, WorkerCrashedError
 except ModuleNotFoundError as error:
     raise ModuleNotFoundError(f"libration.cluster requires Ray ({error}); help: pip install 'libration[ray]'", name=error.name) from error
 
@@ -46,25 +46,34 @@ def granted_threads() -> int:
     return max(1, int(ray.get_runtime_context().get_assigned_resources().get("CPU", 1)))
 
 
-def results_of(references: Sequence[Any], report: Callable[[int], None]) -> list[Any]:
+def results_of(references: Sequence[Any], report: Callable[[int], None], lost: Callable[[int, str], Any] | None = None) -> list[Any]:
     """Return the results of tasks in their order, and cancel all after the first exception or after Ctrl-C.
 
-    Exceptions of a task are raised as they are.
+    Exceptions of a task are raised as they are. ``lost`` returns the result of a task whose workers died more often than its retries, by its
+    number and a message.
     """
+    numbers = {reference: i for i, reference in enumerate(references)}
+    found: list[Any] = [None] * len(numbers)
     pending = list(references)
     try:
         while pending:
             done, pending = ray.wait(pending, num_returns=len(pending), timeout=0.0)
             if not done:
                 done, pending = ray.wait(pending, num_returns=1, timeout=0.5)
-            ray.get(done)
+            for reference in done:
+                try:
+                    found[numbers[reference]] = ray.get(reference)
+                except (WorkerCrashedError, NodeDiedError, OutOfMemoryError) as error:
+                    if lost is None:
+                        raise
+                    found[numbers[reference]] = lost(numbers[reference], f"{type(error).__name__}: the worker died, and all retries")
             report(len(references) - len(pending))
-        return list(ray.get(list(references)))
     except BaseException as error:
         cancel(pending)
         if isinstance(error, RayTaskError):
             raise error.cause from None
         raise
+    return found
 
 
 def cancel(pending: Sequence[Any]) -> None:

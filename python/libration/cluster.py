@@ -30,7 +30,7 @@ def sweep(
     over: Mapping[str, Iterable[Any]],
     units: Mapping[str, str] | None = None,
     num_cpus: int = 1,
-    retries: int = -1,
+    retries: int = 10,
     progress: Progress = None,
 ) -> SweepTable:
     """Return the table of a function over a grid of its keywords, computed on a cluster.
@@ -44,7 +44,7 @@ def sweep(
     num_cpus:
         Number of CPUs of a task, for functions with threads.
     retries:
-        Largest number of repetitions of a task whose worker or node dies (-1: any).
+        Largest number of repetitions of a task whose worker or node dies (-1: any). Beyond it, its points are rows with an ``error``.
     progress:
         As for :func:`libration.sweep`.
 
@@ -65,7 +65,10 @@ def sweep(
         def report(done: int) -> None:
             display.update(done / len(parts), f"{done:,} of {len(parts):,} parts of {len(grid):,} points")
 
-        found = results_of([task.remote(shared, part) for part in parts], report)
+        def lost(number: int, message: str) -> list[Row]:
+            return [{"error": message} for _ in parts[number]]
+
+        found = results_of([task.remote(shared, part) for part in parts], report, lost)
     return grid.table([row for rows in found for row in rows])
 
 

@@ -80,6 +80,12 @@ def die_once(flag, x):
     return 0.1 * x
 
 
+def die_at_three(x):
+    if x == 3:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return x
+
+
 ray.cloudpickle.register_pickle_by_value(__import__(__name__))
 
 
@@ -94,6 +100,11 @@ def test_a_killed_worker_costs_a_sweep_no_row(nodes, tmp_path):
     config, over = {"flag": str(tmp_path / "flag")}, {"x": [1, 2, 3, 4]}
     found = cluster.sweep(die_once, config, over=over)
     assert (tmp_path / "flag").exists() and found.digest() == libration.sweep(die_once, config, over=over).digest()
+
+
+def test_a_point_that_kills_each_worker_is_an_error_and_no_lost_sweep(nodes):
+    found = cluster.sweep(die_at_three, over={"x": [1, 2, 3, 4]}, retries=1)
+    assert found["value"] == [1, 2, None, 4] and found["error"][2].startswith("WorkerCrashedError: the worker died, and all retries")
 
 
 def test_an_error_of_a_call_is_in_its_row_on_a_cluster_too(nodes):
