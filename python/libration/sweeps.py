@@ -82,7 +82,7 @@ class Sweep:
     @property
     def name(self) -> str:
         """Name of the function."""
-        return str(getattr(self.function, "__qualname__", type(self.function).__name__)).lower()
+        return str(getattr(self.function, "__qualname__", None) or type(self.function).__name__.lower())
 
     def indices(self, point: int) -> tuple[int, ...]:
         """Return the numbers of the values of a point, one per key of ``over``."""

@@ -29,8 +29,11 @@ MEMORY = 80 * 2**20
 
 @pytest.fixture(scope="module")
 def nodes():
-    made = Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "object_store_memory": MEMORY, "include_dashboard": False})
-    made.add_node(num_cpus=1, object_store_memory=MEMORY)
+    # Ray notices a dead node after a second, not after tens of them.
+    health = {"health_check_period_ms": 300, "health_check_timeout_ms": 600, "health_check_failure_threshold": 3, "health_check_initial_delay_ms": 300}
+    head = {"num_cpus": 1, "object_store_memory": MEMORY, "include_dashboard": False, "_system_config": health}
+    made = Cluster(initialize_head=True, head_node_args=head)
+    made.second = made.add_node(num_cpus=1, object_store_memory=MEMORY)
     ray.init(address=made.address, log_to_driver=False, logging_level="error")
     yield made
     ray.shutdown()
@@ -41,6 +44,13 @@ def nodes():
 def whole(tmp_path_factory):
     out = tmp_path_factory.mktemp("whole") / "data"
     libration.datasets.write(out, SETTINGS, format="npy", threads=1)
+    return out
+
+
+@pytest.fixture(scope="module")
+def long(tmp_path_factory):
+    out = tmp_path_factory.mktemp("long") / "data"
+    libration.datasets.write(out, LONG, format="npy", threads=1)
     return out
 
 
@@ -156,8 +166,7 @@ def worker_of(parts):
 
 
 @pytest.mark.skipif(not Path("/proc/self/fd").exists(), reason="finds the worker by its open files")
-def test_the_shard_of_a_killed_worker_continues_to_the_same_bytes(nodes, tmp_path):
-    libration.datasets.write(tmp_path / "one", LONG, format="npy", threads=1)
+def test_the_shard_of_a_killed_worker_continues_to_the_same_bytes(nodes, long, tmp_path):
     out, parts, kills = tmp_path / "data", tmp_path / "data.parts", []
 
     def kill():
@@ -169,10 +178,25 @@ def test_the_shard_of_a_killed_worker_continues_to_the_same_bytes(nodes, tmp_pat
     thread.start()
     cluster.rollout(LONG, out, shards=2, format="npy")
     thread.join()
-    assert len(kills) == 2 and os.getpid() not in kills and same(out, tmp_path / "one")
+    assert len(kills) == 2 and os.getpid() not in kills and same(out, long)
 
 
-def test_parts_stay_after_ctrl_c_and_resume_to_the_same_bytes(nodes, tmp_path):
+def test_a_killed_node_changes_no_byte(nodes, long, tmp_path):
+    out, found = tmp_path / "data", []
+    thread = threading.Thread(target=lambda: found.append(cluster.rollout(LONG, out, shards=2, format="npy")))
+    thread.start()
+    manifests = tmp_path / "data.parts"
+    wait_for(lambda: len([m for m in manifests.glob("*/manifest.jsonl") if m.read_bytes().count(b"\n") > 2]) == 2)
+    assert thread.is_alive()
+    nodes.remove_node(nodes.second, allow_graceful=False)
+    try:
+        thread.join(60)
+        assert found and same(out, long)
+    finally:
+        nodes.second = nodes.add_node(num_cpus=1, object_store_memory=MEMORY)
+
+
+def test_parts_stay_after_ctrl_c_and_resume_to_the_same_bytes(nodes, long, tmp_path):
     out, parts = tmp_path / "data", tmp_path / "data.parts"
     seen = []
 
@@ -191,8 +215,7 @@ def test_parts_stay_after_ctrl_c_and_resume_to_the_same_bytes(nodes, tmp_path):
     kept = [(path, path.stat().st_mtime_ns) for path in parts.glob("*/reward/*.npy")]
     cluster.rollout(LONG, out, shards=2, format="npy", resume=True)
     assert kept and [(out / "reward" / path.name).stat().st_mtime_ns for path, _ in kept] == [when for _, when in kept]
-    libration.datasets.write(tmp_path / "one", LONG, format="npy", threads=1)
-    assert same(out, tmp_path / "one") and not parts.exists()
+    assert same(out, long) and not parts.exists()
     assert cluster.rollout(LONG, out, shards=2, format="npy", resume=True).chunks == 120
 
 
