@@ -154,8 +154,8 @@ def _left_ticks(marks: Sequence[tuple[float, str]], label: str) -> list[str]:
     for place, text in marks:
         parts.append(f"<path class='tick' d='M{_LEFT} {place:.2f}h-5'/>")
         parts.append(f"<text x='{_LEFT - 8}' y='{place + 4:.2f}' text-anchor='end'>{html.escape(text[:10])}</text>")
-    place = f"translate(14 {_TOP + _HEIGHT / 2}) rotate(-90)"
-    parts.append(f"<text class='label' transform='{place}' text-anchor='middle'>{html.escape(label)}</text>")
+    move = f"translate(14 {_TOP + _HEIGHT / 2}) rotate(-90)"
+    parts.append(f"<text class='label' transform='{move}' text-anchor='middle'>{html.escape(label)}</text>")
     return parts
 
 

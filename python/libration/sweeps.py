@@ -37,7 +37,7 @@ class Sweep:
         Keywords with the same value at all points.
     over:
         The list of values of each swept keyword, in the order of the columns. A dotted key sets a value within a dictionary of a keyword:
-        ``"config.system.oscillator.k"``.
+        ``"config.system.oscillator.omega2"``.
     units:
         Units of columns by name, for the page. Times and latencies of the package have theirs.
 

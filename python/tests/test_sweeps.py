@@ -129,7 +129,7 @@ def test_advice_probes_and_studies_are_tables_too():
     assert not any(name.startswith("throughput") for name in advice.columns)
     probed = sweep(libration.probe, {"step": lambda x, u, dt: x * (1 - dt), "state": [1.0]}, over={"dt": [0.1, 0.2]})
     assert probed["spectral_radius"] == pytest.approx([0.9, 0.8]) and probed.errors == []
-    studies = sweep(libration.run_lab, {"studies": ["spectrum"], "effort": "quick"}, over={"config.oscillator.k": [10.0, 20.0]})
+    studies = sweep(libration.run_lab, {"studies": ["spectrum"], "effort": "quick"}, over={"config.system.oscillator.omega2": [10.0, 20.0]})
     assert studies.errors == [] and any(name.endswith(".measured") for name in studies.columns)
 
 
