@@ -85,9 +85,12 @@ def rollout(
         datasets._check_replaced(settings)
     text = text_of("settings", settings)
     folder = Path(out).absolute()
-    parts = folder.with_name(folder.name + ".parts")
+    parts, joined = (folder.with_name(folder.name + ending) for ending in (".parts", ".parts.joined"))
     given: dict[str, Any] = {"system": system, "transitions": transitions, "format": format, "resume": True, "progress": False}
-    if resume and not parts.exists() and folder.exists():
+    if resume and joined.exists():
+        # Their removal was interrupted.
+        shutil.rmtree(joined)
+    if resume and not parts.exists() and folder.is_dir() and any(folder.iterdir()):
         # The run was interrupted after the join, or it was one of a single process.
         return datasets.write(folder, settings, **{**given, "progress": progress})
     _check_folders(folder, parts, shards, text, resume)
@@ -104,9 +107,11 @@ def rollout(
         if not any(parts.glob("*/manifest.jsonl")):
             shutil.rmtree(parts)
         raise
-    joined = datasets.join([parts / _name(i, shards) for i in range(1, shards + 1)], folder, link=True, resume=folder.exists(), progress=False)
-    shutil.rmtree(parts)
-    return joined
+    written = datasets.join([parts / _name(i, shards) for i in range(1, shards + 1)], folder, link=True, resume=folder.exists(), progress=False)
+    # Parts of which only some files are left could not be resumed.
+    parts.rename(joined)
+    shutil.rmtree(joined)
+    return written
 
 
 def _name(index: int, shards: int) -> str:

@@ -66,7 +66,7 @@ def results_of(references: Sequence[Any], report: Callable[[int], None], lost: C
                 except (WorkerCrashedError, NodeDiedError, OutOfMemoryError) as error:
                     if lost is None:
                         raise
-                    found[numbers[reference]] = lost(numbers[reference], f"{type(error).__name__}: the worker died, and all retries")
+                    found[numbers[reference]] = lost(numbers[reference], f"{type(error).__name__}: the worker of the point died, also in each retry")
             report(len(references) - len(pending))
     except BaseException as error:
         cancel(pending)

@@ -28,7 +28,11 @@ def row_of(result: Any) -> dict[str, Scalar]:
     TypeError
         If the result has no scalars.
     """
-    found = dict(_scalars("", _mapping(result)))
+    found: dict[str, Scalar] = {}
+    for name, value in () if result is None else _scalars("", _mapping(result)):
+        if name in found or not name:
+            raise TypeError(f"the function returned two results with the name {name!r}" if name else "the function returned a result without a name")
+        found[name] = value
     if not found:
         raise TypeError(f"the function returned {type(result).__name__}; expected a number, a mapping or a result of the package")
     return found

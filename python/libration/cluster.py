@@ -66,7 +66,7 @@ def sweep(
             display.update(done / len(parts), f"{done:,} of {len(parts):,} parts of {len(grid):,} points")
 
         def lost(number: int, message: str) -> list[Row]:
-            return [{"error": message} for _ in parts[number]]
+            return [grid.failed(message) for _ in parts[number]]
 
         found = results_of([task.remote(shared, part) for part in parts], report, lost)
     return grid.table([row for rows in found for row in rows])

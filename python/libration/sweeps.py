@@ -7,6 +7,8 @@ import itertools
 import math
 from typing import Any, Callable, Iterable, Mapping, Sequence
 
+import numpy as np
+
 from ._keywords import check_keywords
 from ._progress import Progress, ProgressDisplay
 from ._settings import count, is_several, nearest, shown
@@ -16,9 +18,12 @@ from ._sweep_values import labels_of, row_of
 __all__ = ["Sweep", "SweepTable", "sweep"]
 
 Row = dict[str, Any]
-"""Results of a point by name, and ``error``."""
+"""Results of a point by name, and a message."""
 
 _MOST_POINTS = 10_000_000
+
+_ERROR = ""
+"""Key of the message in a row. No result has an empty name."""
 
 
 class Sweep:
@@ -94,19 +99,18 @@ class Sweep:
         return tuple(reversed(found))
 
     def keywords(self, point: int) -> dict[str, Any]:
-        """Return the keywords of the call of a point."""
-        keywords = dict(self.config)
+        """Return the keywords of the call of a point, with dictionaries, lists and arrays of its own."""
+        keywords = {key: _fresh(value) for key, value in self.config.items()}
         for (key, values), index in zip(self.over.items(), self.indices(point)):
             keyword, *inner = key.split(".")
             if not inner:
-                keywords[keyword] = values[index]
+                keywords[keyword] = _fresh(values[index])
                 continue
-            # Only the dictionaries on the way are copied.
             table = keywords[keyword] = dict(keywords.get(keyword) or {})
             for name in inner[:-1]:
                 table[name] = dict(table.get(name) or {})
                 table = table[name]
-            table[inner[-1]] = values[index]
+            table[inner[-1]] = _fresh(values[index])
         return keywords
 
     def parts(self, number: int) -> list[range]:
@@ -126,10 +130,16 @@ class Sweep:
             if self._hides_progress:
                 keywords.setdefault("progress", False)
             try:
-                found.append({**row_of(self.function(**keywords)), "error": None})
-            except Exception as error:
-                found.append({"error": f"{type(error).__name__}: {error}"})
+                found.append({**row_of(self.function(**keywords)), _ERROR: None})
+            # A call of `exit` would end a worker of a cluster.
+            except (Exception, SystemExit) as error:
+                found.append(self.failed(f"{type(error).__name__}: {error}"))
         return found
+
+    @staticmethod
+    def failed(message: str) -> Row:
+        """Return the row of a point without results."""
+        return {_ERROR: message}
 
     def table(self, rows: Sequence[Row]) -> SweepTable:
         """Return the table of the rows of all points, in the order of the grid.
@@ -146,12 +156,13 @@ class Sweep:
         for values in itertools.product(*labels.values()):
             for key, value in zip(labels, values):
                 columns[key].append(value)
-        names = dict.fromkeys(name for row in rows for name in row if name not in labels and name != "error")
-        for name in names:
+        for name in dict.fromkeys(name for row in rows for name in row if name != _ERROR):
             column = [row.get(name) for row in rows]
-            if any(value is not None for value in column):
-                columns[name] = column
-        columns["error"] = [row["error"] for row in rows]
+            # Many results repeat what was asked.
+            is_repeated = name in labels and all(value in (None, asked) for value, asked in zip(column, columns[name]))
+            if any(value is not None for value in column) and not is_repeated:
+                columns[f"result.{name}" if name in labels or name == "error" else name] = column
+        columns["error"] = [row[_ERROR] for row in rows]
         return SweepTable(self.name, labels, columns, self.units)
 
     def run(self, *, progress: Progress = None) -> SweepTable:
@@ -192,9 +203,20 @@ def sweep(
     return Sweep(function, config, over=over, units=units).run(progress=progress)
 
 
+def _fresh(value: Any) -> Any:
+    """Return a value whose containers a call may change without changing those of other calls."""
+    if type(value) is dict:
+        return {key: _fresh(one) for key, one in value.items()}
+    if type(value) in (list, tuple, set):
+        return type(value)(map(_fresh, value))
+    return value.copy() if isinstance(value, np.ndarray) else value
+
+
 def _values(key: Any, values: Any) -> list[Any]:
     if not isinstance(key, str) or not all(key.split(".")):
         raise ValueError(f"over has the key {key!r}; expected a keyword, or a dotted key such as 'config.dt'")
+    if key == "error":
+        raise ValueError("over has the key 'error', which is a column of each table; expected another keyword")
     if hasattr(values, "tolist"):
         values = values.tolist()
     if isinstance(values, Mapping) or not (is_several(values) or isinstance(values, Iterable)) or isinstance(values, (str, bytes)):

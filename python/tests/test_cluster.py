@@ -114,7 +114,7 @@ def test_a_killed_worker_costs_a_sweep_no_row(nodes, tmp_path):
 
 def test_a_point_that_kills_each_worker_is_an_error_and_no_lost_sweep(nodes):
     found = cluster.sweep(die_at_three, over={"x": [1, 2, 3, 4]}, retries=1)
-    assert found["value"] == [1, 2, None, 4] and found["error"][2].startswith("WorkerCrashedError: the worker died, and all retries")
+    assert found["value"] == [1, 2, None, 4] and found["error"][2].startswith("WorkerCrashedError: the worker of the point died, also in each retry")
 
 
 def test_an_error_of_a_call_is_in_its_row_on_a_cluster_too(nodes):
@@ -217,6 +217,29 @@ def test_parts_stay_after_ctrl_c_and_resume_to_the_same_bytes(nodes, long, tmp_p
     assert kept and [(out / "reward" / path.name).stat().st_mtime_ns for path, _ in kept] == [when for _, when in kept]
     assert same(out, long) and not parts.exists()
     assert cluster.rollout(LONG, out, shards=2, format="npy", resume=True).chunks == 120
+
+
+def test_an_interrupted_removal_of_the_parts_leaves_a_whole_data_set_that_resumes(nodes, whole, tmp_path, monkeypatch):
+    out = tmp_path / "data"
+
+    def interrupted(folder):
+        os.remove(next(Path(folder).glob("*/manifest.jsonl")))
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr("shutil.rmtree", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            cluster.rollout(SETTINGS, out, shards=2, format="npy")
+    assert cluster.rollout(SETTINGS, out, shards=2, format="npy", resume=True).chunks == 24
+    assert same(out, whole) and sorted(tmp_path.iterdir()) == [out]
+
+
+def test_a_resumed_run_that_never_began_runs_on_the_cluster(nodes, whole, tmp_path):
+    out = tmp_path / "data"
+    out.mkdir()
+    refused(lambda: cluster.rollout(SETTINGS, out, shards=7, format="npy", resume=True), ValueError, "7", tmp_path)
+    cluster.rollout(SETTINGS, out, shards=2, format="npy", resume=True)
+    assert same(out, whole)
 
 
 @pytest.mark.parametrize(

@@ -207,3 +207,38 @@ def test_without_ray_the_error_names_the_extra():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert "ModuleNotFoundError: libration.cluster requires Ray" in done.stderr
     assert done.stderr.endswith("help: pip install 'libration[ray]'\n")
+
+
+def changes_its_argument(table):
+    table["list"].append(1)
+    return len(table["list"])
+
+
+def test_a_call_that_changes_its_arguments_changes_those_of_no_other_call():
+    found = libration.sweep(changes_its_argument, {"table": {"list": []}}, over={"table.x": [1, 2, 3]})
+    assert found["value"] == [1, 1, 1]
+    found = libration.sweep(changes_its_argument, over={"table": [{"list": []}] * 2})
+    assert found["value"] == [1, 1]
+
+
+def test_results_with_names_of_other_columns_are_kept_and_repeated_keys_are_not():
+    found = libration.sweep(lambda a: {"a": a, "error": 0.5, "y": 1}, over={"a": [1, 2]})
+    assert list(found.columns) == ["a", "result.error", "y", "error"] and found["result.error"] == [0.5, 0.5]
+    found = libration.sweep(lambda a: {"a": 10 * a}, over={"a": [1, 2]})
+    assert (found["a"], found["result.a"]) == ([1, 2], [10, 20])
+    with pytest.raises(ValueError, match="over has the key 'error'"):
+        libration.sweep(lambda error: error, over={"error": [1]})
+
+
+@pytest.mark.parametrize(
+    ("result", "message"),
+    [
+        (lambda a: {"x.y": 1, "x": {"y": 2}}, "two results with the name 'x.y'"),
+        (lambda a: None, "returned NoneType; expected a number"),
+        (lambda a: {"": 1}, "a result without a name"),
+        (lambda a: exit(3), "SystemExit: 3"),
+    ],
+)
+def test_what_cannot_be_a_row_is_an_error_in_its_row(result, message):
+    found = libration.sweep(result, over={"a": [1]})
+    assert message in found["error"][0]

@@ -51,9 +51,11 @@ impl Folder {
         let name = path.join(NAME);
         if !name.exists() {
             // Before anything is made of it.
-            let mut entries = fs::read_dir(path).map_err(DataError::io("read", path))?;
-            if let Some(Ok(entry)) = entries.next() {
-                let found = entry.file_name().to_string_lossy().into_owned();
+            let entries = fs::read_dir(path).map_err(DataError::io("read", path))?;
+            // Another process may have made the manifest meanwhile.
+            let mut names = entries.flatten().map(|entry| entry.file_name());
+            if let Some(found) = names.find(|found| found != NAME) {
+                let found = found.to_string_lossy().into_owned();
                 return Err(DataError::ForeignFile { folder: path.to_owned(), found });
             }
         }

@@ -35,7 +35,7 @@ pub use manifest::{Chunk, Manifest, Stored};
 pub use npy::{npy_array, write_npy};
 pub use parquet::{parquet_bytes, write_parquet};
 pub use replay_file::ReplayFile;
-pub use state_file::{load_state, save_state};
+pub use state_file::{Durability, load_state, save_state};
 pub use table::{Column, Table, Values};
 pub use thread_work::run_on_threads;
 pub use transfer::{Transfer, transfer_files};

@@ -12,8 +12,11 @@ use crate::bounded_read::read_bounded;
 /// Its name in the folder.
 pub(crate) const NAME: &str = "manifest.jsonl";
 
-/// Bytes of the longest manifest: a file takes less than 200 of them, which leaves room for five million files.
+/// Bytes of the longest manifest.
 pub(crate) const LIMIT: u64 = 1 << 30;
+
+/// Bytes of the line of a chunk, and of each file in it, at most: names and numbers of data sets are short.
+const LINE: [u64; 2] = [220, 130];
 
 /// The manifest of a data set: its settings and its chunks. In the file, each has a line of JSON.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -56,6 +59,11 @@ impl Chunk {
 }
 
 impl Manifest {
+    /// The most chunks of `files` files that a manifest may have.
+    pub fn most_chunks(files: u64) -> u64 {
+        LIMIT / (LINE[0] + LINE[1] * files)
+    }
+
     /// Bytes of all files of all chunks.
     pub fn bytes(&self) -> u64 {
         self.chunks.iter().map(Chunk::bytes).sum()

@@ -44,11 +44,25 @@ const SUM: usize = 64;
 /// Bytes that are gathered before they are written.
 const GATHERED: usize = 1 << 20;
 
-/// Writes a state and a note to a file, which is complete or absent after a crash.
+/// What a state file survives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Durability {
+    /// The death of its process. After a failure of the system the file may be damaged, which [`load_state`] finds.
+    Process,
+    /// Also a failure of the system: the disk is waited for.
+    System,
+}
+
+/// Writes a state and a note to a file. The file is complete or absent after what `durability` says.
 ///
 /// # Errors
 /// If the system reports an error.
-pub fn save_state(path: &Path, of: &impl Checkpoint, note: &Value) -> Result<(), DataError> {
+pub fn save_state(
+    path: &Path,
+    of: &impl Checkpoint,
+    note: &Value,
+    durability: Durability,
+) -> Result<(), DataError> {
     let mut bytes = 0;
     let count = |piece: &[u8]| -> Result<(), Infallible> {
         bytes += piece.len() as u64;
@@ -76,8 +90,11 @@ pub fn save_state(path: &Path, of: &impl Checkpoint, note: &Value) -> Result<(),
         let sum = file.sum();
         let mut file = file.into_inner();
         file.write_all(sum.as_bytes())?;
-        file.sync_data()
+        if durability == Durability::System { file.sync_data() } else { Ok(()) }
     })?;
+    if durability == Durability::Process {
+        return Ok(());
+    }
     path.parent().map_or(Ok(()), |folder| sync_folder(named(folder)))
 }
 

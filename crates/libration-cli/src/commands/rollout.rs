@@ -86,7 +86,8 @@ fn finish(
     })?;
     if !quiet {
         terminal::print(&format!(
-            "{count} transitions in {chunks} chunks, {:.3} GB, after {:.1} s of this run: {}\n",
+            "{count} transitions in {chunks} {}, {:.3} GB, after {:.1} s of this run: {}\n",
+            if chunks == 1 { "chunk" } else { "chunks" },
             bytes as f64 / 1e9,
             watcher.seconds(),
             out.display()

@@ -245,6 +245,12 @@ fn what_cannot_be_is_refused_before_a_folder_is_made() {
         "--transitions 1e12",
     );
     assert!(found.contains("GB of memory are needed"), "{found}");
+    let many = "environments = 1000000000\nsteps = 1000000000000\n[chunk]\nenvironments = 1000\nsteps = 100\n";
+    let found = refused(many, "");
+    assert!(
+        found.contains("10000000000000000 chunks, of which a manifest may have 2236962"),
+        "{found}"
+    );
     assert!(refused("", "--format csv").contains("parquet"));
     fs::write(dir.path().join("set.toml"), b"\xff\xfe").unwrap();
     write(&dir, "out", "").code(2).stderr(contains("cannot read"));

@@ -2,7 +2,7 @@
 
 use std::env;
 use std::fs;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command as Process, Stdio};
 
@@ -174,24 +174,6 @@ fn wrong_input_is_named_with_what_is_allowed() {
         }
     }
     assert_eq!(names(&folder), ["taken"]);
-}
-
-#[test]
-fn rows_of_csv_and_json_are_streamed_however_many_there_are() {
-    for (format, count) in [("csv", ""), ("json", ""), ("csv", "--count 100")] {
-        let words = format!(
-            "simulate --system oscillator --integrator rk4 --dt 0.01 --steps 1e15 {count} --format {format}"
-        );
-        let mut child = Process::new(assert_cmd::cargo::cargo_bin("libration"))
-            .args(words.split_whitespace())
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut first = [0; 100];
-        child.stdout.take().unwrap().read_exact(&mut first).unwrap();
-        // Its reader is gone.
-        assert!(child.wait().unwrap().success(), "{words}");
-    }
 }
 
 #[cfg(unix)]

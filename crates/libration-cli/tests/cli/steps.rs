@@ -1,6 +1,6 @@
 //! Many steps of `simulate`, and how far they are.
 
-#[cfg(target_os = "linux")]
+use std::io::Read;
 use std::process::{Command as Process, Stdio};
 
 use predicates::prelude::PredicateBooleanExt;
@@ -58,4 +58,22 @@ fn a_terminal_shows_how_many_steps_are_taken_and_the_time_left() {
     let (code, shown) = on_a_terminal(&folder, &words.replace("--output x.csv", ""));
     assert!(code == Some(0) && !shown.contains("left"), "{shown}");
     libration(&folder, words).assert().success().stdout(is_empty()).stderr(is_empty());
+}
+
+#[test]
+fn rows_of_csv_and_json_are_streamed_however_many_there_are() {
+    for (format, count) in [("csv", ""), ("json", ""), ("csv", "--count 100")] {
+        let words = format!(
+            "simulate --system oscillator --integrator rk4 --dt 0.01 --steps 1e15 {count} --format {format}"
+        );
+        let mut child = Process::new(assert_cmd::cargo::cargo_bin("libration"))
+            .args(words.split_whitespace())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut first = [0; 100];
+        child.stdout.take().unwrap().read_exact(&mut first).unwrap();
+        // Its reader is gone.
+        assert!(child.wait().unwrap().success(), "{words}");
+    }
 }

@@ -7,7 +7,7 @@ use libration::checkpoint::Checkpoint;
 use libration::ensemble::{All, Ensemble, Execution};
 use libration::integrator::VelocityVerlet;
 use libration::system::Pendulum;
-use libration_data::{load_state, save_state};
+use libration_data::{Durability, load_state, save_state};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -23,7 +23,7 @@ fn a_state_goes_through_a_file_with_its_note() {
     let mut one = swings(100);
     one.advance(VelocityVerlet, All(Pendulum { omega2: 9.81 }), All(0.01), 77).unwrap();
     let note = json!({ "of": "a test" });
-    save_state(&path, &one, &note).unwrap();
+    save_state(&path, &one, &note, Durability::System).unwrap();
     let mut other = swings(100);
     assert_eq!(load_state(&path, &mut other).unwrap(), note);
     assert!(other.to_bytes() == one.to_bytes());
@@ -35,7 +35,7 @@ fn a_state_goes_through_a_file_with_its_note() {
 fn a_file_that_is_cut_off_changed_of_another_version_or_of_something_else_is_refused() {
     let dir = TempDir::new().unwrap();
     let path = dir.path().join("swings.state");
-    save_state(&path, &swings(100), &Value::Null).unwrap();
+    save_state(&path, &swings(100), &Value::Null, Durability::System).unwrap();
     let good = fs::read(&path).unwrap();
     let mut other = swings(100);
     other.advance(VelocityVerlet, All(Pendulum { omega2: 9.81 }), All(0.01), 5).unwrap();

@@ -42,6 +42,17 @@ pub enum DatasetError {
         /// The number of groups.
         groups: usize,
     },
+    /// The manifest would be too long.
+    #[error(
+        "{chunks} chunks, of which a manifest may have {most}: `chunk.steps` or `chunk.environments` must be larger, or there must be \
+         more shards"
+    )]
+    Chunks {
+        /// The number of chunks.
+        chunks: u64,
+        /// The largest number.
+        most: u64,
+    },
     /// Minari numbers episodes over the whole data set.
     #[error(
         "{of} shards: Minari numbers the episodes of the whole data set and requires a single shard"

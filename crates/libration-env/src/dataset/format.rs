@@ -41,6 +41,14 @@ impl DataFormat {
         DataFormat::ALL.into_iter().find(|format| format.name() == name)
     }
 
+    /// The number of files of a chunk; of Minari at least.
+    pub(super) const fn files(self) -> u64 {
+        match self {
+            DataFormat::Parquet | DataFormat::Minari => 2,
+            DataFormat::Npy => 6,
+        }
+    }
+
     /// The memory layout that needs no transposition.
     pub(super) fn layout(self) -> Layout {
         match self {

@@ -54,6 +54,7 @@ pub fn join(job: &JoinJob<'_>, monitor: &dyn Monitor) -> Result<Manifest, Datase
             return Err(part.unusable(what));
         }
     }
+    ensure_outside(job.out, &parts)?;
     let all = [0, dataset.groups()];
     let mut folder = Folder::open(job.out, &manifest_head(&dataset, format, all), job.resume)?;
     if let Some(what) = find_misplaced(&folder.manifest().chunks, all, dataset.chunks()) {
@@ -79,6 +80,21 @@ pub fn join(job: &JoinJob<'_>, monitor: &dyn Monitor) -> Result<Manifest, Datase
         }
     }
     Ok(folder.manifest().clone())
+}
+
+/// Checks that the folder of the whole data set is in none of the shards, which would have a file too many.
+fn ensure_outside(out: &Path, parts: &[Part<'_>]) -> Result<(), DatasetError> {
+    let out = std::path::absolute(out).unwrap_or_else(|_| out.to_owned());
+    let existing = out.ancestors().find_map(|folder| folder.canonicalize().ok());
+    for part in parts {
+        let within = part.folder.canonicalize().ok().zip(existing.as_ref());
+        if within.is_some_and(|(part, out)| out.starts_with(&part)) {
+            return Err(
+                part.unusable("contains the output folder; help: choose another --out".to_owned())
+            );
+        }
+    }
+    Ok(())
 }
 
 /// The shards in the order of their groups, once they are known to be those of one data set, each of them finished.

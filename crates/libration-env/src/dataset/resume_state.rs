@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use libration::checkpoint::{Checkpoint, CheckpointError, Trait};
-use libration_data::{DataError, checksum, load_state, save_state};
+use libration_data::{DataError, Durability, checksum, load_state, save_state};
 use serde_json::{Map, Value, json};
 
 /// The file of the state in the folder of a data set. A finished data set has none.
@@ -39,7 +39,8 @@ impl ResumeState {
     /// If the system reports an error.
     pub(super) fn save(&self, folder: &Path) -> Result<(), DataError> {
         let note = json!({ "group": self.group, "chunks": self.chunks });
-        save_state(&folder.join(NAME), self, &note)
+        // Who waits for the disk once more is slower, and a damaged state is found.
+        save_state(&folder.join(NAME), self, &note, Durability::Process)
     }
 
     /// Reads the state in a folder. None if there is none that is whole, of this version and of these settings: what cannot be

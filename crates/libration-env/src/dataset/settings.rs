@@ -104,7 +104,8 @@ impl Dataset {
         let first = |index: usize| {
             (self.groups() * index / of.max(1) * self.chunk.environments).min(self.environments)
         };
-        (first(index) - first(index.saturating_sub(1))) as u64 * self.steps
+        let environments = first(index) - first(index.saturating_sub(1));
+        (environments as u64).saturating_mul(self.steps)
     }
 
     /// Whether it has no transitions, which does not occur.

@@ -9,7 +9,7 @@ use libration::checkpoint::Checkpoint;
 use libration::ensemble::{All, Ensemble, Execution};
 use libration::integrator::VelocityVerlet;
 use libration::system::Pendulum;
-use libration_data::{DataError, Manifest, load_state, save_state};
+use libration_data::{DataError, Durability, Manifest, load_state, save_state};
 use libration_env::dataset;
 use libration_env::dataset::{DataFormat, Dataset, DatasetError, Monitor, WriteJob};
 use libration_report::record::{Finding, Record, Tolerance};
@@ -192,7 +192,7 @@ fn checkpoint(lab: &Lab<'_>, folder: &Path, record: &mut Record) -> Result<(), S
     let mut first = make(alone.clone(), 3.0)?;
     go(&mut first)?;
     let path = folder.join("state");
-    save_state(&path, &first, &Value::Null).map_err(failed)?;
+    save_state(&path, &first, &Value::Null, Durability::System).map_err(failed)?;
     go(&mut first)?;
     let mut second = make(alone.threads(3)?, 0.0)?;
     load_state(&path, &mut second).map_err(failed)?;

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use libration::State;
 use libration::ensemble::{Buffer, Ensemble, Execution, Pages};
-use libration_data::{DataError, load_state, save_state, write_direct};
+use libration_data::{DataError, Durability, load_state, save_state, write_direct};
 use libration_env::dataset;
 use libration_env::dataset::{DataFormat, Dataset, Monitor, WriteJob};
 use libration_study::{Lab, StudyError};
@@ -128,7 +128,7 @@ impl Disk<'_> {
         let (from, mut into) = (make(0.5)?, make(0.0)?);
         let path = self.folder.join("state");
         let begun = Instant::now();
-        save_state(&path, &from, &Value::Null).map_err(failed)?;
+        save_state(&path, &from, &Value::Null, Durability::System).map_err(failed)?;
         load_state(&path, &mut into).map_err(failed)?;
         let seconds = begun.elapsed().as_secs_f64();
         let len = fs::metadata(&path).map_or(0, |meta| meta.len());
