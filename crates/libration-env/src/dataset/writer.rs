@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::sync::mpsc::{channel, sync_channel};
 use std::thread::{Builder, ScopedJoinHandle};
-use std::time::{Duration, Instant};
 use std::{io, thread};
 
 use libration::ensemble::{EnsembleError, Execution};
@@ -225,29 +224,25 @@ struct Written<T> {
     state: Option<ResumeState>,
 }
 
-/// The shortest time between two states: to write one after each chunk cost a tenth of the speed where a chunk takes 10 ms.
-const STATE_INTERVAL: Duration = Duration::from_millis(20);
-
-/// Decides after which chunks the state is written: after some time, when the chunks since the last one hold as many bytes as it.
+/// Decides after which chunks the state is written: when the chunks since the last one hold as many bytes as it.
 ///
 /// To write states then takes at most as long as to write chunks, also where an episode of Minari stays open for a long time.
 #[derive(Default)]
 struct StateDue {
     state: u64,
     since: u64,
-    last: Option<Instant>,
 }
 
 impl StateDue {
     /// Counts a chunk of `bytes` bytes. Returns whether the state after it is due.
     fn after(&mut self, bytes: u64) -> bool {
         self.since += bytes;
-        self.since >= self.state && self.last.is_none_or(|last| last.elapsed() >= STATE_INTERVAL)
+        self.since >= self.state
     }
 
     /// Counts a state, and returns it.
     fn taken(&mut self, state: Vec<u8>) -> Vec<u8> {
-        (self.state, self.since, self.last) = (state.len() as u64, 0, Some(Instant::now()));
+        (self.state, self.since) = (state.len() as u64, 0);
         state
     }
 }

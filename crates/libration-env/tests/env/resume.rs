@@ -3,8 +3,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::thread::sleep;
-use std::time::Duration;
 
 use libration::ensemble::Execution;
 use libration_env::dataset::{
@@ -38,20 +36,17 @@ struct Watch {
     most: u64,
     written: AtomicU64,
     recomputed: AtomicU64,
-    /// After each chunk: states are written some time apart, and these chunks take hardly any.
-    pause: Duration,
 }
 
 impl Watch {
     fn until(most: u64) -> Self {
         let [written, recomputed] = [0, 0].map(AtomicU64::new);
-        Watch { most, written, recomputed, pause: Duration::ZERO }
+        Watch { most, written, recomputed }
     }
 }
 
 impl Monitor for Watch {
     fn on_written(&self, transitions: u64, _: u64) {
-        sleep(self.pause);
         self.written.fetch_add(transitions, Ordering::Relaxed);
     }
 
@@ -66,22 +61,22 @@ impl Monitor for Watch {
     }
 }
 
-/// Writes a shard until `most` transitions are there, with a pause in ms after each chunk; gives how many chunks were computed again.
+/// Writes a shard until `most` transitions are there, and gives how many chunks were computed again.
 fn write_until(
-    (most, pause): (u64, u64),
+    most: u64,
     (text, format, shard): (&str, DataFormat, [usize; 2]),
     out: &Path,
 ) -> (Result<(), DatasetError>, u64) {
     let dataset = parse(text, "set.toml").unwrap();
     let execution = Execution::serial();
     let job = WriteJob { dataset: &dataset, format, shard, out, resume: true, execution };
-    let watch = Watch { pause: Duration::from_millis(pause), ..Watch::until(most) };
+    let watch = Watch::until(most);
     let written = write(&job, &watch).map(drop);
     (written, watch.recomputed.into_inner())
 }
 
 fn write_whole(what: (&str, DataFormat, [usize; 2]), out: &Path) -> u64 {
-    let (written, recomputed) = write_until((u64::MAX, 0), what, out);
+    let (written, recomputed) = write_until(u64::MAX, what, out);
     written.unwrap();
     recomputed
 }
@@ -114,10 +109,9 @@ fn a_resumed_data_set_goes_on_from_its_state_with_the_bytes_of_one_that_was_not_
         // Within a group, again and again.
         let (mut written, mut turns) = (Err(DatasetError::Interrupted), 0);
         while written.is_err() {
-            let (now, recomputed) = write_until((700, 25), what, &part);
-            // Of Minari the state has the open episodes, and is written when chunks hold as much. Chunks that are computed ahead may follow
-            // on a state faster than the next state.
-            let most = if format == DataFormat::Minari { 4 } else { 2 };
+            let (now, recomputed) = write_until(700, what, &part);
+            // Of Minari the state has the open episodes, and is written when chunks hold as much.
+            let most = if format == DataFormat::Minari { 4 } else { 0 };
             assert!(recomputed <= most, "{} {recomputed}", format.name());
             (written, turns) = (now, turns + 1);
         }
@@ -134,7 +128,7 @@ fn a_state_that_is_torn_foreign_or_ahead_is_not_used_and_what_it_would_give_is_c
     write_whole(what, &at("whole"));
     assert!(!at("whole").join(STATE).exists());
     let stopped = |name: &str, text: &str| {
-        let (written, _) = write_until((1500, 0), (text, DataFormat::Npy, [1, 1]), &at(name));
+        let (written, _) = write_until(1500, (text, DataFormat::Npy, [1, 1]), &at(name));
         assert!(matches!(written, Err(DatasetError::Interrupted)));
         fs::read(at(name).join(STATE)).unwrap()
     };
@@ -173,7 +167,7 @@ fn a_state_that_is_torn_foreign_or_ahead_is_not_used_and_what_it_would_give_is_c
 fn an_unfinished_data_set_has_no_flaw_for_its_state() {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("set");
-    let (written, _) = write_until((700, 0), (SETTINGS, DataFormat::Npy, [1, 1]), &out);
+    let (written, _) = write_until(700, (SETTINGS, DataFormat::Npy, [1, 1]), &out);
     assert!(written.is_err() && out.join(STATE).exists());
     let flaws =
         |out: &Path| verify(out, VerifyOptions::default(), &Watch::until(u64::MAX)).unwrap().1;
@@ -269,7 +263,7 @@ fn what_is_not_a_whole_data_set_is_refused_before_anything_is_written() {
     let error = joined(&parts, &within, Transfer::Link).unwrap_err().to_string();
     assert!(error.contains("contains the output folder") && !within.exists(), "{error}");
     let stopped = dir.path().join("stopped");
-    write_until((100, 0), (SETTINGS, DataFormat::Parquet, [2, 3]), &stopped).0.unwrap_err();
+    write_until(100, (SETTINGS, DataFormat::Parquet, [2, 3]), &stopped).0.unwrap_err();
     refused(&[parts[0].clone(), stopped, parts[2].clone()], "is unfinished:");
     let file = parts[1].join("ends/000001-00000003.parquet");
     let bytes = fs::read(&file).unwrap();
