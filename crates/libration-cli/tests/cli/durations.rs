@@ -107,12 +107,12 @@ fn lags_filters_and_periods_of_plants_take_units() {
         answer.as_object_mut().unwrap().remove("throughput");
         answer
     };
-    let plant = "[system.linear]\na = [[0, 1], [0, 0]]\nb = [[0], [1]]\n[controller.lqr]\nstates = [1, 0]\ninputs = [1]\n[loop]\nperiod = 0.01\n[[part]]\nlag = LAG\ninput = \"u1\"\n";
-    let sampled = "[system.linear]\na = [[1, 0.01], [0, 1]]\nb = [[0.00005], [0.01]]\nsampling-period = PERIOD\n[controller.lqr]\nstates = [1, 0]\ninputs = [1]\n";
-    let pid = "[system.oscillator]\nomega2 = 10\n[controller.pid]\nproportional = 10\nintegral = 1\nderivative = 2\nfilter = FILTER\n[loop]\nperiod = 0.01\n";
+    let plant = "[system.linear]\na = [[0, 1], [0, 0]]\nb = [[0], [1]]\n[controller.lqr]\nstates = [1, 0]\ninputs = [1]\n[loop]\nperiod = 0.1\n[[part]]\nlag = LAG\ninput = \"u1\"\n";
+    let sampled = "[system.linear]\na = [[1, 0.1], [0, 1]]\nb = [[0.005], [0.1]]\nsampling-period = PERIOD\n[controller.lqr]\nstates = [1, 0]\ninputs = [1]\n";
+    let pid = "[system.oscillator]\nomega2 = 10\n[controller.pid]\nproportional = 10\nintegral = 1\nderivative = 2\nfilter = FILTER\n[loop]\nperiod = 0.1\n";
     for (text, name, number, with_unit) in [
         (plant, "LAG", "0.012", "\"12ms\""),
-        (sampled, "PERIOD", "0.01", "\"100Hz\""),
+        (sampled, "PERIOD", "0.1", "\"10Hz\""),
         (pid, "FILTER", "0.05", "\"50 ms\""),
     ] {
         assert_eq!(

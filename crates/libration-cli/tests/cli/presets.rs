@@ -51,7 +51,7 @@ fn presets_are_listed_with_their_sources() {
 #[test]
 fn a_preset_is_the_latency_that_it_lists_in_advise_analyze_and_simulate() {
     for command in [
-        &["advise", "--period", "0.01"][..],
+        &["advise", "--period", "0.1"][..],
         &["analyze", "--integrator", "exact", "--dt", "0.01"],
         &["simulate", "--integrator", "exact", "--dt", "0.01", "--steps", "50"],
     ] {
@@ -84,8 +84,7 @@ fn files_take_presets_and_refuse_unknown_ones() {
     for (text, value) in [(plant, "[\"preset:usb-frame\"]"), (system, "\"preset:usb-frame\"")] {
         let path = folder.path().join("loop.toml");
         let run = |latency: &str| {
-            fs::write(&path, format!("{text}[loop]\nperiod = 0.01\nlatency = {latency}\n"))
-                .unwrap();
+            fs::write(&path, format!("{text}[loop]\nperiod = 0.1\nlatency = {latency}\n")).unwrap();
             libration(&["advise", "--config", path.to_str().unwrap(), "--json"])
         };
         let output = results(&run(value));
