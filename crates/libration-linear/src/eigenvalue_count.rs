@@ -4,6 +4,7 @@ use core::f64::consts::PI;
 
 use num_complex::Complex64;
 
+use crate::LinearLoopError;
 use crate::angle_grid::{AngleGrid, turned, unit};
 use crate::hessenberg::Resolved;
 use crate::open_channels::PartResponse;
@@ -41,7 +42,14 @@ const SMALL: f64 = 0.9;
 
 impl AngleGrid<'_> {
     /// The number of eigenvalues outside the unit circle: the argument of the characteristic polynomial along half of it.
-    pub(crate) fn unstable(&self, response: &PartResponse, whole: u64) -> i64 {
+    ///
+    /// # Errors
+    /// [`LinearLoopError::Range`] if the polynomial is beyond the range of floats.
+    pub(crate) fn unstable(
+        &self,
+        response: &PartResponse,
+        whole: u64,
+    ) -> Result<i64, LinearLoopError> {
         let k = whole as f64;
         let point = |angle: f64, resolved: &Resolved| {
             let loci = response.loci(unit(angle), resolved);
@@ -68,13 +76,20 @@ impl AngleGrid<'_> {
                 false => argument(&fresh, from, to, 0.5 / delays, 48),
             };
         }
-        self.open.size() as i64 - (turn / PI).round() as i64
+        if turn.is_nan() {
+            return Err(LinearLoopError::Range);
+        }
+        Ok(self.open.size() as i64 - (turn / PI).round() as i64)
     }
 }
 
 /// The angle by which the polynomial turns from one point to another, which are halved until it changes by a part of its size.
 fn argument(f: &impl Fn(f64) -> Point, from: &Point, to: &Point, most: f64, depth: u32) -> f64 {
     let change = (to.value - from.value).norm();
+    if !change.is_finite() {
+        // No part of the way is closer.
+        return f64::NAN;
+    }
     let small = change < 0.7 * from.value.norm().min(to.value.norm());
     let close = || from.continues_at(to) && to.continues_at(from);
     if small && to.angle - from.angle <= most && close() || depth == 0 {

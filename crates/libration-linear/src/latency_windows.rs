@@ -132,7 +132,7 @@ impl Search<'_> {
     fn unstable_at(&self, latency: f64) -> Result<i64, LinearLoopError> {
         let whole = latency.floor();
         let response = self.grid.open.response((latency - whole).min(1.0 - BEFORE))?;
-        Ok(self.grid.unstable(&response, whole as u64))
+        self.grid.unstable(&response, whole as u64)
     }
 }
 
@@ -146,7 +146,7 @@ fn whole_windows(
     let mut windows: Vec<LatencyWindow> = Vec::new();
     let mut begun = None;
     for whole in 0..=most as u64 {
-        match (grid.unstable(&response, whole) == 0, begun) {
+        match (grid.unstable(&response, whole)? == 0, begun) {
             (true, None) => begun = Some(whole as f64),
             (false, Some(from)) => {
                 let to = Some((whole - 1) as f64);

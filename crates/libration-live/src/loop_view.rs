@@ -1,7 +1,7 @@
 //! A loop as a page shows it: its curves, its growth, and its limits.
 
 use libration_equations::StepProgram;
-use libration_linear::{Channels, CostWeights, LoopTiming, Matrix, eigenvalues};
+use libration_linear::{Channels, CostWeights, LatencyWindow, LoopTiming, Matrix, eigenvalues};
 
 use crate::control_loop::{ControlLoop, MOST_LATENCY};
 use crate::growth::least_entries;
@@ -68,11 +68,18 @@ pub(crate) fn limits(setting: &Setting, control: &Control) -> Result<Answer, Set
     let none = LoopTiming { input_latency: own.linear.ideal().input_latency, ..own.timing() };
     let channels = Channels::Inputs((0..own.gain.rows()).collect());
     let windows = own.linear.latency_windows(&none, &channels, [MOST_LATENCY as f64; 2]);
-    let windows = windows.unwrap_or_default();
     let seconds = |periods: f64| periods * own.mean_period();
-    let ends = windows.iter().map(|window| window.to.map_or(f64::INFINITY, seconds));
-    answer.column("latency.to", ends.collect());
-    answer.column("latency.from", windows.iter().map(|window| seconds(window.from)).collect());
+    let windows = windows.map(|windows| {
+        let pair = |window: &LatencyWindow| {
+            [seconds(window.from), window.to.map_or(f64::INFINITY, seconds)]
+        };
+        windows.iter().map(pair).collect()
+    });
+    // No window says that no latency is stable; NaN, that nothing is known.
+    let windows: Vec<[f64; 2]> = windows.unwrap_or_else(|_| vec![[f64::NAN; 2]]);
+    for (i, name) in ["latency.from", "latency.to"].into_iter().enumerate() {
+        answer.column(name, windows.iter().map(|window| window[i]).collect());
+    }
     answer.number("latency.tried", MOST_LATENCY as f64 * own.mean_period());
     let cost = |timing: &LoopTiming| own.linear.stationary(timing).ok().flatten();
     let rise = cost(&own.timing()).zip(cost(&own.linear.ideal()));

@@ -192,3 +192,11 @@ fn what_cannot_be_shown_is_refused_with_a_reason() {
         "unknown key `look`"
     );
 }
+
+#[test]
+fn latencies_of_a_loop_whose_motion_in_a_period_is_beyond_floats_are_unknown_and_not_unstable() {
+    let fast = POLE.replace("9.81*sin(q)", "1e6*q");
+    let limits = ask("limits", &format!("{fast}period=1\ndt=0.01\n"));
+    assert!(limits.get("latency.from").len() == 1 && number(&limits, "latency.from").is_nan());
+    assert!(number(&limits, "latency.to").is_nan());
+}

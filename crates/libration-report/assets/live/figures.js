@@ -204,7 +204,7 @@ const judge = (view, limits, setting) => {
   return view.kind === "loop" ? judgeLoop(view, limits, setting, growth) : judgeMotion(view, limits, setting, growth);
 };
 
-/** The latencies at which a loop is stable around one that is given, or the first: a pair; null if there are none. */
+/** The latencies at which a loop is stable around one that is given, or the first: a pair, of NaN if they are unknown; null if there are none. */
 const latencyWindow = (limits, latency) => {
   const windows = [...(limits["latency.from"] || [])].map((from, i) => [from, limits["latency.to"][i]]);
   return windows.find(([from, to]) => from <= latency && latency <= to) || windows[0] || null;
@@ -213,6 +213,7 @@ const latencyWindow = (limits, latency) => {
 const latencyText = (limits, latency) => {
   const [window, tried] = [latencyWindow(limits, latency), single(limits, "latency.tried")];
   if (!window) return "none";
+  if (Number.isNaN(window[0])) return "unknown";
   const to = window[1] === Infinity ? `above ${short(tried)}` : short(window[1]);
   return window[0] > 0 ? `${short(window[0])} to ${to}` : to;
 };
@@ -224,7 +225,8 @@ const judgeLoop = (view, limits, setting, growth) => {
   let more = "";
   if (limits["latency.from"]) {
     const window = latencyWindow(limits, latency);
-    if (!window) more = `${without} is stable with no latency up to ${short(single(limits, "latency.tried"))} s.`;
+    if (window && Number.isNaN(window[0])) more = "";
+    else if (!window) more = `${without} is stable with no latency up to ${short(single(limits, "latency.tried"))} s.`;
     else if (window[0] > 0) more = `${without} is stable with latencies of ${latencyText(limits, latency)} s, not below.`;
     else more = `${without} is stable up to a latency of ${latencyText(limits, latency)} s.`;
   }

@@ -154,7 +154,7 @@ class Live {
     const latency = Number(this.setting.get("latency"));
     const window = latencyWindow(this.limits, latency);
     const row = this.rows.find((row) => row.key === "latency");
-    if (this.fitted || !row || !window || window[1] === Infinity) return;
+    if (this.fitted || !row || !window || !Number.isFinite(window[1])) return;
     this.fitted = true;
     row.scale = rangeOf("latency", latency, Math.min(2 * window[1], single(this.limits, "latency.tried")));
     row.place(latency);
