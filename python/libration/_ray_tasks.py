@@ -17,7 +17,7 @@ _SECONDS_TO_CANCEL = 10.0
 
 
 def start() -> None:
-    """Connect to Ray: to the cluster of the environment variable ``RAY_ADDRESS``, or to a new one on this machine."""
+    """Connect to Ray: to the cluster of ``RAY_ADDRESS``, to one that runs on this machine, or to a new one."""
     if not ray.is_initialized():
         ray.init()
 

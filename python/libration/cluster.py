@@ -1,7 +1,7 @@
 """Sweeps, data sets and rollouts on a cluster of Ray, with the bits of one process.
 
 Requires Ray: ``pip install 'libration[ray]'``. Without a connection, the functions connect to the cluster of the environment variable
-``RAY_ADDRESS``, or start Ray on this machine. All nodes need the same version of the package.
+``RAY_ADDRESS``, or to one that runs on this machine, or start Ray here. All nodes need the same version of the package.
 """
 
 from __future__ import annotations

@@ -158,7 +158,7 @@ class Sweep:
                 columns[key].append(value)
         for name in dict.fromkeys(name for row in rows for name in row if name != _ERROR):
             column = [row.get(name) for row in rows]
-            # Many results repeat what was asked.
+            # Results often contain the swept keywords themselves.
             is_repeated = name in labels and all(value in (None, asked) for value, asked in zip(column, columns[name]))
             if any(value is not None for value in column) and not is_repeated:
                 columns[f"result.{name}" if name in labels or name == "error" else name] = column

@@ -32,7 +32,7 @@ impl<'a, T: Number> GroupRollout<'a, T> {
         GroupRollout { dataset, group, all, format, episodes }
     }
 
-    /// The state after the chunks so far, from which [`restore`](Self::restore) goes on: the open episodes after the environments.
+    /// The state after the chunks so far, for [`restore`](Self::restore): the environments, followed by the open episodes.
     pub(super) fn to_bytes(&self) -> Vec<u8> {
         let environments = self.all.to_bytes();
         let mut bytes = (environments.len() as u64).to_le_bytes().to_vec();
@@ -43,7 +43,7 @@ impl<'a, T: Number> GroupRollout<'a, T> {
         bytes
     }
 
-    /// Goes on from a state of [`to_bytes`](Self::to_bytes) after `chunks` chunks. Returns whether it fits; otherwise nothing changes.
+    /// Restores a state of [`to_bytes`](Self::to_bytes) after `chunks` chunks. Returns whether it fits; if not, nothing changes.
     pub(super) fn restore(&mut self, state: &[u8], chunks: u64) -> bool {
         let Some((len, rest)) = state.split_first_chunk() else { return false };
         let len = usize::try_from(u64::from_le_bytes(*len)).unwrap_or(usize::MAX);

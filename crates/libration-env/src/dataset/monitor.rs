@@ -12,7 +12,7 @@ pub trait Monitor: Sync {
         self.on_written(transitions, bytes);
     }
 
-    /// Called when a chunk that is on the disk was computed again, because no state was there to go on from.
+    /// Called when a chunk that is on the disk was computed again, because there was no state to continue from.
     fn on_recomputed(&self) {}
 
     /// Called when `bytes` bytes of `of` were verified.

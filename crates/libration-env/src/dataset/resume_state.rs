@@ -1,4 +1,4 @@
-//! The state of an unfinished data set, from which a run with `resume` goes on.
+//! The state of an unfinished data set, from which a run with `resume` continues.
 
 use std::fs;
 use std::path::Path;
@@ -39,7 +39,7 @@ impl ResumeState {
     /// If the system reports an error.
     pub(super) fn save(&self, folder: &Path) -> Result<(), DataError> {
         let note = json!({ "group": self.group, "chunks": self.chunks });
-        // Who waits for the disk once more is slower, and a damaged state is found.
+        // Without a wait for the disk: a state that a failure of the system damages is recognised by its checksum.
         save_state(&folder.join(NAME), self, &note, Durability::Process)
     }
 

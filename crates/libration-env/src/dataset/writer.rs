@@ -56,7 +56,7 @@ pub(super) fn groups(
 
 /// Writes a data set or a shard: computes a chunk while it writes the one before. Returns the manifest.
 ///
-/// With `resume` it goes on from the state that the interrupted run wrote last. It compares the lengths of all files with the manifest, and
+/// With `resume` it continues from the state that the interrupted run wrote last. It compares the lengths of all files with the manifest, and
 /// recomputes files that are missing or have another length; it reads none of them ([`verify`](super::verify) does).
 ///
 /// # Errors
