@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import itertools
 import math
 from typing import Any, Mapping, Sequence
 
@@ -20,13 +19,13 @@ from ._classic_starts import drawn_start, start_bounds, start_ranges
 from ._classic_systems import CLASSIC, ClassicSystem, system_of
 from ._environment_keywords import BatchKeywords, ClassicKeywords
 from ._episode_states import options_of
-from ._gymnasium_envs import Env, VectorEnv
+from ._gymnasium_envs import Env, RoundedBatch, VectorEnv
 from ._settings import OPTIONS, ends, nearest
 from ._spec_keywords import keyword_value
 from .environments import Environments
 
 STARTS = ("libration", "gymnasium")
-_RESTORED = {"_arguments", "_given", "_picture", "_seeder", "_settings", "_turns", "preset"}
+_RESTORED = {"_arguments", "_given", "_picture", "_seeder", "_settings", "preset"}
 """Attributes of vector environments that a copy has from its construction."""
 
 
@@ -114,8 +113,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
     """
 
     _is_vector = True
-    # Observations of twins have the float type of Gymnasium, in arrays of their own.
-    _has_own_arrays = True
+    _rounds = True
 
     def __init__(self, name: str, /, num_envs: int = 1, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
         self._classic, self._starts = _classic(name), starts
@@ -131,24 +129,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self._generators: list[np.random.Generator | None] = [None] * self.num_envs
         self._ended = np.zeros(self.num_envs, bool)
-        turns: list[list[NDArray[Any]]] = [[] for _ in range(self._buffers)]
-        self._turns = itertools.cycle(turns)
         self._finish()
-
-    def _in_turn(self, *results: NDArray[Any]) -> Sequence[NDArray[Any]]:
-        """Return the results of a step; with ``copy=False`` in the arrays that steps fill in turn."""
-        if not self._buffers:
-            return results
-        arrays = next(self._turns)
-        # The caller may have made an array read-only, or changed its shape.
-        if any(not array.flags.writeable or array.shape != result.shape for array, result in zip(arrays, results)):
-            arrays.clear()
-        if not arrays:
-            arrays += [result.copy() for result in results]
-            return tuple(arrays)
-        for array, result in zip(arrays, results):
-            np.copyto(array, result)
-        return tuple(arrays)
 
     def _checked_render_mode(self, render_mode: str | None) -> str | None:
         return _render_mode(render_mode)
@@ -180,8 +161,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
         options = options_of(options)
         if self._starts == "libration":
-            observations, infos = super().reset(seed=seed, options=start_ranges(self._classic, options, self._settings["dtype"]))
-            return observations.astype(np.float32, copy=False), infos
+            return super().reset(seed=seed, options=start_ranges(self._classic, options, self._settings["dtype"]))
         bounds = start_bounds(self._classic, options, self._settings["dtype"])
         if "low" in options or "high" in options:
             raise ValueError("options has ends of ranges, but those of Gymnasium's Pendulum are 'x_init' and 'y_init'")
@@ -200,7 +180,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
             observations = self._start(mask, bounds)
         if first and not mask.all():
             observations = self._start(~mask, {})
-        return observations.astype(np.float32, copy=False), infos
+        return observations, infos
 
     def _start(self, mask: NDArray[np.bool_], bounds: dict[str, Any]) -> np.ndarray:
         """Put environments at starts of Gymnasium."""
@@ -216,23 +196,18 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
             raise ValueError("starts is 'gymnasium', but rollout requires starts='libration': NumPy draws the starts of Gymnasium between steps")
         return super().rollout(policy, horizon, **given)
 
-    def set_state(self, states: Any, mask: np.ndarray | None = None) -> np.ndarray:
-        return super().set_state(states, mask).astype(np.float32)
-
     def step(self, actions: Any) -> Any:
-        observations, rewards, terminated, truncated, infos = super().step(actions)
-        if "final_obs" in infos:
-            final = infos["final_obs"]
-            for n in np.flatnonzero(infos["_final_obs"]):
-                final[n] = final[n].astype(np.float32)
-        if self._starts == "gymnasium":
-            mode = self._settings["autoreset"]
-            ended = terminated | truncated
-            begun = {"NextStep": self._ended, "SameStep": ended}.get(mode)
-            if begun is not None and begun.any():
-                observations = self._start(begun, {})
-            self._ended = ended
-        return *self._in_turn(observations.astype(np.float32, copy=False), rewards, terminated, truncated), infos
+        results = super().step(actions)
+        if self._starts == "libration":
+            return results
+        observations, rewards, terminated, truncated, infos = results
+        ended = terminated | truncated
+        begun = {"NextStep": self._ended, "SameStep": ended}.get(self._settings["autoreset"])
+        if begun is not None and begun.any():
+            # In the array that this step returns.
+            np.copyto(observations, self._start(begun, {}))
+        self._ended = ended
+        return observations, rewards, terminated, truncated, infos
 
     def render(self) -> tuple[np.ndarray, ...] | None:
         """Return one picture of Gymnasium's per environment, if ``render_mode`` is ``"rgb_array"``; it requires Pygame."""
@@ -273,6 +248,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
 class ClassicEnv(ClassicAttributes, Env):
     """Single environment of a twin of Gymnasium's classic control; see :class:`ClassicVectorEnv`."""
 
+    _batch_class = RoundedBatch
     _last_state: NDArray[Any] | None = None
 
     def __init__(self, name: str, /, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
@@ -280,7 +256,6 @@ class ClassicEnv(ClassicAttributes, Env):
         super().__init__(system_of(name), **_with_defaults(self._classic, starts, given))
         self.render_mode = self._checked_render_mode(render_mode)
         self._picture: _Picture | None = None
-        self._action: Any = None
         self.metadata = {"render_modes": ["rgb_array"], "render_fps": _FPS[self._classic.name]}
         self.observation_space = _seen(self._classic, self._all._settings, given, self.observation_space)
         self.action_space = _action_space(self._classic, given, self.action_space)
@@ -304,33 +279,26 @@ class ClassicEnv(ClassicAttributes, Env):
         return {**self.__dict__, "_picture": None}
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
-        options, self._action = options_of(options), None
+        options = options_of(options)
         if self._starts == "libration":
-            observation, info = super().reset(seed=seed, options=start_ranges(self._classic, options, self._all._settings["dtype"]))
-            return observation.astype(np.float32), info
+            return super().reset(seed=seed, options=start_ranges(self._classic, options, self._all._settings["dtype"]))
         bounds = start_bounds(self._classic, options, self._all._settings["dtype"])
         if "low" in options or "high" in options:
             raise ValueError("options has ends of ranges, but those of Gymnasium's Pendulum are 'x_init' and 'y_init'")
         observation, info = super().reset(seed=seed, options=options)
         if "state" in options:
-            return observation.astype(np.float32), info
+            return observation, info
         return self.set_state(drawn_start(self._classic, self.np_random, bounds)), info
-
-    def set_state(self, state: Any) -> np.ndarray:
-        return super().set_state(state).astype(np.float32)
-
-    def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        observation, reward, terminated, truncated, info = super().step(action)
-        if self.render_mode is not None and not isinstance(self.action_space, Discrete):
-            self._action = float(np.clip(np.ravel(action)[0], -self._classic.max_action, self._classic.max_action))
-        return observation.astype(np.float32), reward, terminated, truncated, info
 
     def render(self) -> np.ndarray | None:
         if self.render_mode is None:
             return super().render()
         if self._picture is None:
             self._picture = _Picture(self._classic)
-        return self._picture(self.state, self._lengths()[0], self._action)
+        torque = None
+        if self._action is not None and not isinstance(self.action_space, Discrete):
+            torque = float(np.clip(np.ravel(self._action)[0], -self._classic.max_action, self._classic.max_action))
+        return self._picture(self.state, self._lengths()[0], torque)
 
     @property
     def state(self) -> np.ndarray:

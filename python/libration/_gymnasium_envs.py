@@ -213,6 +213,12 @@ class _Batch(Environments):
     _closed_error = ClosedEnvironmentError
 
 
+class RoundedBatch(_Batch):
+    """The same, with observations of ``float32``."""
+
+    _rounds = True
+
+
 class Env(gymnasium.Env):
     """Single Gymnasium environment of the engine.
 
@@ -221,6 +227,9 @@ class Env(gymnasium.Env):
 
     metadata = METADATA
     spec = JSON_SPEC
+    _batch_class: type[Environments] = _Batch
+    _action: Any = None
+    """The last one of the episode."""
 
     def __init__(
         self, name: str | EquationSystem | System, *, render_mode: str | None = None, **given: Any
@@ -230,14 +239,15 @@ class Env(gymnasium.Env):
                 raise TypeError(f"unexpected keyword argument {unknown!r}: it belongs to vector environments")
         subject: str | EquationSystem = with_commands(name)
         self.render_mode = _render_mode(subject, render_mode)
-        self._all = _Batch(subject, max_episode_steps=np.inf, autoreset_mode="Disabled", **given)
+        self._all = self._batch_class(subject, max_episode_steps=np.inf, autoreset_mode="Disabled", **given)
+        self._tells: bool = self._all._settings["parameter_infos"]
         self.metadata = _metadata(subject, self._all._settings)
         self.observation_space, self.action_space = single_spaces(self._all.preset, self._all._settings)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        options = options_of(options)
+        options, self._action = options_of(options), None
         super().reset(seed=seed)
         if "reset_mask" in options:
             raise ValueError("options has 'reset_mask', but it belongs to vector environments")
@@ -245,11 +255,11 @@ class Env(gymnasium.Env):
         return observations[0], _single(infos)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        observations, rewards, terminated, truncated, infos = self._all.step(action)
-        info: dict[str, Any] = {"lost": True} if "lost" in infos else {}
-        if "parameters" in infos:
-            info |= _single({"parameters": infos["parameters"]})
-        return observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), info
+        self._action = action
+        results = self._all._step_single(action)
+        if self._tells:
+            results[4]["parameters"] = self.parameters
+        return results
 
     def _checked_render_mode(self, render_mode: str | None) -> str | None:
         return _render_mode(self._all._arguments[0], render_mode)

@@ -146,8 +146,8 @@ class Environments(_native.Batch):
         observation_space = cached_property(lambda self: self._batched(self.single_observation_space))
         action_space = cached_property(lambda self: self._batched(self.single_action_space))
 
-    _has_own_arrays = False
-    """Whether the class has the arrays that steps fill in turn, in place of the engine."""
+    _rounds = False
+    """Whether observations of resets and steps are ``float32`` whatever the float type of the engine."""
     _reset_needed: type[Exception] = RuntimeError
     _closed_error: type[Exception] = RuntimeError
 
@@ -259,7 +259,7 @@ class Environments(_native.Batch):
         self._seeder: np.random.Generator | None = None
         self.num_envs = self._settings["num_envs"]
         self._buffers = 0 if copy else count("buffers", 2 if buffers is None else buffers, 1, 1_000_000)
-        self._set_up(self._settings, 0 if self._has_own_arrays else self._buffers)
+        self._set_up(self._settings, self._buffers, self._rounds)
 
     def reset(
         self,

@@ -17,7 +17,7 @@ pub struct ColumnProgram {
 #[derive(Debug)]
 pub struct Columns<'p> {
     program: &'p ColumnProgram,
-    block: Block<'p, f64>,
+    block: Block<&'p BlockProgram, f64>,
 }
 
 impl ColumnProgram {

@@ -13,6 +13,7 @@ use numpy::{Element, PyArray, PyArrayDescrMethods, PyArrayMethods, PyUntypedArra
 use pyo3::exceptions::PyMemoryError;
 use pyo3::ffi::Py_REFCNT;
 use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
 use pyo3::types::PyCapsule;
 
 use crate::error::value_error;
@@ -246,4 +247,14 @@ pub(crate) fn view_of_flags<'py>(
 
 fn is_aligned<T: Element>(array: &Bound<'_, PyArray<T, IxDyn>>) -> bool {
     array.data().is_aligned()
+}
+
+/// A function of `libration._arrays` for what is rare.
+pub(crate) fn helper<'py>(
+    py: Python<'py>,
+    cell: &'static PyOnceLock<Py<PyAny>>,
+    name: &str,
+) -> PyResult<&'py Bound<'py, PyAny>> {
+    let import = || Ok::<_, PyErr>(py.import("libration._arrays")?.getattr(name)?.unbind());
+    Ok(cell.get_or_try_init(py, import)?.bind(py))
 }

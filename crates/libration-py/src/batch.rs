@@ -14,7 +14,7 @@ use crate::error::{Raised, value_error};
 use crate::policy::PolicyRequest;
 use crate::rollout::Memory;
 use crate::settings::Settings;
-use crate::step::{self, EpisodeStates, Step};
+use crate::step::{self, EpisodeStates, SingleStep, Step};
 
 /// Environments that the engine steps together, without Gymnasium.
 ///
@@ -44,11 +44,19 @@ impl Batch {
         Batch { inner: CheckedMutex::new(None) }
     }
 
-    /// Creates the environments; `buffers` is the number of reused arrays, or 0 for new arrays in every step.
-    fn _set_up(&self, py: Python<'_>, settings: Settings, buffers: usize) -> PyResult<()> {
+    /// Creates the environments; `buffers` is the number of reused arrays, or 0 for new arrays in every step. With `rounds` observations of
+    /// resets and steps are `float32`, whatever the float type of the engine.
+    #[pyo3(signature = (settings, buffers, rounds=false))]
+    fn _set_up(
+        &self,
+        py: Python<'_>,
+        settings: Settings,
+        buffers: usize,
+        rounds: bool,
+    ) -> PyResult<()> {
         *self.inner.lock(py)? = Some(Inner {
             batch: settings.batch()?,
-            episodes: EpisodeStates::new(&settings, buffers)?,
+            episodes: EpisodeStates::new(&settings, buffers, rounds)?,
             places: settings.places()?,
             process: std::process::id(),
             threads: settings.execution()?.thread_count(),
@@ -87,6 +95,26 @@ impl Batch {
         }
     }
 
+    /// Takes one step of the only environment: the observation `(n,)`, the reward, whether the episode was terminated and truncated, and a
+    /// dictionary with `lost` if its state is not finite.
+    ///
+    /// Raises as `step`.
+    fn _step_single<'py>(
+        slf: &Bound<'py, Self>,
+        action: &Bound<'py, PyAny>,
+    ) -> PyResult<SingleStep<'py>> {
+        let mut guard = slf.get().inner.lock(slf.py())?;
+        let Inner { batch, episodes, .. } = open(slf, &mut guard)?;
+        episodes.expect_action(slf)?;
+        if episodes.len != 1 {
+            return Err(value_error(format!(
+                "one of {} environments cannot be stepped",
+                episodes.len
+            )));
+        }
+        with_batch!(batch, environments => step::take_single(slf.py(), &mut **environments, episodes, action))
+    }
+
     /// Accepts the arguments of a step and does nothing, for benchmarks.
     fn _nothing(&self, actions: &Bound<'_, PyAny>) {
         let _ = (self, actions);
@@ -118,7 +146,7 @@ impl Batch {
             let begun = environments.seed(&first).and_then(|()| environments.reset(&next));
             begun.map_err(Raised::raised)?;
             episodes.begun(&mask);
-            step::observe(slf.py(), &mut **environments, episodes)
+            step::observe(slf.py(), &mut **environments, episodes, true)
         })
     }
 
@@ -158,7 +186,7 @@ impl Batch {
             episodes.stood(&ended);
         }
         outcome?;
-        with_batch!(batch, environments => step::observe(slf.py(), &mut **environments, episodes))
+        with_batch!(batch, environments => step::observe(slf.py(), &mut **environments, episodes, false))
     }
 
     /// Returns positions and velocities, `(num_envs, 2)`; of a system by equations its states.
@@ -179,7 +207,7 @@ impl Batch {
         with_batch!(batch, environments => {
             let rows = which.into_iter().zip(states);
             put_states(&mut **environments, places, rows).map_err(Raised::raised)?;
-            step::observe(slf.py(), &mut **environments, episodes)
+            step::observe(slf.py(), &mut **environments, episodes, true)
         })
     }
 
@@ -203,7 +231,7 @@ impl Batch {
                 places.iter().for_each(|&place| state[place] = drawn[place]);
                 environments.set_state(n, &state).map_err(Raised::raised)?;
             }
-            step::observe(slf.py(), &mut **environments, episodes)
+            step::observe(slf.py(), &mut **environments, episodes, true)
         })
     }
 

@@ -2,6 +2,7 @@
 //!
 //! It converts Python arguments to requests of the engine, and results to NumPy arrays.
 
+mod actions;
 mod any_batch;
 mod array;
 mod background;
@@ -21,6 +22,7 @@ mod laboratory;
 mod linear_analysis;
 mod linear_loops;
 mod linear_plant;
+mod observations;
 mod policy;
 mod probe;
 mod program;

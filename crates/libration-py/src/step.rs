@@ -1,20 +1,22 @@
 //! A step of environments with NumPy arrays.
 
 use std::iter::repeat_with;
+use std::sync::Arc;
 
 use libration::rl::{Autoreset, EpisodeEnds, ProgramPolicy, StepBuffers};
 use libration_env::environments::AnyEnvironments;
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 
+use crate::actions::with_actions;
 use crate::array::{
-    Array, Number, ReusedArray, allocate, allocate_by_size, are_finite, bytes_of,
-    contiguous_actions, lies_in, reuse_or_allocate, view_mut,
+    Array, Number, ReusedArray, allocate_by_size, bytes_of, helper, lies_in, reuse_or_allocate,
+    view_mut,
 };
 use crate::batch::{Batch, raise};
-use crate::error::{Raised, value_error};
+use crate::error::Raised;
+use crate::observations::{Observations, Rounding, array_of};
 use crate::settings::Settings;
 
 /// Episode state and arrays of environments.
@@ -32,14 +34,15 @@ pub(crate) struct EpisodeStates {
     /// Steps of the integrator for an action.
     pub(crate) substeps: usize,
     /// Commands of discrete actions; empty for commands of any value.
-    levels: Vec<f64>,
+    levels: Arc<[f64]>,
+    rounding: Rounding,
     /// Whether the infos of steps have the numbers of episodes.
     pub(crate) tells: bool,
 }
 
 /// Arrays that a step fills: what is seen, paid, over and cut off.
 struct Row<'py, T> {
-    seen: Bound<'py, Array<T, 2>>,
+    seen: Observations<'py, T>,
     reward: Bound<'py, Array<T, 1>>,
     terminated: Bound<'py, Array<bool, 1>>,
     truncated: Bound<'py, Array<bool, 1>>,
@@ -49,6 +52,9 @@ struct Row<'py, T> {
 pub(crate) type Step<'py> = (Any<'py>, Any<'py>, Any<'py>, Any<'py>, Bound<'py, PyDict>);
 type Any<'py> = Bound<'py, PyAny>;
 
+/// The same of the only environment: numbers and flags in place of arrays.
+pub(crate) type SingleStep<'py> = (Any<'py>, f64, bool, bool, Bound<'py, PyDict>);
+
 /// Who asks for arrays of their own has those of the last step in hand while the next is written.
 const IN_HAND: usize = 2;
 
@@ -56,7 +62,7 @@ const IN_HAND: usize = 2;
 const WORTH_A_LOCK: usize = 512;
 
 impl EpisodeStates {
-    pub(crate) fn new(settings: &Settings, buffers: usize) -> PyResult<Self> {
+    pub(crate) fn new(settings: &Settings, buffers: usize, rounds: bool) -> PyResult<Self> {
         let rows = if buffers > 0 { buffers } else { IN_HAND };
         let len = settings.num_envs;
         Ok(EpisodeStates {
@@ -68,7 +74,8 @@ impl EpisodeStates {
             turn: 0,
             shared: buffers > 0,
             substeps: settings.substeps as usize,
-            levels: settings.levels.clone(),
+            levels: settings.levels.as_slice().into(),
+            rounding: Rounding::new(rounds),
             tells: settings.parameter_infos,
         })
     }
@@ -107,15 +114,6 @@ impl EpisodeStates {
         }
     }
 
-    /// The command of an integer that is the discrete action of the only environment.
-    fn single_choice<T: Number>(&self, given: &Bound<'_, PyAny>) -> Option<[T; 1]> {
-        if self.levels.is_empty() || self.len != 1 {
-            return None;
-        }
-        let level = given.extract().ok().and_then(|i: usize| self.levels.get(i));
-        level.map(|&level| [T::from_f64(level)])
-    }
-
     /// The arrays of the next step.
     fn row<'py, T: Number>(
         &mut self,
@@ -125,7 +123,7 @@ impl EpisodeStates {
         let (len, shared) = (self.len, self.shared);
         let [seen, reward, terminated, truncated] = &mut self.rows[self.turn];
         let row = Row {
-            seen: reuse_or_allocate(py, seen, [len, observations], shared)?,
+            seen: Observations::reused(py, seen, [len, observations], shared, &self.rounding)?,
             reward: reuse_or_allocate(py, reward, [len], shared)?,
             terminated: reuse_or_allocate(py, terminated, [len], shared)?,
             truncated: reuse_or_allocate(py, truncated, [len], shared)?,
@@ -135,13 +133,21 @@ impl EpisodeStates {
     }
 }
 
-/// The current observations, in an array of their own.
+/// The current observations, in an array of their own; `rounds` as those of a step are, or else in the float type of the engine.
 pub(crate) fn observe<'py, T: Number>(
     py: Python<'py>,
     environments: &mut dyn AnyEnvironments<T>,
-    episodes: &EpisodeStates,
+    episodes: &mut EpisodeStates,
+    rounds: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let seen = allocate_by_size(py, [episodes.len, environments.sizes()[0]])?;
+    let shape = [episodes.len, environments.sizes()[0]];
+    if rounds && episodes.rounding.applies::<T>() {
+        let seen = Observations::<T>::reused(py, &mut None, shape, false, &episodes.rounding)?;
+        let len = shape[0] * shape[1];
+        environments.observe(episodes.rounding.room(len)).map_err(Raised::raised)?;
+        return Ok(seen.filled(len, &mut episodes.rounding));
+    }
+    let seen = allocate_by_size(py, shape)?;
     let to = view_mut(&seen);
     py.detach(|| environments.observe(to)).map_err(Raised::raised)?;
     Ok(seen.into_any())
@@ -154,66 +160,94 @@ pub(crate) fn take<'py, T: Number>(
     episodes: &mut EpisodeStates,
     given: &Bound<'py, PyAny>,
 ) -> PyResult<Step<'py>> {
-    let made;
     let shape = [episodes.len, environments.sizes()[1]];
-    let is_discrete = !episodes.levels.is_empty();
-    let chosen = episodes.single_choice::<T>(given);
-    let direct = || contiguous_actions(given, shape).filter(|_| !is_discrete);
-    let actions: &[T] = match chosen.as_ref().map(<[T; 1]>::as_slice).or_else(direct) {
-        Some(actions) => actions,
-        None => {
-            made = if is_discrete {
-                let levels = episodes.levels.clone();
-                helper(py, &CHOICES, "choices")?.call1((given, shape[0], levels, T::NUMPY))?
-            } else {
-                helper(py, &ACTIONS, "actions")?.call1((given, shape, T::NUMPY))?
-            };
-            let error = || PyTypeError::new_err("actions are no array");
-            contiguous_actions(&made, shape).ok_or_else(error)?
-        }
-    };
-    if !are_finite(actions) {
-        let n = actions.iter().position(|action| !action.is_finite()).unwrap_or(0);
-        let index = match shape[1] {
-            1 => n.to_string(),
-            width => format!("{}, {}", n / width, n % width),
-        };
-        let text = format!("actions[{index}] is {:?}, but it must be finite", actions[n]);
-        return Err(value_error(text));
-    }
-    let row = episodes.row::<T>(py, environments.sizes()[0])?;
-    let Row { seen, reward, terminated, truncated } = &row;
+    let levels = Arc::clone(&episodes.levels);
+    with_actions(given, &levels, shape, |actions| act(py, environments, episodes, actions))
+}
+
+fn act<'py, T: Number>(
+    py: Python<'py>,
+    environments: &mut dyn AnyEnvironments<T>,
+    episodes: &mut EpisodeStates,
+    actions: &[T],
+) -> PyResult<Step<'py>> {
+    let observations = environments.sizes()[0];
+    let len = episodes.len * observations;
+    let Row { seen, reward, terminated, truncated } = episodes.row::<T>(py, observations)?;
     // Who uses arrays again may ask for what an array of earlier steps says, and that is written now.
     let copied;
     let actions = if episodes.shared
-        && (lies_in(actions, seen)
-            || lies_in(actions, reward)
-            || lies_in(actions, terminated)
-            || lies_in(actions, truncated))
+        && (seen.has(actions)
+            || lies_in(actions, &reward)
+            || lies_in(actions, &terminated)
+            || lies_in(actions, &truncated))
     {
         copied = actions.to_vec();
         &*copied
     } else {
         actions
     };
-    let (seen, reward) = (view_mut(seen), view_mut(reward));
-    let (terminated, truncated) = (bytes_of(terminated), bytes_of(truncated));
-    let to = StepBuffers { seen, reward, terminated: &mut *terminated, truncated: &mut *truncated };
-    let act = || environments.act(ProgramPolicy::ActionSequence(actions), to);
-    let ends = if episodes.len.saturating_mul(episodes.substeps) > WORTH_A_LOCK {
-        py.detach(act)
-    } else {
-        act()
+    let to = StepBuffers {
+        seen: seen.target(len, &mut episodes.rounding),
+        reward: view_mut(&reward),
+        terminated: bytes_of(&terminated),
+        truncated: bytes_of(&truncated),
     };
-    let ends = ends.map_err(Raised::raised)?;
+    let ends = advance(py, environments, [episodes.len, episodes.substeps], actions, to)?;
     if episodes.autoreset == Autoreset::Disabled && !ends.ends.is_empty() {
-        let ended: Vec<u8> =
-            terminated.iter().zip(&*truncated).map(|(over, cut)| over | cut).collect();
+        let flags = bytes_of(&terminated).iter().zip(&*bytes_of(&truncated));
+        let ended: Vec<u8> = flags.map(|(over, cut)| over | cut).collect();
         episodes.stood(&ended);
     }
-    let infos = step_infos(py, &ends, episodes, environments.sizes()[0])?;
-    let Row { seen, reward, terminated, truncated } = row;
-    Ok((seen.into_any(), reward.into_any(), terminated.into_any(), truncated.into_any(), infos))
+    let infos = step_infos(py, &ends, episodes, observations)?;
+    let seen = seen.filled(len, &mut episodes.rounding);
+    Ok((seen, reward.into_any(), terminated.into_any(), truncated.into_any(), infos))
+}
+
+/// Takes a step of the only environment, whose results are no arrays but what is seen, `(n,)`.
+pub(crate) fn take_single<'py, T: Number>(
+    py: Python<'py>,
+    environments: &mut dyn AnyEnvironments<T>,
+    episodes: &mut EpisodeStates,
+    given: &Bound<'py, PyAny>,
+) -> PyResult<SingleStep<'py>> {
+    let [observations, width] = environments.sizes();
+    let levels = Arc::clone(&episodes.levels);
+    with_actions(given, &levels, [1, width], |actions| {
+        let (mut reward, mut terminated, mut truncated) = ([T::zero()], [0], [0]);
+        let seen = episodes.rounding.room::<T>(observations);
+        let to = StepBuffers {
+            seen,
+            reward: &mut reward,
+            terminated: &mut terminated,
+            truncated: &mut truncated,
+        };
+        let ends = advance(py, environments, [1, episodes.substeps], actions, to)?;
+        episodes.stood(&[terminated[0] | truncated[0]]);
+        let infos = PyDict::new(py);
+        if ends.ends.iter().any(|end| end.lost) {
+            infos.set_item("lost", true)?;
+        }
+        let seen = episodes.rounding.room::<T>(observations).to_vec();
+        let seen = array_of(py, &seen, [observations], &episodes.rounding)?;
+        Ok((seen, reward[0].to_f64(), terminated[0] != 0, truncated[0] != 0, infos))
+    })
+}
+
+/// Takes a step of so many environments and steps of the integrator, without the interpreter's lock where that is worth it.
+fn advance<T: Number>(
+    py: Python<'_>,
+    environments: &mut dyn AnyEnvironments<T>,
+    [len, substeps]: [usize; 2],
+    actions: &[T],
+    to: StepBuffers<'_, T>,
+) -> PyResult<EpisodeEnds<T>> {
+    let act = || environments.act(ProgramPolicy::ActionSequence(actions), to);
+    let ends = match len.saturating_mul(substeps) > WORTH_A_LOCK {
+        true => py.detach(act),
+        false => act(),
+    };
+    ends.map_err(Raised::raised)
 }
 
 /// The contents of the dictionary of a step.
@@ -227,24 +261,12 @@ fn step_infos<'py, T: Number>(
     if ends.ends.is_empty() || !(same_step || ends.ends.iter().any(|end| end.lost)) {
         return Ok(PyDict::new(py));
     }
-    let seen: Bound<'py, Array<T, 2>> = allocate(py, [ends.ends.len(), observations])?;
-    view_mut(&seen).copy_from_slice(&ends.observations);
+    let shape = [ends.ends.len(), observations];
+    let seen = array_of(py, &ends.observations, shape, &episodes.rounding)?;
     let who: Vec<usize> = ends.ends.iter().map(|end| end.environment).collect();
     let lost: Vec<bool> = ends.ends.iter().map(|end| end.lost).collect();
     let arguments = (episodes.len, same_step, who, seen, lost);
     Ok(helper(py, &INFOS, "infos")?.call1(arguments)?.cast_into()?)
 }
 
-static ACTIONS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
-static CHOICES: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
 static INFOS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
-
-/// A function of Python's for what is rare.
-fn helper<'py>(
-    py: Python<'py>,
-    cell: &'static PyOnceLock<Py<PyAny>>,
-    name: &str,
-) -> PyResult<&'py Bound<'py, PyAny>> {
-    let import = || Ok::<_, PyErr>(py.import("libration._arrays")?.getattr(name)?.unbind());
-    Ok(cell.get_or_try_init(py, import)?.bind(py))
-}

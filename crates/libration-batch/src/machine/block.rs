@@ -1,6 +1,7 @@
 //! Blocks: rows of lanes, and what runs programs on them.
 
 use core::cell::Cell;
+use core::ops::Deref;
 
 use super::MachineFloat;
 use super::block_program::BlockProgram;
@@ -21,19 +22,19 @@ const MOST_LANES: usize = 1024;
 #[repr(align(64))]
 pub(super) struct Lanes<T>(pub(super) [T; LANES]);
 
-/// The rows of a block, with the values that all lanes share.
+/// The rows of a block, with the values that all lanes share, and a reference to their program.
 #[derive(Debug)]
-pub(crate) struct Block<'p, T> {
-    program: &'p BlockProgram,
+pub(crate) struct Block<P, T> {
+    program: P,
     uniforms: Vec<T>,
     rows: Vec<Lanes<T>>,
     /// Groups of lanes in a row.
     width: usize,
 }
 
-impl<'p, T: MachineFloat> Block<'p, T> {
+impl<P: Deref<Target = BlockProgram>, T: MachineFloat> Block<P, T> {
     /// A block for at most `lanes` lanes; `inputs` are those of the program, of which only the uniform ones count.
-    pub(crate) fn new(program: &'p BlockProgram, lanes: usize, inputs: &[T]) -> Self {
+    pub(crate) fn new(program: P, lanes: usize, inputs: &[T]) -> Self {
         let row = LANES * size_of::<T>();
         let most = (BYTES / row / program.rows().max(1)).clamp(1, MOST_LANES / LANES);
         let width = lanes.div_ceil(LANES).clamp(1, most);

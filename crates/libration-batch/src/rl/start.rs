@@ -7,6 +7,8 @@ use libration_core::control::error::ensure_finite;
 use libration_core::random::{Address, Purpose};
 use libration_core::{Float, State};
 
+use crate::ensemble::InstructionSet;
+
 /// The address of all that is drawn for an episode once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Episode {
@@ -27,6 +29,7 @@ const EPISODE_STRIDE: u64 = 0x9E37_79B9_7F4A_7C15;
 
 impl Episode {
     /// The address of its `i`-th draw for a purpose.
+    #[inline(always)]
     pub(super) fn address(self, purpose: Purpose, i: usize) -> Address {
         let Episode { seed, environment: trajectory, number } = self;
         let step = number.wrapping_mul(DRAWS).wrapping_add(i as u64);
@@ -42,7 +45,9 @@ impl Episode {
 
     /// Its start uniform in these ranges of positions, then of velocities.
     pub fn start_within<T: Float>(self, ranges: &[[f64; 2]]) -> Vec<T> {
-        uniform::start(self, ranges).collect()
+        let mut start = Vec::with_capacity(ranges.len());
+        uniform::start(self, ranges, InstructionSet::Baseline, |_, x| start.push(x));
+        start
     }
 
     /// Fails to compile if an episode has fewer than `draws` addresses.
@@ -116,7 +121,8 @@ pub(super) mod uniform {
     use libration_core::control::ControlError;
     use libration_core::random::Purpose;
 
-    use super::Episode;
+    use super::{Episode, InstructionSet};
+    use crate::ensemble::Loop;
 
     /// Returns an error unless every lower end is at most its upper one.
     pub(in crate::rl) fn check(
@@ -142,16 +148,47 @@ pub(super) mod uniform {
         from_fn(|i| episode.address(purpose, first + i).uniform()[0])
     }
 
-    /// A start of an episode: a number in each range.
+    /// Writes a start of an episode, a number in each range.
     pub(in crate::rl) fn start<T: Float>(
         episode: Episode,
         ranges: &[[f64; 2]],
-    ) -> impl Iterator<Item = T> {
-        ranges.iter().enumerate().map(move |(i, &[low, high])| match low == high {
-            // The sum makes -0 what the product of the other arm makes of it.
-            true => T::from_f64(low + 0.0),
-            false => at((low, high), episode.address(Purpose::Start, i).uniform()[0]),
-        })
+        instructions: InstructionSet,
+        mut to: impl FnMut(usize, T),
+    ) {
+        for (first, ranges) in ranges.chunks(TOGETHER).enumerate() {
+            let first = first * TOGETHER;
+            let shares: [f64; TOGETHER] = match ranges.iter().all(|[low, high]| low == high) {
+                true => [0.0; TOGETHER],
+                false => instructions.vectorize(Starts { episode, first }),
+            };
+            for (i, (&[low, high], share)) in ranges.iter().zip(shares).enumerate() {
+                // The sum makes -0 what the product of the other arm makes of it.
+                let fixed = || T::from_f64(low + 0.0);
+                to(first + i, if low == high { fixed() } else { at((low, high), share) });
+            }
+        }
+    }
+
+    /// Numbers of a start that are drawn together.
+    const TOGETHER: usize = 4;
+
+    /// Shares of the ranges of a start from one on.
+    struct Starts {
+        episode: Episode,
+        first: usize,
+    }
+
+    impl Loop for Starts {
+        type Output = [f64; TOGETHER];
+
+        #[inline(always)]
+        fn run(self) -> [f64; TOGETHER] {
+            let mut shares = [0.0; TOGETHER];
+            for (i, share) in shares.iter_mut().enumerate() {
+                *share = self.episode.address(Purpose::Start, self.first + i).uniform()[0];
+            }
+            shares
+        }
     }
 
     /// The number at this share of the range.

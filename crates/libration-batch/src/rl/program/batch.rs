@@ -1,6 +1,8 @@
 //! A batch of environments by programs.
 
+use core::iter::repeat_with;
 use core::ops::Range;
+use std::sync::Arc;
 
 use libration_core::Float;
 use libration_core::control::Clock;
@@ -24,8 +26,10 @@ use crate::rl::{EnvironmentError, StepBuffers};
 /// inputs and observations.
 #[derive(Debug)]
 pub struct ProgramEnvironments<T: Float> {
-    pub(super) definition: ProgramEnvironment,
+    pub(super) definition: Arc<ProgramEnvironment>,
     programs: Programs,
+    /// The rows of each thread so far.
+    works: Vec<BlockStep<T>>,
     pub(super) episodes: Episodes<T>,
     /// Positions, then velocities, of each block.
     pub(super) states: Vec<Row<T>>,
@@ -61,10 +65,11 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
         InsufficientMemory::check(numbers as u128 * size_of::<T>() as u128)?;
         let mut all = ProgramEnvironments {
             programs: Programs::new(&definition),
+            works: Vec::new(),
             states: vec![[T::zero(); LANES]; rows],
             numbers: vec![[T::zero(); LANES]; drawn],
             past: vec![T::zero(); blocks * history.len()],
-            definition,
+            definition: Arc::new(definition),
             episodes,
             history,
         };
@@ -89,6 +94,8 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
 
     /// Sets the execution. Results do not depend on it.
     pub fn execute(&mut self, execution: Execution) {
+        // They are of the instruction set before.
+        self.works.clear();
         self.episodes.execute(execution);
     }
 
@@ -183,9 +190,8 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
     ) -> EpisodeEnds<T> {
         let len = self.len();
         let steps = to.reward.nrows() as u64;
-        let ProgramEnvironments { definition, programs, episodes, states, numbers, history, past } =
-            self;
-        let definition = &*definition;
+        let ProgramEnvironments { definition, programs, works, episodes, .. } = self;
+        let ProgramEnvironments { states, numbers, history, past, .. } = self;
         let (coordinates, observations) = (definition.coordinates(), definition.observations());
         let drawn = definition.numbers().count();
         let Episodes { world, blocks, draws: [times, looks, acts], step, .. } = episodes;
@@ -223,12 +229,16 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
             });
         }
         let instructions = episodes.execution.instruction_set();
-        let beginning = Beginning { definition, world, history: *history };
+        let beginning = Beginning { definition, world, history: *history, instructions };
         let horizon = Horizon { beginning, policy, environments: len, step: *step, row };
-        let each = episodes.execution.each(shares, |share| {
-            let mut work = BlockStep::new(definition, programs, *history, instructions, share.len);
-            horizon.run(&mut work, share)
-        });
+        let missing = shares.len().saturating_sub(works.len());
+        let new = || {
+            let definition = Arc::clone(definition);
+            BlockStep::new(definition, programs, *history, instructions, len)
+        };
+        works.extend(repeat_with(new).take(missing));
+        let parts = shares.into_iter().zip(works.iter_mut()).collect();
+        let each = episodes.execution.each(parts, |(share, work)| horizon.run(work, share));
         *step = step.saturating_add(steps);
         EpisodeEnds::in_order(each, observations)
     }

@@ -68,7 +68,9 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
     fn put(&mut self, n: usize, state: impl Iterator<Item = T>) {
         let (b, l) = (n / LANES, n % LANES);
         let ProgramEnvironments { definition, episodes, history, states, past, .. } = self;
-        let beginning = Beginning { definition, world: &episodes.world, history: *history };
+        let instructions = episodes.execution.instruction_set();
+        let (world, history) = (&episodes.world, *history);
+        let beginning = Beginning { definition, world, history, instructions };
         let rows = definition.coordinates();
         let past = &mut past[b * history.len()..][..history.len()];
         beginning.place(&mut states[b * rows..][..rows], past, l, state);
@@ -78,7 +80,9 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
     pub(super) fn draw_numbers(&mut self, n: usize) {
         let (b, l) = (n / LANES, n % LANES);
         let ProgramEnvironments { definition, episodes, history, numbers, .. } = self;
-        let beginning = Beginning { definition, world: &episodes.world, history: *history };
+        let instructions = episodes.execution.instruction_set();
+        let (world, history) = (&episodes.world, *history);
+        let beginning = Beginning { definition, world, history, instructions };
         let count = definition.numbers().count();
         let episode = episodes.blocks[b].episode(l);
         beginning.draw(&mut numbers[b * count..][..count], [n, l], episode);

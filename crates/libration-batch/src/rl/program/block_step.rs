@@ -1,5 +1,7 @@
 //! The parts of a step of a block.
 
+use std::sync::Arc;
+
 use libration_core::control::clock::Noise;
 use libration_core::random::{Purpose, Streams};
 
@@ -8,18 +10,20 @@ use super::block_state::{BlockState, Row, row_of, set_times};
 use super::command_limits::CommandLimits;
 use super::environment::World;
 use super::row_program::ProgramRows;
+use super::settlement::Settlement;
 use super::state::Programs;
 use crate::ensemble::{BatchFloat, InstructionSet};
-use crate::rl::block::LOST;
 use crate::rl::block_size::LANES;
 use crate::rl::deviation::scale_deviation;
 use crate::rl::episode_streams::begin_epochs;
 use crate::rl::history::History;
 use crate::rl::{ProgramEnvironment, StepIndex};
 
-/// What all blocks and steps of a thread share, with the rows that a step fills.
-pub(super) struct BlockStep<'s, T> {
-    pub(super) definition: &'s ProgramEnvironment,
+/// What all blocks and steps of a thread share, with the rows that a step fills. It is kept from call to call: to allocate the rows
+/// takes as long as a step of few environments.
+#[derive(Debug)]
+pub(super) struct BlockStep<T> {
+    pub(super) definition: Arc<ProgramEnvironment>,
     pub(super) history: History,
     pub(super) world: World,
     pub(super) instructions: InstructionSet,
@@ -30,11 +34,11 @@ pub(super) struct BlockStep<'s, T> {
     limits: CommandLimits<T>,
     /// Whether observation and verdict depend on time.
     is_timed: [bool; 2],
-    pub(super) step: ProgramRows<'s, T>,
-    pub(super) projection: Option<ProgramRows<'s, T>>,
-    pub(super) inner: Option<ProgramRows<'s, T>>,
-    observation: ProgramRows<'s, T>,
-    verdict: ProgramRows<'s, T>,
+    pub(super) step: ProgramRows<T>,
+    pub(super) projection: Option<ProgramRows<T>>,
+    pub(super) inner: Option<ProgramRows<T>>,
+    observation: ProgramRows<T>,
+    verdict: ProgramRows<T>,
     pub(super) seen: Vec<Row<T>>,
     /// The observations after a step with which an episode ended.
     pub(super) last: Vec<Row<T>>,
@@ -61,10 +65,10 @@ pub(super) struct BlockStep<'s, T> {
     judged: [Row<T>; 2],
 }
 
-impl<'s, T: BatchFloat> BlockStep<'s, T> {
+impl<T: BatchFloat> BlockStep<T> {
     pub(super) fn new(
-        definition: &'s ProgramEnvironment,
-        programs: &'s Programs,
+        definition: Arc<ProgramEnvironment>,
+        programs: &Programs,
         history: History,
         instructions: InstructionSet,
         environments: usize,
@@ -76,13 +80,12 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
         let (actions, coordinates) = (definition.actions(), definition.coordinates());
         let projection = programs.projection.as_ref();
         BlockStep {
-            definition,
             history,
             world: definition.world(),
             instructions,
             dt,
             span: definition.period(),
-            limits: CommandLimits::new(definition),
+            limits: CommandLimits::new(&definition),
             is_timed: programs.is_timed(),
             step: programs.step.rows(lanes, dt),
             projection: projection.map(|program| program.rows(lanes, dt)),
@@ -108,6 +111,7 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
             ages: [0; LANES],
             times: zeros,
             judged: [zeros; 2],
+            definition,
         }
     }
 
@@ -185,7 +189,7 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
     ) -> bool {
         let substeps = self.substeps();
         let drawn = &block.numbers[self.definition.parameters.len()..];
-        self.limits.apply(&self.actions, drawn, &mut self.commands);
+        self.limits.apply(&self.actions, drawn, &mut self.commands, self.instructions);
         self.other.copy_from_slice(block.states);
         if self.history.delays_actions() {
             self.history.act(block.past, now, &self.commands);
@@ -216,10 +220,13 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
             }
         }
         self.judge(now, block);
-        self.settle(block.states);
-        for (paid, &reward) in block.episodes.paid.iter_mut().zip(&self.rewards) {
-            *paid = *paid + reward;
-        }
+        self.instructions.vectorize(Settlement {
+            judged: &self.judged,
+            finite: [block.states, &self.actions],
+            rewards: &mut self.rewards,
+            paid: &mut block.episodes.paid,
+            overs: &mut self.overs,
+        });
         self.overs[..count].iter().fold(0, |all, over| all | over) != 0
     }
 
@@ -232,20 +239,5 @@ impl<'s, T: BatchFloat> BlockStep<'s, T> {
         let rows = [&self.other[..], &self.commands, parameters, &*block.states];
         let input = |i: usize| row_of(rows, i).unwrap_or(&self.times);
         self.verdict.run(input, &mut self.judged, self.instructions);
-    }
-
-    /// Sets rewards and flags. A step that is not finite is [`LOST`] and has reward 0: a number that is not finite times zero is not
-    /// zero.
-    fn settle(&mut self, states: &[Row<T>]) {
-        let [rewards, overs] = &self.judged;
-        let mut none = rewards.map(|reward| reward * T::zero());
-        for row in states.iter().chain(&self.actions) {
-            none.iter_mut().zip(row).for_each(|(none, &x)| *none = *none + x * T::zero());
-        }
-        for l in 0..LANES {
-            let lost = none[l] != T::zero();
-            self.overs[l] = u8::from(overs[l] > T::zero()) | (u8::from(lost) * LOST);
-            self.rewards[l] = if lost { T::zero() } else { rewards[l] };
-        }
     }
 }

@@ -14,7 +14,7 @@ use crate::rl::block_size::LANES;
 use crate::rl::deviation::scale_deviation;
 use crate::rl::episode_streams::begin_epochs;
 
-impl<T: BatchFloat> BlockStep<'_, T> {
+impl<T: BatchFloat> BlockStep<T> {
     /// Stores the latencies of the actions of a step whose answers take times of their own.
     pub(super) fn store_latencies(&self, now: u64, block: &mut BlockState<'_, T>) {
         let Some(answers) = self.definition.answers.filter(|answers| answers.waits == 0) else {

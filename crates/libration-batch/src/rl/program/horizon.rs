@@ -50,7 +50,7 @@ struct Site<'w> {
 }
 
 impl<T: BatchFloat> Horizon<'_, T> {
-    pub(super) fn run(&self, work: &mut BlockStep<'_, T>, share: Share<'_, T>) -> EpisodeEnds<T> {
+    pub(super) fn run(&self, work: &mut BlockStep<T>, share: Share<'_, T>) -> EpisodeEnds<T> {
         let Share { first, len, blocks, states, numbers, past, .. } = share;
         let Share { words: [times, looks, acts], mut to, next, .. } = share;
         let numbers_len = work.definition.numbers().count();
@@ -97,7 +97,7 @@ impl<T: BatchFloat> Horizon<'_, T> {
     /// Takes an action with a block. Returns the flags of truncation.
     fn step_block(
         &self,
-        work: &mut BlockStep<'_, T>,
+        work: &mut BlockStep<T>,
         site: &mut Site<'_>,
         block: &mut BlockState<'_, T>,
         is_observed: bool,
@@ -124,7 +124,7 @@ impl<T: BatchFloat> Horizon<'_, T> {
         let mut ended = work.advance(now, site.count, block, times);
         let mut cuts = [0; LANES];
         if let Some(last) = limit.map(|limit| u64::from(limit) - 1)
-            && (ended || stood.is_some() || now - block.episodes.oldest >= last)
+            && now - block.episodes.oldest >= last
         {
             for (cut, began) in cuts.iter_mut().zip(&block.episodes.began).take(site.count) {
                 *cut = u8::from(now - began >= last);
@@ -142,15 +142,15 @@ impl<T: BatchFloat> Horizon<'_, T> {
     }
 
     /// Whether a step draws random words.
-    fn draws(&self, work: &BlockStep<'_, T>) -> bool {
-        let definition = work.definition;
+    fn draws(&self, work: &BlockStep<T>) -> bool {
+        let definition = &work.definition;
         definition.is_jittered() || definition.is_noisy() || self.policy.words() > 0
     }
 
     /// Records the ends of episodes, and begins the next ones.
     fn end(
         &self,
-        work: &mut BlockStep<'_, T>,
+        work: &mut BlockStep<T>,
         site: &mut Site<'_>,
         block: &mut BlockState<'_, T>,
         stood: Option<&Stood<T>>,
@@ -160,19 +160,26 @@ impl<T: BatchFloat> Horizon<'_, T> {
         let StepIndex { environment, step, row, .. } = site.place;
         let substeps = u64::from(work.definition.substeps);
         let autoreset = work.definition.autoreset;
-        // Those that go on will see the same again.
-        core::mem::swap(&mut work.seen, &mut work.last);
-        if work.definition.is_noisy() {
-            work.observe(step + 1, block, &mut site.words[1].clone());
-        } else {
-            work.observe(step + 1, block, site.words[1]);
+        let stood_ended = stood.map_or([0; LANES], |stood| stood.ended);
+        // What stands ends no episode.
+        let ends_now = |l: usize| if stood_ended[l] == 0 { work.overs[l] | cuts[l] } else { 0 };
+        let ending: [u8; LANES] = core::array::from_fn(ends_now);
+        if ending != [0; LANES] {
+            // Those that continue will see the same again.
+            core::mem::swap(&mut work.seen, &mut work.last);
+            if work.definition.is_noisy() {
+                work.observe(step + 1, block, &mut site.words[1].clone());
+            } else {
+                work.observe(step + 1, block, site.words[1]);
+            }
+            core::mem::swap(&mut work.seen, &mut work.last);
         }
-        core::mem::swap(&mut work.seen, &mut work.last);
         for l in site.count..LANES {
             // Lanes that are no environments are never at an end.
             block.episodes.rest(l, step + 1);
         }
-        for l in 0..site.count {
+        let touched = core::array::from_fn(|l| ending[l] | stood_ended[l]);
+        for l in marked(&touched).take_while(|&l| l < site.count) {
             let next = block.episodes.next(l);
             if let Some(stood) = stood.filter(|stood| stood.ended[l] != 0) {
                 let flags = if stood.held.is_some() { stood.ended[l] } else { 0 };
@@ -224,4 +231,18 @@ struct Stood<T: Float> {
     words: Option<[Streams<LANES>; 3]>,
     /// Episodes and states, where they stay as they were.
     held: Option<(EpisodeBlock<T>, Vec<Row<T>>)>,
+}
+
+/// The lanes whose mark is not zero.
+fn marked(marks: &[u8; LANES]) -> impl Iterator<Item = usize> + use<> {
+    let (words, _) = marks.as_chunks();
+    let words: [u64; LANES / 8] = core::array::from_fn(|i| u64::from_le_bytes(words[i]));
+    words.into_iter().enumerate().flat_map(|(i, mut word)| {
+        core::iter::from_fn(move || {
+            let byte = word.trailing_zeros() / 8;
+            let found = (word != 0).then_some(8 * i + byte as usize)?;
+            word &= !(0xFF << (8 * byte));
+            Some(found)
+        })
+    })
 }

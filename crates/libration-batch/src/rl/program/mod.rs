@@ -19,6 +19,7 @@ mod horizon;
 mod policy;
 mod rollout;
 mod row_program;
+mod settlement;
 mod state;
 mod transitions;
 

@@ -108,6 +108,11 @@ impl<T: Float + Elementary> ProgramPolicy<'_, T> {
                 let first = (place.row * place.environments + place.environment) * actions.len();
                 let rest = &all[first.min(all.len())..];
                 let width = actions.len();
+                if let [row] = &mut *actions {
+                    let count = rest.len().min(LANES);
+                    row[..count].copy_from_slice(&rest[..count]);
+                    return;
+                }
                 // Lanes beyond the last environment find nothing.
                 for (i, row) in actions.iter_mut().enumerate() {
                     let numbers = rest.iter().skip(i).step_by(width);

@@ -61,6 +61,9 @@ impl<T: Copy> EpisodeEnds<T> {
         let (ends, observations): (Vec<_>, Vec<_>) =
             threads.into_iter().map(|ends| (ends.ends, ends.observations)).unzip();
         let (ends, observations) = (ends.concat(), observations.concat());
+        if ends.is_sorted_by_key(|end| (end.step, end.environment)) {
+            return EpisodeEnds { ends, observations };
+        }
         let mut order: Vec<usize> = (0..ends.len()).collect();
         order.sort_unstable_by_key(|&k| (ends[k].step, ends[k].environment));
         EpisodeEnds {

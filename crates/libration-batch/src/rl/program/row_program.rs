@@ -1,6 +1,7 @@
 //! Programs on rows of blocks of environments.
 
 use core::ops::Range;
+use std::sync::Arc;
 
 use libration_equations::Program;
 
@@ -9,11 +10,11 @@ use crate::machine::{Block, BlockProgram, MachineFloat};
 use crate::rl::block_size::LANES;
 
 /// A program for the block machine, with the rows of its inputs and outputs.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct RowProgram {
-    program: BlockProgram,
+    program: Arc<BlockProgram>,
     /// The inputs that differ between lanes, each in its row.
-    rows: Vec<usize>,
+    rows: Arc<[usize]>,
     first_output: usize,
     inputs: usize,
 }
@@ -30,7 +31,7 @@ impl RowProgram {
         let targets: Vec<usize> = (first_output..end).collect();
         let row_of = |input: usize| rows.iter().position(|&known| known == input);
         let program = BlockProgram::new(program, row_of, &targets, end);
-        RowProgram { program, rows, first_output, inputs }
+        RowProgram { program: Arc::new(program), rows: rows.into(), first_output, inputs }
     }
 
     /// See [`BlockProgram::shortest_steps`].
@@ -39,9 +40,10 @@ impl RowProgram {
     }
 
     /// The rows for `lanes` lanes of a block, with this value of the uniform input.
-    pub(super) fn rows<T: MachineFloat>(&self, lanes: usize, uniform: T) -> ProgramRows<'_, T> {
+    pub(super) fn rows<T: MachineFloat>(&self, lanes: usize, uniform: T) -> ProgramRows<T> {
         let inputs = vec![uniform; self.inputs];
-        ProgramRows { program: self, block: Block::new(&self.program, lanes, &inputs), lanes }
+        let block = Block::new(Arc::clone(&self.program), lanes, &inputs);
+        ProgramRows { program: self.clone(), block, lanes }
     }
 }
 
@@ -54,13 +56,13 @@ impl RowProgram {
 
 /// Rows that a program runs on.
 #[derive(Debug)]
-pub(super) struct ProgramRows<'p, T> {
-    program: &'p RowProgram,
-    block: Block<'p, T>,
+pub(super) struct ProgramRows<T> {
+    program: RowProgram,
+    block: Block<Arc<BlockProgram>, T>,
     lanes: usize,
 }
 
-impl<T: MachineFloat> ProgramRows<'_, T> {
+impl<T: MachineFloat> ProgramRows<T> {
     /// See [`RowProgram::reads_last`].
     pub(super) fn reads_last(&self) -> bool {
         self.program.reads_last()

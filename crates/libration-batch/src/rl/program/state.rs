@@ -7,6 +7,7 @@ use super::ProgramEnvironment;
 use super::block_state::{BlockState, Row};
 use super::environment::World;
 use super::row_program::RowProgram;
+use crate::ensemble::InstructionSet;
 use crate::rl::history::History;
 use crate::rl::start::uniform;
 use crate::rl::{Delays, Episode, block};
@@ -61,6 +62,7 @@ pub(super) struct Beginning<'a> {
     pub(super) definition: &'a ProgramEnvironment,
     pub(super) world: &'a World,
     pub(super) history: History,
+    pub(super) instructions: InstructionSet,
 }
 
 impl Beginning<'_> {
@@ -74,8 +76,9 @@ impl Beginning<'_> {
     ) {
         block::begin(block.episodes, no_history(), &mut [], self.world, l, episode, now);
         self.draw(block.numbers, [n, l], episode);
-        let start = uniform::start(episode, &self.definition.start);
-        self.place(block.states, block.past, l, start);
+        let ranges = &self.definition.start;
+        uniform::start(episode, ranges, self.instructions, |i, x| block.states[i][l] = x);
+        self.history.begin(block.past, l, block.states.iter().map(|row| row[l]));
     }
 
     /// Draws the numbers of an episode of environment `n` in lane `l` of its block.

@@ -53,7 +53,7 @@ impl<'a, T: Float> Transitions<'a, T> {
         t: usize,
         first: usize,
         count: usize,
-        work: &BlockStep<'_, T>,
+        work: &BlockStep<T>,
         cuts: &[u8; LANES],
     ) {
         fn row<X: Copy>(to: &mut ArrayViewMut2<'_, X>, [t, first, count]: [usize; 3], from: &[X]) {
@@ -99,11 +99,25 @@ impl<'a, T: Float> Transitions<'a, T> {
 
 /// Writes the numbers of each lane side by side, for as many lanes as there is room.
 pub(super) fn interleave<X: Copy>(rows: &[Row<X>], records: &mut [X]) {
-    match rows {
-        [row] => records.copy_from_slice(&row[..records.len()]),
-        rows => {
+    /// With a number of rows that the compiler knows.
+    fn known<X: Copy, const N: usize>(rows: &[Row<X>], records: &mut [X]) {
+        let (Ok(rows), (records, _)) =
+            (<&[Row<X>; N]>::try_from(rows), records.as_chunks_mut::<N>())
+        else {
+            return;
+        };
+        for (l, record) in records.iter_mut().enumerate().take(LANES) {
+            *record = core::array::from_fn(|i| rows[i][l]);
+        }
+    }
+    match rows.len() {
+        1 => records.copy_from_slice(&rows[0][..records.len()]),
+        2 => known::<X, 2>(rows, records),
+        3 => known::<X, 3>(rows, records),
+        4 => known::<X, 4>(rows, records),
+        count => {
             for (i, row) in rows.iter().enumerate() {
-                let numbers = records.iter_mut().skip(i).step_by(rows.len());
+                let numbers = records.iter_mut().skip(i).step_by(count);
                 numbers.zip(row).for_each(|(number, &x)| *number = x);
             }
         }
