@@ -6,9 +6,13 @@ use libration::number::{Dual, Wide};
 use libration::{Elementary, Scalar};
 use libration_settings::equations::EquationSystem;
 
-/// The powers of two by which the time step is multiplied to find the order. The next term of the error is about 2⁻¹⁰ of the first; in
-/// steps that were much smaller, the rounding of weights of a method to `f64` would be its largest error.
-const SMALL: [i64; 2] = [-10, -11];
+/// The powers of two by which the time step is multiplied to find the order, and by one more. The next term of the error is about 2⁻¹⁰
+/// of the first, unless the first is small, as under weak friction beside stiff springs: then steps are smaller. In steps that are much
+/// smaller than the first, the rounding of weights of a method to `f64` is its largest error.
+const SMALL: [i64; 3] = [-10, -15, -20];
+
+/// The largest distance of a power from a whole number at which the next term of the error is no part of it.
+const WHOLE: f64 = 0.02;
 
 /// Distances of the places at which the order is computed from the start. At the nearer one, functions are defined where they are at
 /// the start.
@@ -62,22 +66,33 @@ fn order_at(
             run.run(&all).collect()
         })
     };
-    let mut changes = Vec::new();
-    let [larger, smaller] = SMALL.map(|power| -> Vec<Wide> {
-        let (one, two) = (after(&state, power, 1), after(&state, power - 1, 2));
-        changes = one.iter().zip(&state).map(|(&one, &start)| one - start).collect();
-        one.iter().zip(&two).map(|(&one, &two)| one - two).collect()
-    });
-    let orders = places.iter().filter_map(|&place| {
-        let [larger, smaller] = [larger[place], smaller[place]];
-        // Errors below 2⁻⁹⁰⁰ are rounding: the step has no other.
-        let is_error = larger.exponent().is_some_and(|exponent| exponent > -900);
-        let part = || (smaller * changes[place].recip()).abs().to_f64();
-        let is_error = is_error && (least_part == 0.0 || part() >= least_part);
-        let ratio = (larger * smaller.recip()).abs().to_f64();
-        (is_error && ratio.is_finite()).then(|| ratio.log2().round() - 1.0)
-    });
-    let least = orders.reduce(f64::min)?;
+    let mut powers = Vec::new();
+    for power in SMALL {
+        let mut changes = Vec::new();
+        let [larger, smaller] = [power, power - 1].map(|power| -> Vec<Wide> {
+            let (one, two) = (after(&state, power, 1), after(&state, power - 1, 2));
+            changes = one.iter().zip(&state).map(|(&one, &start)| one - start).collect();
+            one.iter().zip(&two).map(|(&one, &two)| one - two).collect()
+        });
+        let ratio_of = |&place: &usize| {
+            let [larger, smaller] = [larger[place], smaller[place]];
+            // Errors below 2⁻⁹⁰⁰ are rounding: the step has no other.
+            let is_error = larger.exponent().is_some_and(|exponent| exponent > -900);
+            let part = || (smaller * changes[place].recip()).abs().to_f64();
+            let is_error = is_error && (least_part == 0.0 || part() >= least_part);
+            let ratio = (larger * smaller.recip()).to_f64();
+            (is_error && ratio.is_finite()).then_some(ratio)
+        };
+        let ratios: Vec<f64> = places.iter().filter_map(ratio_of).collect();
+        powers = ratios.iter().map(|ratio| ratio.abs().log2()).collect();
+        // An error that changes its sign has no power.
+        let is_power =
+            |ratio: &f64| *ratio > 0.0 && (ratio.log2() - ratio.log2().round()).abs() < WHOLE;
+        if ratios.iter().all(is_power) {
+            break;
+        }
+    }
+    let least = powers.iter().map(|power| power.round() - 1.0).reduce(f64::min)?;
     // Without an order, halved steps promise nothing.
     (least >= 1.0).then_some(least as u32)
 }

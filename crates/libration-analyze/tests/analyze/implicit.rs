@@ -1,7 +1,7 @@
 //! Tests of analyses and trajectories with implicit integrators.
 
 use libration::ensemble::dynamics_of;
-use libration::equations::StepProgram;
+use libration::equations::{Definitions, Equations, StepProgram};
 use libration::{AnySystem, ImplicitMethod, Method};
 use libration_analyze::equation_analysis::step_order;
 use libration_analyze::export::Values;
@@ -163,5 +163,29 @@ fn orders_derived_with_1024_bits_are_those_of_the_methods() {
         // Small steps, in which the rounding of a root to 53 bits would be the largest error.
         let order = step_order(&step, &[0.3, -0.2, 0.3, 0.15], &[0, 1, 2, 3], 0.05);
         assert_eq!(order, Some(method.order()), "{method:?}");
+    }
+}
+
+#[test]
+fn weak_friction_beside_a_stiff_spring_leaves_each_step_its_order() {
+    // Drag of 0.05/s beside a rope of 400/s²: in some of these steps the second term of the error is as large as the first.
+    let pull = "400*(1 - 5/sqrt(x^2 + z^2))";
+    let system = Definitions {
+        coordinates: vec!["x".into(), "z".into()],
+        accelerations: vec![
+            ("x".into(), format!("-x*{pull} - 0.05*x'")),
+            ("z".into(), format!("-z*{pull} - 9.81")),
+        ],
+        ..Definitions::default()
+    };
+    let equations = Equations::new(&system).unwrap();
+    for (method, order) in
+        [(Method::Rk4, 4), (Method::VelocityVerlet, 1), (Method::ExplicitEuler, 1)]
+    {
+        let step = StepProgram::new(method, equations.dynamics());
+        for dt in [0.005, 0.05, 0.078_125, 0.156_25, 0.3] {
+            let found = step_order(&step, &[2.0, -4.7, 0.0, 0.0], &[0, 1, 2, 3], dt);
+            assert_eq!(found, Some(order), "{method:?} {dt}");
+        }
     }
 }
