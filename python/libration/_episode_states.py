@@ -102,6 +102,8 @@ def episode_numbers(settings: Mapping[str, Any], inputs: Sequence[str], drawn: N
             found[name] = drawn[:, len(names) + 2 + i] * drawn.dtype.type(std)
     if subject.get("answers") is not None:
         found["inference"] = drawn[:, len(names) + 4].copy()
+    if settings["skew"][1] > 0:
+        found["skew"] = drawn[:, -1] - drawn.dtype.type(1)
     return found
 
 

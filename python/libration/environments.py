@@ -356,7 +356,8 @@ class Environments(_native.Batch):
         """Numbers of the current episodes that differ between episodes or environments, by name, ``(num_envs,)`` each.
 
         These are parameters, ``max_action`` (with several inputs ``max_action_u``), ``action_delay`` and ``observation_delay`` in s, the
-        standard deviations ``jitter`` and ``observation_noise``, and ``inference``, the time in s of the answer to the present observation.
+        standard deviations ``jitter`` and ``observation_noise``, ``skew``, the relative error of the rate of the clock, and ``inference``, the
+        time in s of the answer to the present observation.
         """
         return episode_numbers(self._settings, self.preset.actions, self._episode_numbers())
 

@@ -220,12 +220,16 @@ def test_times_of_answers_depend_on_the_episode_alone(mode):
     assert not np.array_equal(episodes[0][5], episodes[1][5])
 
 
-def test_presets_take_inference_too():
-    batch = Environments("Pendulum", 3, inference=("lognormal", 0.08, 0.03))
-    plain = Environments("Pendulum", 3, substeps=batch.substeps)
-    batch.reset(seed=0), plain.reset(seed=0)
-    ones = np.ones((3, 1), np.float32)
-    assert not np.array_equal(batch.step(ones)[0], plain.step(ones)[0])
+def test_the_answers_of_presets_without_spread_are_a_latency():
+    keywords = {"substeps": 4, "dtype": "float64"}
+    batch = Environments("Pendulum", 3, inference=LogNormal(0.05, 0.0), **keywords)
+    late = Environments("Pendulum", 3, action_delay=0.05, **keywords)
+    plain = Environments("Pendulum", 3, **keywords)
+    for envs in (batch, late, plain):
+        envs.reset(seed=0)
+    actions = np.random.default_rng(1).uniform(-1, 1, (30, 3, 1))
+    seen, delayed, undelayed = ([envs.step(action)[0] for action in actions] for envs in (batch, late, plain))
+    assert np.array_equal(seen, delayed) and not np.array_equal(seen, undelayed)
 
 
 def test_the_mean_of_answers_has_eight_steps_of_the_integrator_unless_that_takes_more_than_twenty():

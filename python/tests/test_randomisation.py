@@ -71,6 +71,18 @@ def test_each_episode_draws_its_parameters_in_their_ranges():
     assert np.array_equal(told["omega2"], envs.parameters["omega2"])
 
 
+def test_the_skew_of_an_episode_is_the_error_of_its_step():
+    envs = Environments("Oscillator", 200, skew=0.1, omega2=0.0, integrator="explicit-euler", dt=0.02, parameter_infos=True, dtype="float64")
+    envs.reset(seed=3, options={"state": [0.0, 1.0]})
+    skews = envs.parameters["skew"]
+    infos = envs.step(np.zeros((200, 1)))[4]
+    # A free particle of speed 1: its position is the length of the step.
+    assert np.allclose(envs.states[:, 0] / 0.02 - 1, skews, rtol=0, atol=1e-15)
+    assert np.array_equal(infos["parameters"]["skew"], skews)
+    # Four standard errors of the standard deviation of 200 normal numbers, σ/√(2·200).
+    assert abs(skews.std() - 0.1) < 4 * 0.1 / 20
+
+
 def test_parameters_depend_on_the_seed_alone():
     given = {"omega2": Uniform(10, 20), "max_action": Uniform(1, 2)}
     many, few = Environments("Pendulum", 40, threads=2, **given), Environments("Pendulum", 3, **given)

@@ -236,11 +236,12 @@ impl Batch {
     }
 
     /// Returns what is drawn of each episode, `(num_envs, n)`: parameters that vary, largest commands unless all are constants, latencies of
-    /// observations and actions in steps of the integrator, and error scales of clock and sensor.
+    /// observations and actions in steps of the integrator, error scales of clock and sensor, times of answers if they are drawn, and rates of
+    /// clocks.
     fn _episode_numbers<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let mut guard = slf.get().inner.lock(slf.py())?;
-        let Inner { batch, .. } = open(slf, &mut guard)?;
-        with_batch!(batch, environments => episode_numbers(slf.py(), &**environments))
+        let Inner { batch, episodes, .. } = open(slf, &mut guard)?;
+        with_batch!(batch, environments => episode_numbers(slf.py(), &**environments, episodes.skew))
     }
 
     /// Returns the state, for environments with the same settings.

@@ -1,5 +1,6 @@
 //! States and numbers of episodes as arrays.
 
+use libration::control::Jitter;
 use libration::rl::EnvironmentError;
 use libration_env::environments::AnyEnvironments;
 use pyo3::prelude::*;
@@ -36,13 +37,18 @@ pub(crate) fn put_states<T: Number>(
     Ok(())
 }
 
-/// What is drawn of each episode.
+/// What is drawn of each episode; at last the rate of its clock under this skew.
 pub(crate) fn episode_numbers<'py, T: Number>(
     py: Python<'py>,
     environments: &dyn AnyEnvironments<T>,
+    skew: Jitter,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let rows: Vec<Vec<T>> =
-        (0..environments.len()).filter_map(|n| environments.episode_numbers(n)).collect();
+    let row = |n| {
+        let mut row = environments.episode_numbers(n)?;
+        row.push(environments.episode(n)?.clock_rate(skew));
+        Some(row)
+    };
+    let rows: Vec<Vec<T>> = (0..environments.len()).filter_map(row).collect();
     let width = rows.first().map_or(0, Vec::len);
     let all: Bound<'py, Array<T, 2>> = allocate(py, [rows.len(), width])?;
     let to = view_mut(&all).iter_mut();

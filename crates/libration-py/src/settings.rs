@@ -1,5 +1,6 @@
 //! Settings of environments from Python.
 
+use libration::control::Jitter;
 use libration::ensemble::Execution;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{
@@ -112,6 +113,11 @@ impl Settings {
         }
     }
 
+    /// The law of the rates of clocks.
+    pub(crate) fn skew(&self) -> PyResult<Jitter> {
+        law("skew", &self.skew.0, self.skew.1)
+    }
+
     pub(crate) fn autoreset(&self) -> PyResult<Autoreset> {
         match self.autoreset.as_str() {
             "NextStep" => Ok(Autoreset::NextStep),
@@ -182,7 +188,7 @@ impl Settings {
             saturation: *saturation,
             noise: Noise {
                 jitter: law("jitter", &self.jitter.0, self.jitter.1)?,
-                skew: law("skew", &self.skew.0, self.skew.1)?,
+                skew: self.skew()?,
                 observation: law("observation_noise", &noise.0, noise.1)?,
             },
         })
@@ -222,7 +228,7 @@ impl Settings {
                 .map(|(_, number)| episode_number(number))
                 .collect::<PyResult<_>>()?,
             error_scale: ErrorScale { clock, sensor },
-            skew: law("skew", &self.skew.0, self.skew.1)?,
+            skew: self.skew()?,
             jitter: law("jitter", &self.jitter.0, self.jitter.1)?,
             noise: noise.collect::<PyResult<_>>()?,
             ..ProgramEnvironment::new(

@@ -3,6 +3,7 @@
 use std::iter::repeat_with;
 use std::sync::Arc;
 
+use libration::control::Jitter;
 use libration::rl::{Autoreset, EpisodeEnds, ProgramPolicy, StepBuffers};
 use libration_env::environments::AnyEnvironments;
 use pyo3::prelude::*;
@@ -38,6 +39,8 @@ pub(crate) struct EpisodeStates {
     rounding: Rounding,
     /// Whether the infos of steps have the numbers of episodes.
     pub(crate) tells: bool,
+    /// The law of the rates of clocks.
+    pub(crate) skew: Jitter,
 }
 
 /// Arrays that a step fills: what is seen, paid, over and cut off.
@@ -77,6 +80,7 @@ impl EpisodeStates {
             levels: settings.levels.as_slice().into(),
             rounding: Rounding::new(rounds),
             tells: settings.parameter_infos,
+            skew: settings.skew()?,
         })
     }
 

@@ -2,8 +2,9 @@
 
 use core::array::from_fn;
 
-use libration_core::control::ControlError;
+use libration_core::control::clock::{Jittered, Skewed};
 use libration_core::control::error::ensure_finite;
+use libration_core::control::{Clock, ControlError, Jitter, StartAddress};
 use libration_core::random::{Address, Purpose};
 use libration_core::{Float, State};
 
@@ -41,6 +42,14 @@ impl Episode {
         let Episode { seed, environment: trajectory, number } = self;
         let step = number.wrapping_mul(EPISODE_STRIDE).wrapping_add(epoch);
         Address { seed, trajectory, step, purpose }
+    }
+
+    /// The length of its steps in units of the nominal one under a clock with this skew and without jitter, as clocks
+    /// `(Skewed, Jittered)` draw it.
+    pub fn clock_rate<T: Float>(self, skew: Jitter) -> T {
+        let begin = StartAddress::new(self.seed, self.environment, self.number);
+        let ([rate], _) = (Skewed(skew), Jittered(Jitter::Gaussian(0.0))).start(begin);
+        rate
     }
 
     /// Its start uniform in these ranges of positions, then of velocities.
