@@ -9,6 +9,7 @@ All on one thread. Each takes its turn, several times over; ratios are medians o
 """
 
 import argparse
+import itertools
 import json
 import pathlib
 import statistics
@@ -64,6 +65,19 @@ def steps(env, actions):
     return lambda: step(actions)
 
 
+def episodes(env, actions):
+    """A step of a single environment, which is reset where an episode ends."""
+    env.reset(seed=0)
+    turn = itertools.cycle(actions.tolist())
+
+    def step():
+        _, _, terminated, truncated, _ = env.step(next(turn))
+        if terminated or truncated:
+            env.reset()
+
+    return step
+
+
 def rows():
     """What is measured: a sentence, what is to be reached and whether that is a lower or an upper end, ratios and medians."""
     zeros = np.zeros((MANY, 1), np.float32)
@@ -103,6 +117,13 @@ def rows():
         pool = envpool.make_gymnasium("Pendulum-v1", num_envs=MANY, num_threads=1, seed=0)
         pool.reset()
         yield f"step of {MANY} over EnvPool", 100, *compared(steps(env, zeros), lambda: pool.step(zeros))
+    choices = np.random.default_rng(0).integers(0, 2, MANY)
+    env = gymnasium.make_vec("libration/CartPole-v1", MANY)
+    theirs = gymnasium.make_vec("CartPole-v1", MANY, vectorization_mode="vector_entry_point")
+    yield f"CartPole: step of {MANY} over Gymnasium's CartPoleVectorEnv", 1.5, *compared(steps(env, choices), steps(theirs, choices))
+    ours, theirs = (gymnasium.make(name).unwrapped for name in ("libration/CartPole-v1", "CartPole-v1"))
+    yield "CartPole: step of one over Gymnasium's CartPoleEnv", 2.2, *compared(episodes(ours, choices), episodes(theirs, choices))
+
     one, zero = gymnasium.make_vec("libration/PendulumSwingUp-v0", 1), np.zeros((1, 1), np.float32)
     step, count = steps(one, zero), 20_000
     rounds = [
