@@ -39,6 +39,13 @@ pub struct EquationMotion {
     pub diverged_at_step: Option<u64>,
 }
 
+impl EquationMotion {
+    /// Whether a measured reduction is that of small steps: at least half of the predicted one.
+    pub fn is_resolved(&self, reduction: Option<f64>) -> bool {
+        reduction.is_none_or(|x| self.predicted_reduction.is_none_or(|least| x > least / 2.0))
+    }
+}
+
 /// The error of a state, estimated by halved steps.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StateError {

@@ -116,6 +116,9 @@ pub(crate) struct AdviseArgs {
     /// Print the result as JSON, with all digits
     #[arg(long)]
     pub(crate) json: bool,
+    /// Print the whole text: every limit with its command, all integrators, margins and deviations
+    #[arg(long, short)]
+    pub(crate) verbose: bool,
     /// Print a request file with comments, and exit
     #[arg(long, conflicts_with_all = ["config", "page", "json", "jitter_file"], conflicts_with_all = REQUEST_OPTIONS)]
     pub(crate) print_config: bool,

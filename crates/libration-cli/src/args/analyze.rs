@@ -113,6 +113,9 @@ pub(crate) struct AnalyzeArgs {
     /// Print the result as JSON, with all digits
     #[arg(long)]
     pub(crate) json: bool,
+    /// Print the whole text: matrices, all modes and integrators, with more digits
+    #[arg(long, short)]
+    pub(crate) verbose: bool,
 }
 
 const USAGE: &str = "\

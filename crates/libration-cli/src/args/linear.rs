@@ -42,6 +42,13 @@ pub(crate) struct LinearArgs {
 const NOT_LINEAR: [&str; 9] =
     ["system", "force", "set", "q", "v", "feedback", "cost_weights", "deviation", "horizon"];
 
+impl LinearArgs {
+    /// Whether a controller is designed from weights of the options.
+    pub(crate) fn has_weights(&self) -> bool {
+        self.lqr.is_some()
+    }
+}
+
 /// The value of `--gain`.
 #[derive(Clone, Debug)]
 pub(super) struct Gain(pub(super) Rows);

@@ -13,7 +13,10 @@ use crate::{interrupt, terminal};
 
 /// Forms of a kind of advice.
 pub(super) struct AdviceOutput<A> {
+    /// The whole text.
     pub(super) describe: fn(&A) -> String,
+    /// A screen of it.
+    pub(super) summarise: fn(&A, &AdviseArgs) -> String,
     pub(super) page: fn(&A) -> String,
     pub(super) holds: fn(&A) -> bool,
     pub(super) warnings: fn(&mut A) -> &mut Vec<String>,
@@ -37,7 +40,10 @@ impl<A: Serialize> AdviceOutput<A> {
         reporter.clear();
         let mut advice = advice.map_err(failure)?;
         // The text leaves out what is on stderr.
-        let text = (self.describe)(&advice);
+        let text = match args.verbose {
+            true => (self.describe)(&advice),
+            false => (self.summarise)(&advice, args),
+        };
         (self.warnings)(&mut advice).splice(0..0, log_warnings);
         let text = match args.json {
             true => serde_json::to_string_pretty(&advice).map_err(Failure::run)? + "\n",

@@ -9,8 +9,9 @@ use libration_settings::ConfigCommand;
 use libration_work::Work;
 
 use super::advice_output::{AdviceOutput, failure};
-use super::{config_file, equation_file, time_stamps};
-use crate::args::{AdviseArgs, quoted};
+use super::repeat_command::command_line;
+use super::{config_file, equation_file, summary, time_stamps};
+use crate::args::AdviseArgs;
 use crate::error::Failure;
 use crate::progress::Reporter;
 use crate::{interrupt, terminal};
@@ -31,6 +32,7 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
     let compute = |work: &Work<'_>| advise::advise(work, &request);
     let output = AdviceOutput {
         describe,
+        summarise: summary::of_advice,
         page: advise::page,
         holds: Advice::holds,
         warnings: |advice| &mut advice.warnings,
@@ -108,21 +110,6 @@ fn load_request(args: &AdviseArgs, quiet: bool) -> Result<(Request, Vec<String>)
         warnings = own;
     }
     Ok((request, warnings))
-}
-
-/// Returns the command line that repeats this request, without `--json` and `--page`.
-pub(super) fn command_line() -> String {
-    let mut words = vec!["libration".to_owned()];
-    let mut given = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
-    while let Some(word) = given.next() {
-        match &*word {
-            "--json" => {}
-            "--page" => drop(given.next()),
-            page if page.starts_with("--page=") => {}
-            _ => words.push(word),
-        }
-    }
-    quoted(words)
 }
 
 /// Returns the answer as text.

@@ -8,8 +8,8 @@ use libration_advise::{Budget, StabilityWindow, rounded};
 use libration_work::Work;
 
 use super::advice_output::AdviceOutput;
-use super::advise::command_line;
-use super::{config_file, time_stamps};
+use super::repeat_command::command_line;
+use super::{config_file, summary, time_stamps};
 use crate::args::AdviseArgs;
 use crate::error::Failure;
 
@@ -56,6 +56,7 @@ pub(super) fn run(
     let compute = |work: &Work<'_>| linear::advise(work, &request);
     let output = AdviceOutput {
         describe,
+        summarise: summary::of_linear_advice,
         page: linear::page,
         holds: LinearAdvice::holds,
         warnings: |advice| &mut advice.warnings,

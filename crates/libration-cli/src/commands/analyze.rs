@@ -14,7 +14,9 @@ use libration_settings::limits;
 use super::closed_loop::{dephasing, describe_loop};
 use super::digits::{beside_one, exact, short, sum};
 use super::simulate::linear_file;
-use super::{analyze_equations, analyze_linear, compare_integrators, equation_file, temperature};
+use super::{
+    analyze_equations, analyze_linear, compare_integrators, equation_file, summary, temperature,
+};
 use crate::args::{AnalyzeArgs, CostArgs};
 use crate::error::Failure;
 
@@ -35,7 +37,7 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
         return Err(failure);
     }
     if let Some(request) = args.linear_request(linear_file) {
-        return print(&analyze_linear::run(&request?, args.json)?);
+        return print(&analyze_linear::run(&request?, args)?);
     }
     if let Some(system) = args.system.as_ref().and_then(equation_file::system) {
         return print(&analyze_equations::run(args, &system?)?);
@@ -58,9 +60,10 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     let request =
         Request { system, actuation, stepping, dt, q, v, steps: args.steps, criteria, timing };
     let analysis = analyze(&request).map_err(Failure::usage)?;
-    let text = match args.json {
-        true => serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n",
-        false => describe(&analysis, &request),
+    let text = match (args.json, args.verbose) {
+        (true, _) => serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n",
+        (false, true) => describe(&analysis, &request),
+        (false, false) => summary::of_step(&analysis, &request),
     };
     print(&text)
 }
@@ -207,7 +210,7 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
 }
 
 /// Text in place of a result that exact arithmetic cannot derive.
-const UNKNOWN: &str = "not known: the polynomials of this step outgrow exact arithmetic";
+pub(super) const UNKNOWN: &str = "not known: the polynomials of this step outgrow exact arithmetic";
 
 /// Returns a largest time step as text.
 fn known(dt: Option<Option<f64>>) -> String {

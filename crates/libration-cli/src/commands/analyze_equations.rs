@@ -6,7 +6,7 @@ use libration_analyze::AnalyzeError;
 use libration_analyze::equation_analysis::{EquationAnalysis, EquationMotion, analyze};
 use libration_settings::equations::EquationSystem;
 
-use super::analyze_linear;
+use super::{analyze_linear, summary};
 use crate::args::AnalyzeArgs;
 use crate::error::Failure;
 use crate::interrupt;
@@ -31,9 +31,13 @@ pub(super) fn run(args: &AnalyzeArgs, system: &EquationSystem) -> Result<String,
         AnalyzeError::Interrupted => Failure::Interrupted(error.to_string()),
         error => Failure::usage(error),
     })?;
-    match args.json {
-        true => Ok(serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n"),
-        false => Ok(describe(&analysis)),
+    match (args.json, args.verbose) {
+        (true, _) => Ok(serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n"),
+        (false, true) => Ok(describe(&analysis)),
+        (false, false) => {
+            let order = order_in_words(&analysis.motion, analysis.system.smooth);
+            Ok(summary::of_equations(&analysis, &order))
+        }
     }
 }
 
@@ -56,22 +60,7 @@ fn describe(analysis: &EquationAnalysis) -> String {
 
 // Writing into a string cannot fail.
 fn describe_motion(motion: &EquationMotion, is_smooth: bool, text: &mut String) {
-    let classical = motion.classical_order;
-    let order = match motion.order {
-        Some(order) if motion.order_is_certified => format!("{order}, by its certificate"),
-        Some(order) if order == classical => format!("{order}, derived with 1024 bits"),
-        Some(order) if order < classical => format!(
-            "{order}, derived with 1024 bits; {classical} where forces depend on positions alone"
-        ),
-        Some(order) => format!("{order}, derived with 1024 bits; {classical} in general"),
-        None => "none: a step has no error, or no derivative".to_owned(),
-    };
-    let kinks = if is_smooth {
-        ""
-    } else {
-        "; the equations have kinks or jumps, beyond which it does not hold"
-    };
-    let _ = writeln!(text, "  order                {order}{kinks}");
+    let _ = writeln!(text, "  order                {}", order_in_words(motion, is_smooth));
     let _ = writeln!(text, "  operations           {} a step", motion.operations_per_step);
     if let Some(radius) = motion.spectral_radius {
         let _ = writeln!(
@@ -94,10 +83,6 @@ fn describe_motion(motion: &EquationMotion, is_smooth: bool, text: &mut String) 
         Some(least) => format!("{least:.0} or more"),
         None => "-".to_owned(),
     };
-    // Errors that fall by less than half of what is predicted are not those of small steps.
-    let is_small = |reduction: Option<f64>| {
-        reduction.is_none_or(|x| motion.predicted_reduction.is_none_or(|least| x > least / 2.0))
-    };
     for state in &motion.errors {
         let name = match state.unit.as_str() {
             "" => state.name.clone(),
@@ -110,7 +95,11 @@ fn describe_motion(motion: &EquationMotion, is_smooth: bool, text: &mut String) 
             state.error,
             ratio(state.reduction),
             predicted(),
-            if is_small(state.reduction) { "" } else { "  not resolved: take smaller steps" }
+            if motion.is_resolved(state.reduction) {
+                ""
+            } else {
+                "  not resolved: take smaller steps"
+            }
         );
     }
     match &motion.energy {
@@ -133,11 +122,35 @@ fn describe_motion(motion: &EquationMotion, is_smooth: bool, text: &mut String) 
                 "  halved steps reduce the largest change by {}, predicted {}{}",
                 ratio(energy.reduction),
                 predicted(),
-                if is_small(energy.reduction) { "" } else { "; not resolved: take smaller steps" }
+                if motion.is_resolved(energy.reduction) {
+                    ""
+                } else {
+                    "; not resolved: take smaller steps"
+                }
             );
         }
         None => {
             let _ = writeln!(text, "\nenergy: the file has none, so nothing is said of its drift");
         }
     }
+}
+
+/// The order of steps, with its restrictions.
+fn order_in_words(motion: &EquationMotion, is_smooth: bool) -> String {
+    let classical = motion.classical_order;
+    let order = match motion.order {
+        Some(order) if motion.order_is_certified => format!("{order}, by its certificate"),
+        Some(order) if order == classical => format!("{order}, derived with 1024 bits"),
+        Some(order) if order < classical => format!(
+            "{order}, derived with 1024 bits; {classical} where forces depend on positions alone"
+        ),
+        Some(order) => format!("{order}, derived with 1024 bits; {classical} in general"),
+        None => "none: a step has no error, or no derivative".to_owned(),
+    };
+    let kinks = if is_smooth {
+        ""
+    } else {
+        "; the equations have kinks or jumps, beyond which it does not hold"
+    };
+    format!("{order}{kinks}")
 }

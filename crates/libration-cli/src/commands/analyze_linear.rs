@@ -8,17 +8,21 @@ use libration_analyze::linear_analysis::{
 };
 
 use super::linear_closed_loop::closed_loop;
+use super::summary;
+use crate::args::AnalyzeArgs;
 use crate::error::Failure;
 
 /// Returns the analysis as text or as JSON.
-pub(super) fn run(request: &LinearRequest, json: bool) -> Result<String, Failure> {
+pub(super) fn run(request: &LinearRequest, args: &AnalyzeArgs) -> Result<String, Failure> {
     let analysis = analyze(request, &AtomicBool::new(false)).map_err(|error| match error {
         LinearAnalysisError::Interrupted => Failure::Interrupted(error.to_string()),
         error => Failure::usage(error),
     })?;
-    match json {
-        true => Ok(serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n"),
-        false => Ok(describe(&analysis, request.integrator.is_some())),
+    let is_one = request.integrator.is_some();
+    match (args.json, args.verbose) {
+        (true, _) => Ok(serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n"),
+        (false, true) => Ok(describe(&analysis, is_one)),
+        (false, false) => Ok(summary::of_plant(&analysis, is_one)),
     }
 }
 

@@ -6,9 +6,9 @@ use libration_energy::{EnergyTrace, Requirement, audit, page};
 use libration_logs::{Log, LogError, ReadOptions};
 use libration_report::notation::plural;
 
-use super::advise::command_line;
 use super::audit_text::describe;
 use super::log_warnings;
+use super::repeat_command::command_line;
 use super::result_file::ResultFile;
 use crate::args::{AuditArgs, TimeUnitName};
 use crate::error::Failure;

@@ -136,11 +136,11 @@ fn number(x: Option<f64>, unit: &str) -> String {
 }
 
 /// Reason for missing second moments.
-const TOO_FAR: &str =
+pub(super) const TOO_FAR: &str =
     "not known: a deviation of the steps is too large, or the latency is above 90 steps";
 
 /// Note on steps with a negative length.
-const CLIPPED: &str = "steps with a negative length are set to zero";
+pub(super) const CLIPPED: &str = "steps with a negative length are set to zero";
 
 /// Note on growth with skew.
-const NOMINAL: &str = "both for a clock at its nominal rate, without the skew";
+pub(super) const NOMINAL: &str = "both for a clock at its nominal rate, without the skew";

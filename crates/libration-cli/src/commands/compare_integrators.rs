@@ -10,7 +10,7 @@ use libration_analyze::comparison::{
 use libration_report::notation::plural;
 use libration_work::Work;
 
-use super::equation_file;
+use super::{equation_file, summary};
 use crate::args::AnalyzeArgs;
 use crate::error::Failure;
 use crate::interrupt;
@@ -50,28 +50,61 @@ pub(super) fn run(args: &AnalyzeArgs) -> Result<String, Failure> {
         ComparisonError::Interrupted => Failure::Interrupted(error.to_string()),
         error => Failure::usage(error),
     })?;
-    match args.json {
-        true => Ok(serde_json::to_string_pretty(&found).map_err(Failure::run)? + "\n"),
-        false => Ok(describe(&found)),
+    match (args.json, args.verbose) {
+        (true, _) => Ok(serde_json::to_string_pretty(&found).map_err(Failure::run)? + "\n"),
+        (false, true) => Ok(describe(&found)),
+        (false, false) => Ok(summary::of_comparison(&found, &verdict(&found), &notes(&found))),
     }
+}
+
+/// The cheapest integrator in a sentence.
+fn verdict(comparison: &Comparison) -> String {
+    let Comparison { system, horizon, tolerance, integrators, .. } = comparison;
+    match integrators.iter().find(|one| one.evaluations.is_some()) {
+        Some(best) => format!(
+            "{}: the cheapest of {} for an error of {tolerance:e} over {horizon} s of {system}, with steps of {} s",
+            best.integrator,
+            plural(integrators.len(), "integrator"),
+            number(best.dt),
+        ),
+        None => {
+            format!("No integrator meets an error of {tolerance:e} over {horizon} s of {system}.")
+        }
+    }
+}
+
+/// Restrictions of a comparison.
+fn notes(comparison: &Comparison) -> Vec<String> {
+    let integrators = &comparison.integrators;
+    let without = integrators.iter().filter(|one| one.evaluations.is_none()).count();
+    let mut notes = Vec::new();
+    if without == integrators.len() {
+        notes.push(format!("The search ended at {MOST_EVALUATIONS} evaluations for each."));
+    } else if without > 0 {
+        let verb = if without == 1 { "does" } else { "do" };
+        notes.push(format!(
+            "{} {verb} not meet the tolerance within {MOST_OF_BEST} times the evaluations of the best common ones.",
+            plural(without, "integrator")
+        ));
+    }
+    if !comparison.is_smooth {
+        notes.push(
+            "The forces have kinks or jumps: what acts for less than the horizon over 2048 may be missed.".to_owned(),
+        );
+    }
+    if !comparison.is_positional {
+        notes.push(
+            "Splitting and Nyström methods by tables are left out: a force of this system depends on a velocity.".to_owned(),
+        );
+    }
+    notes
 }
 
 // Writing into a string cannot fail.
 fn describe(comparison: &Comparison) -> String {
-    let Comparison { system, horizon, tolerance, reference_error, is_positional, .. } = comparison;
     let fit: Vec<&ComparedIntegrator> =
         comparison.integrators.iter().filter(|one| one.evaluations.is_some()).collect();
-    let mut text = match fit.first() {
-        Some(best) => format!(
-            "{}: the cheapest of {} for an error of {tolerance:e} over {horizon} s of {system}, with steps of {} s\n\n",
-            best.integrator,
-            plural(comparison.integrators.len(), "integrator"),
-            number(best.dt),
-        ),
-        None => format!(
-            "No integrator meets an error of {tolerance:e} over {horizon} s of {system}.\n\n"
-        ),
-    };
+    let mut text = format!("{}\n\n", verdict(comparison));
     let _ = writeln!(
         text,
         "  {:<34} {:>5} {:>6} {:>10} {:>12} {:>12} {:>10} {:>10}",
@@ -92,34 +125,17 @@ fn describe(comparison: &Comparison) -> String {
         );
     }
     let more = fit.len().saturating_sub(SHOWN);
-    let without = comparison.integrators.len() - fit.len();
     let _ = writeln!(text);
     if more > 0 {
         let _ = writeln!(text, "{} more in --json.", plural(more, "integrator"));
     }
-    if without > 0 && fit.is_empty() {
-        let _ = writeln!(text, "The search ended at {MOST_EVALUATIONS} evaluations for each.");
-    } else if without > 0 {
-        let _ = writeln!(
-            text,
-            "{} within {MOST_OF_BEST} times the evaluations of the best common ones.",
-            plural(without, "integrator")
-                + if without == 1 {
-                    " does not meet the tolerance"
-                } else {
-                    " do not meet the tolerance"
-                },
-        );
-    }
-    if !comparison.is_smooth {
-        text += "The forces have kinks or jumps: what acts for less than the horizon over 2048 may be missed.\n";
-    }
-    if !is_positional {
-        text += "Splitting and Nyström methods by tables are left out: a force of this system depends on a velocity.\n";
+    for note in notes(comparison) {
+        let _ = writeln!(text, "{note}");
     }
     let _ = writeln!(
         text,
-        "Errors: the largest of a state after any step, relative to its largest size; the reference is right to {reference_error:.0e}."
+        "Errors: the largest of a state after any step, relative to its largest size; the reference is right to {:.0e}.",
+        comparison.reference_error
     );
     text += "Predicted: from error constants and the integrator of the same order with the fewest stages.\n";
     text

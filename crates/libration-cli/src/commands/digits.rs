@@ -2,10 +2,23 @@
 
 /// A number with at most ten digits, without zeros at its end.
 pub(super) fn short(x: f64) -> String {
+    significant(x, 10)
+}
+
+/// A number with at most so many digits, without zeros at its end.
+pub(super) fn significant(x: f64, digits: usize) -> String {
     // Rounded in decimal, so that its shortest form has no more digits.
-    let rounded = format!("{x:.9e}").parse().unwrap_or(x);
-    let text = format!("{rounded:?}");
-    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+    exact(format!("{x:.*e}", digits - 1).parse().unwrap_or(x))
+}
+
+/// A limit with at most so many digits, not beyond itself: cut off behind the twelve digits that a search has.
+pub(super) fn limit(x: f64, digits: usize) -> String {
+    let text = format!("{x:.11e}");
+    let cut = text.split_once('e').map(|(mantissa, exponent)| {
+        let kept: String = mantissa.chars().take(digits + 1 + usize::from(x < 0.0)).collect();
+        format!("{kept}e{exponent}")
+    });
+    exact(cut.and_then(|cut| cut.parse().ok()).unwrap_or(x))
 }
 
 /// A limit with all its digits: rounded, it might be beyond itself.
@@ -50,6 +63,21 @@ mod tests {
             (f64::INFINITY, "inf"),
         ] {
             assert_eq!(short(x), text);
+        }
+    }
+
+    #[test]
+    fn limits_of_few_digits_are_not_beyond_themselves() {
+        for (x, text) in [
+            (0.15324841096092163, "0.1532"),
+            (0.89449999, "0.8944"),
+            (-0.69999, "-0.6999"),
+            (0.3, "0.3"),
+            (2.0 - 1e-15, "2"),
+            (1.23456e-9, "1.234e-9"),
+            (0.0, "0"),
+        ] {
+            assert_eq!(limit(x, 4), text);
         }
     }
 

@@ -6,8 +6,8 @@ use libration_probe::{GainReport, ServoIntegrator, ServosDescription, gains, gai
 use libration_report::notation::number;
 use serde_json::json;
 
-use super::advise::command_line;
 use super::mujoco;
+use super::repeat_command::command_line;
 use super::result_file::ResultFile;
 use crate::args::{Coordinates, GainsArgs};
 use crate::error::Failure;

@@ -11,8 +11,8 @@ use libration_report::notation::number;
 use libration_settings::linear_loop::read_plant;
 use libration_work::Work;
 
-use super::advise::command_line;
 use super::log_warnings;
+use super::repeat_command::command_line;
 use super::result_file::ResultFile;
 use crate::args::{IdentifyArgs, TimeUnitName};
 use crate::error::Failure;

@@ -11,9 +11,9 @@ use libration_probe::{
 use libration_report::notation::plural;
 use libration_settings::linear_loop::read_plant;
 
-use super::advise::command_line;
 use super::mujoco;
 use super::probe_text::describe;
+use super::repeat_command::command_line;
 use super::result_file::ResultFile;
 use super::watched::Watched;
 use crate::args::{Coordinates, ProbeArgs, quoted};

@@ -9,7 +9,7 @@ use libration_analyze::temperature::{
 };
 use libration_work::Work;
 
-use super::equation_file;
+use super::{equation_file, summary};
 use crate::args::{AnalyzeArgs, SystemArgs};
 use crate::error::Failure;
 use crate::interrupt;
@@ -37,9 +37,10 @@ pub(super) fn run(args: &AnalyzeArgs, temperature: f64) -> Result<String, Failur
     let found = analyze_temperature(&Work::new(&reporter, interrupt::listen()), &request);
     reporter.clear();
     let found = found.map_err(failure)?;
-    match args.json {
-        true => Ok(serde_json::to_string_pretty(&found).map_err(Failure::run)? + "\n"),
-        false => Ok(describe(&found)),
+    match (args.json, args.verbose) {
+        (true, _) => Ok(serde_json::to_string_pretty(&found).map_err(Failure::run)? + "\n"),
+        (false, true) => Ok(describe(&found)),
+        (false, false) => Ok(summary::of_temperatures(&found, &verdict(&found), &setting(&found))),
     }
 }
 
@@ -72,22 +73,30 @@ pub(super) fn option_without_temperature(args: &AnalyzeArgs) -> Option<Failure> 
 /// One of the two temperatures of a thermostat.
 type BiasOf = fn(&ThermostatReport) -> &TemperatureBias;
 
+/// The recommended thermostat in a sentence.
+fn verdict(report: &TemperatureReport) -> String {
+    let (system, dt) = (&report.system, significant(report.dt));
+    match &report.recommended {
+        Some(best) => {
+            format!("{best}: the least bias of positions for {system} with steps of {dt} s")
+        }
+        None => format!("No thermostat is stable for {system} with steps of {dt} s."),
+    }
+}
+
+/// The temperature, the friction and the simulation.
+fn setting(report: &TemperatureReport) -> String {
+    let TemperatureReport { temperature, friction, steps, trajectories, .. } = report;
+    let [temperature, friction] = [temperature, friction].map(|x| significant(*x));
+    let fastest = significant(report.frequencies.last().copied().unwrap_or(f64::NAN));
+    format!(
+        "kT = {temperature}, friction {friction} /s, fastest mode {fastest} rad/s, {steps} steps in {trajectories} trajectories"
+    )
+}
+
 // Writing into a string cannot fail.
 fn describe(report: &TemperatureReport) -> String {
-    let TemperatureReport { system, temperature, friction, dt, steps, trajectories, .. } = report;
-    let dt = significant(*dt);
-    let [temperature, friction] = [temperature, friction].map(|x| significant(*x));
-    let mut text = match &report.recommended {
-        Some(best) => {
-            format!("{best}: the least bias of positions for {system} with steps of {dt} s\n\n")
-        }
-        None => format!("No thermostat is stable for {system} with steps of {dt} s.\n\n"),
-    };
-    let fastest = significant(report.frequencies.last().copied().unwrap_or(f64::NAN));
-    let _ = writeln!(
-        text,
-        "  kT = {temperature}, friction {friction} /s, fastest mode {fastest} rad/s, {steps} steps in {trajectories} trajectories\n"
-    );
+    let mut text = format!("{}\n\n  {}\n\n", verdict(report), setting(report));
     let kinds: [(&str, BiasOf); 2] = [
         ("Positions: bias of ⟨−q·F⟩/kT", |one| &one.configuration),
         ("Velocities: bias of ⟨m v²⟩/kT", |one| &one.kinetic),
@@ -143,7 +152,7 @@ fn percent(bias: Option<f64>) -> String {
 }
 
 /// A percentage with three decimals; scientific from a million.
-fn decimals(x: f64) -> String {
+pub(super) fn decimals(x: f64) -> String {
     match x.abs() < 1e6 {
         // Not the negative zero.
         true => format!("{:.3}", (x * 1e3).round() / 1e3 + 0.0),

@@ -49,6 +49,18 @@ impl OperatingPoint {
 
     /// The operating point in a sentence.
     pub fn sentence(&self) -> String {
+        self.sentence_with(&format!(", where an acceleration of {:.1e} is left", self.residual))
+    }
+
+    /// The same without an acceleration of zero.
+    pub fn short_sentence(&self) -> String {
+        match self.residual == 0.0 {
+            true => self.sentence_with(""),
+            false => self.sentence(),
+        }
+    }
+
+    fn sentence_with(&self, residual: &str) -> String {
         let list = |values: &[OperatingValue]| {
             let one = |OperatingValue { name, value, unit }: &OperatingValue| {
                 format!("{name} = {} {unit}", seven_digits(*value)).trim_end().to_owned()
@@ -62,11 +74,10 @@ impl OperatingPoint {
             }
         };
         format!(
-            "The plant is the system {} linearised at {} under {}, where an acceleration of {:.1e} is left.{kinks}",
+            "The plant is the system {} linearised at {} under {}{residual}.{kinks}",
             self.system,
             list(&self.states),
-            list(&self.commands),
-            self.residual
+            list(&self.commands)
         )
     }
 }

@@ -1,0 +1,135 @@
+//! Advice on a simulation, or on a loop around a system of the catalogue.
+
+use libration_advise::{Advice, Imperfection, LoopAdvice};
+
+use super::super::digits::{limit, short, significant};
+use super::super::repeat_command::with_option;
+use super::loop_limits::{append_limits, append_simulated, change, cost};
+use super::{Summary, map_command, numbers, words};
+use crate::args::AdviseArgs;
+
+/// Largest number of integrators.
+const MOST: usize = 5;
+
+/// Returns a screen of advice.
+pub(crate) fn of_advice(advice: &Advice, args: &AdviseArgs) -> String {
+    let mut summary = Summary::new(&advice.answer);
+    summary.warnings(&advice.warnings);
+    match &advice.looped {
+        Some(looped) => append_loop(looped, &mut summary),
+        None => append_integrators(advice, &mut summary),
+    }
+    if let Some((purpose, command)) = next(advice, args) {
+        summary.command(purpose, &command);
+    }
+    summary.finish(match advice.looped {
+        Some(_) => {
+            "the controller, a command for each number, all integrators, float types and speed"
+        }
+        None => "all integrators, the next longer steps, commands of the float types and speed",
+    })
+}
+
+fn append_loop(looped: &LoopAdvice, summary: &mut Summary) {
+    append_limits(&looped.budgets, summary);
+    summary.blank();
+    let combined = &looped.combined;
+    if looped.held_command != 0.0 {
+        let (command, unit) = (looped.command, looped.command_unit);
+        let held = significant(looped.held_command, 5);
+        summary.row("operating point", &format!("{command} of {held} {unit}"));
+    }
+    summary.row("second moments", &change(combined.growth));
+    if combined.growth < 0.0 {
+        summary.row("cost", &cost(combined.cost, combined.ideal_cost));
+    }
+    append_simulated(combined.simulated.as_ref(), "at samples, without commands", summary);
+    if let Some(r) = &combined.region_of_attraction {
+        let [back, all] = r.returned;
+        let up_to = match r.up_to < r.tried_up_to {
+            true => limit(r.up_to, 4),
+            false => format!("{}, the largest tried", limit(r.up_to, 4)),
+        };
+        let from = r.deviation;
+        let shown =
+            format!("{back} of {all} loops from {from}; all from up to {up_to} (simulated)");
+        summary.row("return", &shown);
+    }
+}
+
+fn append_integrators(advice: &Advice, summary: &mut Summary) {
+    let number = |x: Option<f64>| x.map_or_else(|| "none".to_owned(), |x| significant(x, 4));
+    let error = |lost: f64| match lost.is_finite() {
+        true => significant(lost, 3),
+        false => "above tolerance".to_owned(),
+    };
+    let rows: Vec<Vec<String>> = advice
+        .integrators
+        .iter()
+        .take(MOST)
+        .map(|choice| {
+            let longest = choice.dt.map_or_else(|| "none".to_owned(), |dt| limit(dt, 4));
+            vec![
+                choice.integrator.to_owned(),
+                longest,
+                error(choice.lost),
+                number(choice.evaluations),
+            ]
+        })
+        .collect();
+    let heads = [
+        words("integrator"),
+        numbers("largest dt (s)"),
+        numbers("error"),
+        numbers("force evaluations/s"),
+    ];
+    summary.blank();
+    summary.table(&heads, &rows);
+    let more = advice.integrators.len() - rows.len();
+    if more > 0 {
+        summary.sentence(&format!("and {more} more, which are not cheaper"));
+    }
+    summary.blank();
+    for float in &advice.floats {
+        let meets = if float.meets { "within" } else { "above" };
+        let error = significant(float.lost, 3);
+        let shown = format!("error {error} of the {}, {meets} the tolerance (simulated)", float.of);
+        summary.row(&format!("in {}", float.float), &shown);
+    }
+}
+
+/// The recommended command and its purpose.
+fn next(advice: &Advice, args: &AdviseArgs) -> Option<(&'static str, String)> {
+    match (&advice.command, &advice.looped) {
+        (Some(command), None) => return Some(("Take these steps", command.clone())),
+        (Some(_), Some(_)) if advice.holds() => return map_command(args),
+        _ => {}
+    }
+    let remedies = advice.looped.as_ref().and_then(|looped| looped.remedies.as_ref());
+    if let Some(remedies) = remedies {
+        let gains = remedies.gains.filter(|_| args.config.is_none());
+        return match (gains, remedies.latency) {
+            (Some([position, velocity]), _) => {
+                let gains = format!("{},{}", short(position), short(velocity));
+                Some(("Confirm these gains", with_option("--feedback", &gains)))
+            }
+            (None, Some(latency)) => {
+                Some(("Confirm this latency", with_option("--latency", &limit(latency, 4))))
+            }
+            (None, None) => None,
+        };
+    }
+    let looped = advice.looped.as_ref();
+    let budgets = looped.map_or(&[][..], |looped| &looped.budgets);
+    let late = budgets.iter().find(|budget| budget.kind == Imperfection::Latency);
+    if let Some(most) = late.and_then(|budget| budget.tolerated_up_to.flatten()) {
+        let is_more = late.is_some_and(|budget| budget.stated > most);
+        return is_more
+            .then(|| ("Confirm a tolerated latency", with_option("--latency", &limit(most, 4))));
+    }
+    // The smallest error that was found, rounded up.
+    let least = advice.integrators.iter().map(|choice| choice.lost).fold(f64::INFINITY, f64::min);
+    let error = format!("{}={:.1e}", advice.tolerance.of, 1.1 * least);
+    let is_possible = least.is_finite() && args.config.is_none() && advice.tolerance.of != "cost";
+    is_possible.then(|| ("Allow the smallest error found", with_option("--tolerance", &error)))
+}

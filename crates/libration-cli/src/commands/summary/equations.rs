@@ -1,0 +1,136 @@
+//! Steps of a system by equations.
+
+use libration_analyze::equation_analysis::{EquationAnalysis, EquationMotion};
+
+use super::super::digits::significant;
+use super::super::repeat_command::of_subcommand;
+use super::linear_plant::{append_steps, verdict};
+use super::step::SYSTEM;
+use super::{Summary, numbers, words};
+
+/// Largest number of states.
+const MOST: usize = 6;
+
+/// Returns a screen of an analysis; `order` is the order of the steps in words.
+pub(crate) fn of_equations(analysis: &EquationAnalysis, order: &str) -> String {
+    let EquationAnalysis { system, motion, .. } = analysis;
+    let mut summary = Summary::new(&verdict_of_motion(analysis));
+    if let Some(reason) = &analysis.no_modes {
+        summary.wrap("", &format!("warning: no modes: {reason}"), 2);
+    }
+    append_errors(motion, &mut summary);
+    summary.blank();
+    summary.row("order", order);
+    append_energy(motion, &mut summary);
+    if let Some(radius) = motion.spectral_radius {
+        let excess = radius - 1.0;
+        let sign = if excess < 0.0 { "−" } else { "+" };
+        let shown = format!("1 {sign} {} at the equilibrium", significant(excess.abs(), 5));
+        summary.row("spectral radius", &shown);
+    }
+    if let Some(linear) = &analysis.linear {
+        append_steps(linear, false, &mut summary);
+    }
+    if let Some(point) = &analysis.operating_point {
+        summary.sentence(&point.short_sentence());
+    }
+    if let Some(linear) = &analysis.linear {
+        summary.sentence(&verdict(linear));
+    }
+    let horizon = significant(motion.error_steps as f64 * motion.dt, 4);
+    let more = ["--tolerance", "trajectory=1e-6", "--horizon", &horizon];
+    summary.command(
+        "Find the cheapest integrator for an error",
+        &of_subcommand("advise", &SYSTEM, &more),
+    );
+    let system = format!("the operations of a step, all states of {}, and the modes", system.name);
+    summary.finish(&system)
+}
+
+fn verdict_of_motion(analysis: &EquationAnalysis) -> String {
+    let EquationAnalysis { system, motion, .. } = analysis;
+    let step = format!(
+        "{} in steps of {} s on {}",
+        motion.integrator,
+        significant(motion.dt, 6),
+        system.name
+    );
+    if let Some(diverged) = motion.diverged_at_step {
+        return format!("{step} diverges: a state is not finite after step {diverged}.");
+    }
+    let time = significant(motion.error_steps as f64 * motion.dt, 6);
+    let unresolved = motion.errors.iter().any(|state| !motion.is_resolved(state.reduction));
+    let verdict = match unresolved {
+        true => "does not resolve the motion: take smaller steps.",
+        false => "resolves the motion: halved steps reduce errors as predicted.",
+    };
+    format!("{step} {verdict} Errors are those after {time} s.")
+}
+
+fn append_errors(motion: &EquationMotion, summary: &mut Summary) {
+    let rows: Vec<Vec<String>> = motion
+        .errors
+        .iter()
+        .take(MOST)
+        .map(|state| {
+            let name = match state.unit.as_str() {
+                "" => state.name.clone(),
+                unit => format!("{} ({unit})", state.name),
+            };
+            vec![
+                name,
+                significant(state.value, 6),
+                significant(state.error, 2),
+                ratio(state.reduction),
+                predicted(motion),
+                resolved(motion, state.reduction).to_owned(),
+            ]
+        })
+        .collect();
+    let heads = [
+        words("state"),
+        numbers("value"),
+        numbers("error"),
+        numbers("halved steps reduce by"),
+        numbers("predicted"),
+        words(""),
+    ];
+    summary.blank();
+    summary.table(&heads, &rows);
+    let more = motion.errors.len() - rows.len();
+    if more > 0 {
+        summary.sentence(&format!("and {more} more"));
+    }
+}
+
+fn append_energy(motion: &EquationMotion, summary: &mut Summary) {
+    let Some(energy) = &motion.energy else {
+        return summary.row("energy", "the file has none, so its drift is not known");
+    };
+    let part = match energy.start {
+        0.0 => String::new(),
+        start => format!(", {} of the start", significant(energy.largest / start.abs(), 3)),
+    };
+    let largest = format!("{} {}", significant(energy.largest, 3), energy.unit);
+    let shown = format!(
+        "changes by at most {}{part}, over {} steps; halved steps reduce this by {} ({} predicted) {}",
+        largest.trim_end(),
+        energy.steps,
+        ratio(energy.reduction),
+        predicted(motion),
+        resolved(motion, energy.reduction)
+    );
+    summary.row("energy", shown.trim_end());
+}
+
+fn ratio(reduction: Option<f64>) -> String {
+    reduction.map_or_else(|| "-".to_owned(), |x| significant(x, 4))
+}
+
+fn predicted(motion: &EquationMotion) -> String {
+    motion.predicted_reduction.map_or_else(|| "-".to_owned(), |least| format!("{least:.0} or more"))
+}
+
+fn resolved(motion: &EquationMotion, reduction: Option<f64>) -> &'static str {
+    if motion.is_resolved(reduction) { "" } else { "not resolved" }
+}

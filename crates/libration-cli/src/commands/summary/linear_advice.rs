@@ -1,0 +1,163 @@
+//! Advice on a loop around a linear plant.
+
+use libration_advise::linear::{InputMargins, LinearAdvice, RedesignLimit};
+use libration_advise::{Budget, Imperfection};
+
+use super::super::digits::{limit, significant};
+use super::super::repeat_command::{with_flag, with_option};
+use super::loop_limits::{append_limits, append_simulated, change, cost};
+use super::{Summary, in_decimals, map_command, numbers, words};
+use crate::args::AdviseArgs;
+
+/// Largest number of entries of a gain, of rows for inputs and of states.
+const MOST_GAINS: usize = 12;
+const MOST_INPUTS: usize = 2;
+const MOST_STATES: usize = 3;
+const MOST_REDESIGN_LIMITS: usize = 5;
+
+/// Increase of the cost from which a redesign is proposed.
+const COSTLY: f64 = 0.01;
+
+/// Returns a screen of advice.
+pub(crate) fn of_linear_advice(advice: &LinearAdvice, args: &AdviseArgs) -> String {
+    let answer = match &advice.operating_point {
+        Some(point) => advice.answer.replace(&point.sentence(), &point.short_sentence()),
+        None => advice.answer.clone(),
+    };
+    let mut summary = Summary::new(&answer);
+    summary.warnings(&advice.warnings);
+    match &advice.redesign {
+        Some(_) => append_redesign(advice, &mut summary),
+        None => append_limits(&advice.budgets, &mut summary),
+    }
+    summary.blank();
+    if advice.redesign.is_none() {
+        append_gain(advice, &mut summary);
+    }
+    if !advice.schedule.is_empty() {
+        summary.row("margins", "none: a cascade has no frequency response");
+    }
+    append_margins("margins", &advice.margins, &mut summary);
+    let redesigned = advice.redesign.iter().flat_map(|redesign| &redesign.margins);
+    append_margins("of the redesign", redesigned, &mut summary);
+    summary.row("second moments", &change(advice.growth));
+    summary.row("cost", &cost(advice.cost, advice.ideal_cost));
+    append_simulated(advice.simulated.as_ref(), "at samples", &mut summary);
+    if advice.redesign.is_none() {
+        append_deviations(advice, &mut summary);
+    }
+    if let Some((purpose, command)) = next(advice, args) {
+        summary.command(purpose, &command);
+    }
+    let more = "every limit with its method, each part of the latency, all deviations";
+    summary.finish(&match (&advice.redesign, &advice.deadline_misses) {
+        (Some(_), _) => format!("the redesigned controller, {more}"),
+        (None, Some(_)) => format!("{more} and sequences of missed deadlines"),
+        (None, None) => more.to_owned(),
+    })
+}
+
+fn append_gain(advice: &LinearAdvice, summary: &mut Summary) {
+    let small = advice.gain.as_ref().filter(|gain| gain.entries().len() <= MOST_GAINS);
+    let Some(gain) = small else { return };
+    for i in 0..gain.rows() {
+        let row: Vec<String> = gain.row(i).iter().map(|x| significant(*x, 6)).collect();
+        summary.row("feedback", &format!("{} = -[{}] x", advice.inputs[i].name, row.join(", ")));
+    }
+}
+
+fn append_margins<'a>(
+    name: &str,
+    margins: impl IntoIterator<Item = &'a InputMargins>,
+    summary: &mut Summary,
+) {
+    let known = |x: Option<f64>, unit: &str| {
+        x.map_or_else(|| "none".to_owned(), |x| significant(x, 4) + unit)
+    };
+    for own in margins.into_iter().take(MOST_INPUTS) {
+        let shown = format!(
+            "at {}: gain from {} to {}, phase {} at {}",
+            own.input,
+            known(own.gain_down, ""),
+            known(own.gain_up, ""),
+            known(own.phase, " deg"),
+            known(own.crossover, " Hz")
+        );
+        summary.row(name, &shown);
+    }
+}
+
+/// Appends the limits with the given and with the redesigned controller.
+fn append_redesign(advice: &LinearAdvice, summary: &mut Summary) {
+    let Some(redesign) = &advice.redesign else { return };
+    summary.blank();
+    summary.sentence(&in_decimals(&format!("Redesign: {}", advice.redesign_effect())));
+    for note in &redesign.notes {
+        summary.wrap("", &format!("note: {note}"), 2);
+    }
+    let mut limits: Vec<&RedesignLimit> = redesign.limits.iter().collect();
+    // Those of single channels that are not stated come last, and `false` is first.
+    limits.sort_by_key(|limit| limit.stated == 0.0 && limit.channel.is_some());
+    limits.truncate(MOST_REDESIGN_LIMITS);
+    let rows: Vec<Vec<String>> = limits
+        .iter()
+        .map(|limit| {
+            vec![
+                limit.name(),
+                significant(limit.stated, 4),
+                limit.in_words(limit.given),
+                limit.in_words(limit.redesigned),
+                limit.unit.to_owned(),
+            ]
+        })
+        .collect();
+    let heads = [
+        words("others as stated"),
+        numbers("stated"),
+        numbers("stable"),
+        numbers("redesigned: stable"),
+        words("unit"),
+    ];
+    summary.table(&heads, &rows);
+}
+
+fn append_deviations(advice: &LinearAdvice, summary: &mut Summary) {
+    let shown = advice.deviations.iter().take(MOST_STATES).map(|deviation| {
+        let size = deviation.stated.map(|x| significant(x, 3));
+        let size = size.unwrap_or_else(|| advice.no_deviation().to_owned());
+        format!("{} {size} {}", deviation.state, deviation.unit).trim_end().to_owned()
+    });
+    let mut shown: Vec<String> = shown.collect();
+    let more = advice.deviations.len().saturating_sub(MOST_STATES);
+    if more > 0 {
+        shown.push(format!("and {more} more"));
+    }
+    summary.row("rms under noise", &shown.join(", "));
+}
+
+/// The recommended command and its purpose.
+fn next(advice: &LinearAdvice, args: &AdviseArgs) -> Option<(&'static str, String)> {
+    if let Some(remedies) = &advice.remedies {
+        let is_late = |budget: &&Budget| {
+            matches!(budget.kind, Imperfection::Latency | Imperfection::OutputLatency)
+                && budget.stated != 0.0
+        };
+        // One value of `--latency` is that of all inputs; those of outputs are options of their own.
+        let late: Vec<&Budget> = advice.budgets.iter().filter(is_late).collect();
+        let inputs = late.iter().all(|budget| budget.kind == Imperfection::Latency);
+        let latency = remedies.latency.filter(|_| inputs && advice.inputs.len() == 1);
+        return latency
+            .map(|latency| ("Confirm this latency", with_option("--latency", &limit(latency, 4))));
+    }
+    if advice.redesign.is_some() {
+        return Some(("Print the redesigned controller to paste", with_flag("--verbose")));
+    }
+    let is_costly = advice.cost_increase.is_none_or(|increase| increase > COSTLY);
+    if args.linear.has_weights() && is_costly {
+        return Some((
+            "Design the controller of least cost for this timing",
+            with_flag("--redesign"),
+        ));
+    }
+    map_command(args)
+}

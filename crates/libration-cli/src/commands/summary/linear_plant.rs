@@ -1,0 +1,323 @@
+//! A linear plant, steps on it and the loop around it.
+
+use libration_analyze::linear_analysis::{ClosedLoop, LinearAnalysis, Mode, StepAnalysis};
+
+use super::super::analyze_linear::{counted, shape};
+use super::super::digits::{limit, significant};
+use super::super::repeat_command::{of_subcommand, with_option};
+use super::{Summary, numbers, words};
+
+/// Largest number of modes of a plant, of modes of a loop, and of states.
+const MOST_MODES: usize = 5;
+const MOST_LOOP_MODES: usize = 3;
+const MOST_STATES: usize = 3;
+
+/// Growth of a mode that counts as none, relative to the fastest rate.
+const ROUNDING: f64 = 1e-9;
+
+/// Options of a loop around a plant.
+const LOOP: [&str; 9] = [
+    "--plant",
+    "--config",
+    "--lqr",
+    "--gain",
+    "--period",
+    "--latency",
+    "--output-latency",
+    "--jitter",
+    "--loss",
+];
+
+/// Returns a screen of an analysis; `is_one` is whether one integrator is analysed.
+pub(crate) fn of_plant(analysis: &LinearAnalysis, is_one: bool) -> String {
+    let plant = verdict(analysis);
+    let mut summary = match &analysis.closed_loop {
+        Some(own) => Summary::new(&format!("{} {plant}", verdict_of_loop(own))),
+        None => Summary::new(&plant),
+    };
+    if let Some(note) = &analysis.note {
+        summary.wrap("", &format!("note: {note}"), 2);
+    }
+    match &analysis.closed_loop {
+        Some(own) => {
+            append_loop_modes(own, &mut summary);
+            append_faults(&analysis.modes, &mut summary);
+        }
+        None => append_modes(analysis, &mut summary),
+    }
+    summary.blank();
+    append_steps(analysis, is_one, &mut summary);
+    match &analysis.closed_loop {
+        Some(own) => {
+            append_noise(own, &mut summary);
+            let limits = of_subcommand("advise", &LOOP, &[]);
+            summary.command("Find the limits of each imperfection", &limits);
+        }
+        // A tenth of the fastest time.
+        None if analysis.dt.is_none()
+            && analysis.fastest_rate > 0.0
+            && !analysis.steps.is_empty() =>
+        {
+            let dt = limit(0.1 / analysis.fastest_rate, 2);
+            summary.command("Predict and measure steps", &with_option("--dt", &dt));
+        }
+        None if !is_one && !analysis.steps.is_empty() => {
+            summary.command(
+                "See each mode in steps of one integrator",
+                &with_option("--integrator", "rk4"),
+            );
+        }
+        None => {}
+    }
+    summary.finish(
+        "all modes with natural frequencies and time constants, and what steps make of them",
+    )
+}
+
+/// The stability of a plant in a sentence.
+pub(super) fn verdict(analysis: &LinearAnalysis) -> String {
+    let counts = [
+        (analysis.states.len(), "state"),
+        (analysis.inputs.len(), "input"),
+        (analysis.outputs.len(), "output"),
+    ]
+    .map(|(count, noun)| counted(count, noun));
+    let clock = analysis
+        .sampling_period
+        .map_or_else(String::new, |period| format!(", sampled every {} s", significant(period, 6)));
+    let about = format!("The plant ({}{clock})", counts.join(", "));
+    let Some(first) = analysis.modes.first() else { return format!("{about} has no modes.") };
+    let least = ROUNDING * analysis.fastest_rate;
+    let growing = analysis.modes.iter().filter(|mode| mode.growth_rate > least).count();
+    let moved = first
+        .states
+        .first()
+        .map_or_else(String::new, |(name, _)| format!(", most of all in {name}"));
+    match first.growth_rate {
+        rate if rate > least => {
+            let more = if growing > 1 {
+                format!("{growing} modes grow, the fastest")
+            } else {
+                "a mode grows".into()
+            };
+            format!("{about} is unstable: {more} at {} 1/s{moved}.", significant(rate, 4))
+        }
+        rate if rate < -least => {
+            format!(
+                "{about} is stable: its slowest mode decays at {} 1/s{moved}.",
+                significant(-rate, 4)
+            )
+        }
+        _ => {
+            let neutral = analysis.modes.iter().filter(|mode| mode.growth_rate.abs() <= least);
+            format!(
+                "{about} is not stable: {} neither grow nor decay.",
+                counted(neutral.count(), "mode")
+            )
+            .replace("1 mode neither grow nor decay", "a mode neither grows nor decays")
+        }
+    }
+}
+
+fn verdict_of_loop(own: &ClosedLoop) -> String {
+    let moments = own.mean_square_growth.exp_m1();
+    let verb = if own.stable { "fall" } else { "grow" };
+    format!(
+        "The loop is {} with a period of {} s: second moments {verb} by {} % per period, with jitter and losses.",
+        if own.stable { "stable" } else { "unstable" },
+        significant(own.period, 6),
+        significant(100.0 * moments.abs(), 4)
+    )
+}
+
+fn append_modes(analysis: &LinearAnalysis, summary: &mut Summary) {
+    let row = |(i, mode): (usize, &Mode)| {
+        let damping = mode.damping_ratio.map_or("none".to_owned(), |x| significant(x, 4));
+        vec![
+            (i + 1).to_string(),
+            significant(mode.growth_rate, 5),
+            damping,
+            significant(mode.frequency, 5),
+            shape(&mode.states),
+        ]
+    };
+    let rows: Vec<Vec<String>> =
+        analysis.modes.iter().enumerate().take(MOST_MODES).map(row).collect();
+    let heads = [
+        numbers("mode"),
+        numbers("growth (1/s)"),
+        numbers("damping"),
+        numbers("frequency (Hz)"),
+        words("states that move most"),
+    ];
+    summary.blank();
+    summary.table(&heads, &rows);
+    append_rest(analysis.modes.len(), rows.len(), summary);
+    append_faults(&analysis.modes, summary);
+}
+
+/// Appends the modes that no input reaches, and those that no output shows.
+fn append_faults(modes: &[Mode], summary: &mut Summary) {
+    let list = |is: fn(&Mode) -> bool| {
+        let numbers = modes.iter().enumerate().filter(|(_, mode)| !is(mode));
+        numbers.map(|(i, _)| (i + 1).to_string()).collect::<Vec<_>>().join(", ")
+    };
+    for (faulty, why) in [
+        (
+            list(|mode| mode.controllable),
+            "of the plant not controllable: no input reaches all of its motions",
+        ),
+        (
+            list(|mode| mode.observable),
+            "of the plant not observable: no output shows all of its motions",
+        ),
+    ] {
+        if !faulty.is_empty() {
+            summary.wrap("", &format!("warning: mode {faulty} {why}"), 2);
+        }
+    }
+}
+
+fn append_rest(all: usize, shown: usize, summary: &mut Summary) {
+    if all > shown {
+        summary.sentence(&format!("and {} more", all - shown));
+    }
+}
+
+fn append_loop_modes(own: &ClosedLoop, summary: &mut Summary) {
+    let rows: Vec<Vec<String>> = own
+        .modes
+        .iter()
+        .enumerate()
+        .take(MOST_LOOP_MODES)
+        .map(|(i, mode)| {
+            vec![
+                (i + 1).to_string(),
+                significant(mode.growth, 6),
+                mode.damping_ratio.map_or("none".to_owned(), |x| significant(x, 4)),
+                significant(mode.frequency, 4),
+                shape(&mode.states),
+            ]
+        })
+        .collect();
+    let heads = [
+        numbers("mode"),
+        numbers("growth/period"),
+        numbers("damping"),
+        numbers("frequency (Hz)"),
+        words("states that move most"),
+    ];
+    summary.blank();
+    summary.table(&heads, &rows);
+    append_rest(own.modes.len() + own.vanishing_modes, rows.len(), summary);
+}
+
+fn append_noise(own: &ClosedLoop, summary: &mut Summary) {
+    let cost = own.cost.map(|cost| format!("{} per second", significant(cost, 5)));
+    summary.row("cost under noise", cost.as_deref().unwrap_or("infinite: second moments grow"));
+    let shown = own.deviations.iter().take(MOST_STATES).map(|deviation| {
+        format!("{} {} {}", deviation.state, significant(deviation.deviation, 3), deviation.unit)
+            .trim_end()
+            .to_owned()
+    });
+    let mut shown: Vec<String> = shown.collect();
+    let more = own.deviations.len().saturating_sub(MOST_STATES);
+    if more > 0 {
+        shown.push(format!("and {more} more"));
+    }
+    if !shown.is_empty() {
+        summary.row("rms under noise", &shown.join(", "));
+    }
+}
+
+/// Appends the integrators whose steps are stable, those that are not, and the difference of simulations from predictions.
+pub(super) fn append_steps(analysis: &LinearAnalysis, is_one: bool, summary: &mut Summary) {
+    let Some(first) = analysis.steps.first() else { return };
+    let end = |x: Option<f64>| x.map_or("∞".to_owned(), |x| limit(x, 4));
+    let mut groups: [(String, Vec<String>); 4] = match analysis.dt {
+        Some(dt) => [
+            format!("stable at dt = {dt} s"),
+            "unstable there".into(),
+            "never stable".into(),
+            "not known".into(),
+        ],
+        None => {
+            ["stable for any dt", "stable in part", "never stable", "not known"].map(str::to_owned)
+        }
+    }
+    .map(|name| (name, Vec::new()));
+    for step in &analysis.steps {
+        let name = step.integrator;
+        let (group, text) = match step.stable_dt.as_deref() {
+            None => (3, name.to_owned()),
+            Some([]) => (2, name.to_owned()),
+            Some(windows) => {
+                let windows_text: Vec<String> = windows
+                    .iter()
+                    .map(|&[from, to]| match from {
+                        Some(0.0) => format!("up to {}", end(to)),
+                        from => format!("{} to {}", end(from), end(to)),
+                    })
+                    .collect();
+                let limits = format!("{name} ({} s)", windows_text.join(", "));
+                let holds = analysis.dt.map(|dt| {
+                    let is_in = |&[from, to]: &[Option<f64>; 2]| {
+                        from.is_none_or(|from| from <= dt) && to.is_none_or(|to| dt <= to)
+                    };
+                    windows.iter().any(is_in)
+                });
+                let is_unlimited = matches!(windows, [[Some(0.0), None]]);
+                match (holds, is_unlimited) {
+                    (Some(true) | None, true) => (0, name.to_owned()),
+                    (Some(true), false) => (0, limits),
+                    (Some(false), _) => (1, limits),
+                    (None, false) => (1, limits),
+                }
+            }
+        };
+        groups[group].1.push(text);
+    }
+    for (name, members) in groups.iter().filter(|(_, members)| !members.is_empty()) {
+        summary.wrap(&format!("{name}: "), &members.join(", "), 2);
+    }
+    if groups[3].1.is_empty() && analysis.steps.iter().any(|step| step.stable_dt.is_none()) {
+        summary.sentence("a mode of the plant grows");
+    }
+    append_predictions(&analysis.steps, summary);
+    if is_one && let Some(radius) = first.predicted_spectral_radius {
+        summary.row("spectral radius", &format!("1 {}, predicted", signed(radius - 1.0)));
+    }
+}
+
+fn signed(x: f64) -> String {
+    format!("{} {}", if x < 0.0 { "−" } else { "+" }, significant(x.abs(), 5))
+}
+
+/// Relative difference of a simulated growth from the prediction that is rounding.
+const AGREES: [f64; 2] = [1e-12, 1e-4];
+
+/// Appends the largest difference of the growth in simulations from predictions.
+fn append_predictions(steps: &[StepAnalysis], summary: &mut Summary) {
+    let largest = |of: fn(&StepAnalysis) -> Option<f64>| {
+        let own = steps.iter().filter_map(|step| {
+            let (measured, predicted) = (of(step)?, step.predicted_spectral_radius?);
+            Some(((measured - predicted).abs() / predicted.abs().max(1.0), step.integrator))
+        });
+        own.max_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let both = [
+        ("f64", AGREES[0], largest(|step| step.simulated.map(|own| own.growth))),
+        ("f32", AGREES[1], largest(|step| step.simulated_f32.map(|own| own.growth))),
+    ];
+    let shown = both.into_iter().filter_map(|(float, rounding, found)| {
+        let (size, integrator) = found?;
+        Some(match size <= rounding {
+            true => format!("as predicted in {float}"),
+            false => format!("differs by {} in {float} ({integrator})", significant(size, 2)),
+        })
+    });
+    let shown: Vec<String> = shown.collect();
+    if !shown.is_empty() {
+        summary.row("simulated growth", &shown.join(", "));
+    }
+}

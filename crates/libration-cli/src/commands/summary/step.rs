@@ -1,0 +1,187 @@
+//! One step of a system of the catalogue.
+
+use libration_analyze::{Analysis, Request, Stepping};
+
+use super::super::analyze::UNKNOWN;
+use super::super::digits::{limit, short, significant};
+use super::super::repeat_command::{of_subcommand, with_option};
+use super::Summary;
+use super::step_loop::{append_loop, changes, verdict};
+
+/// Largest number of windows of stable steps.
+const MOST: usize = 3;
+
+/// Options of a system.
+pub(super) const SYSTEM: [&str; 5] = ["--system", "--force", "--set", "--q", "--v"];
+
+/// Returns a screen of an analysis.
+pub(crate) fn of_step(analysis: &Analysis, request: &Request) -> String {
+    let of_loop = analysis.timing.as_ref().and_then(verdict);
+    let is_loop = of_loop.is_some();
+    let mut summary = Summary::new(&of_loop.unwrap_or_else(|| verdict_of_step(analysis)));
+    if is_loop {
+        summary.sentence(&format!("Without feedback: {}", verdict_of_step(analysis)));
+    }
+    if let Some(step) = analysis.drift.as_ref().and_then(|drift| drift.stopped_at_step) {
+        summary.warnings(&[format!("the state leaves the range of f64 at step {step}")]);
+    }
+    if let Some(note) = &analysis.request.note {
+        summary.wrap("", &format!("note: {note}"), 2);
+    }
+    summary.blank();
+    if let Some(timing) = &analysis.timing {
+        append_loop(timing, &request.timing, &mut summary);
+    }
+    append_step(analysis, request, &mut summary);
+    if let Some((purpose, command)) = next(analysis, is_loop) {
+        summary.command(purpose, &command);
+    }
+    let more = "the update matrix and its polynomials, eigenvalues, defects of symplecticity and reversibility";
+    summary.finish(more)
+}
+
+fn verdict_of_step(analysis: &Analysis) -> String {
+    let about = &analysis.request;
+    let step = format!("{} in steps of {} s", about.integrator, short(about.dt));
+    let excess = analysis.spectral_radius_minus_one;
+    let parameters: Vec<String> = about
+        .parameters
+        .iter()
+        .map(|(name, value)| format!("{name} = {}", short(*value)))
+        .collect();
+    let system = format!("{} ({})", about.system, parameters.join(", "));
+    match (analysis.bounded, about.linear) {
+        (Some(true), _) if excess < 0.0 => {
+            format!("{step} is stable on {}: motions {}.", system, changes(excess))
+        }
+        (Some(true), _) => {
+            format!("{step} is stable on {}: every motion stays bounded.", system)
+        }
+        (Some(false), _) if excess == 0.0 => {
+            format!("Motions of {step} on {} are unbounded, without exponential growth.", system)
+        }
+        (Some(false), _) => {
+            format!("{step} is unstable on {}: motions {}.", system, changes(excess))
+        }
+        (None, true) => format!(
+            "Whether {step} is stable on {} is not known: its coupled modes neither grow nor decay.",
+            system
+        ),
+        (None, false) => {
+            format!("{step} on {}: linearised at the start, motions {}.", system, changes(excess))
+        }
+    }
+}
+
+fn append_step(analysis: &Analysis, request: &Request, summary: &mut Summary) {
+    let about = &analysis.request;
+    let one_mode = matches!(about.system, "oscillator" | "damped-oscillator");
+    match &analysis.stability_windows {
+        Some(windows) => {
+            let end = |x: Option<f64>| x.map_or("∞".into(), |x| limit(x, 6));
+            let shown = windows.iter().take(MOST);
+            let mut shown: Vec<String> =
+                shown.map(|&[from, to]| format!("{} to {}", end(from), end(to))).collect();
+            if windows.len() > MOST {
+                shown.push(format!("{} more windows", windows.len() - MOST));
+            }
+            let shown = if shown.is_empty() { "none".into() } else { shown.join(", ") };
+            summary.row("stable for dt in s", &shown);
+        }
+        None if one_mode && about.integrator != Stepping::EXACT => {
+            summary.row("stable for dt in s", UNKNOWN);
+        }
+        None => {}
+    }
+    let mut largest = |what: &str, of: Option<f64>, dt: Option<Option<f64>>| {
+        let Some(of) = of else { return };
+        let dt = match dt {
+            Some(Some(dt)) => limit(dt, 6),
+            Some(None) => "any".to_owned(),
+            None => UNKNOWN.to_owned(),
+        };
+        summary.row("largest dt in s", &format!("{dt} for {what} {}", short(of)));
+    };
+    if let Some(dt) = &analysis.largest_dt {
+        let criteria = &request.criteria;
+        largest("drift", criteria.max_drift, dt.energy_drift);
+        largest("drift from the worst start", criteria.max_drift, dt.energy_drift_worst_start);
+        largest("amplitude", criteria.max_amplitude, dt.amplitude);
+        largest("error", criteria.max_error, dt.trajectory_error);
+    }
+    if let Some(word) = &analysis.order_of_word {
+        summary.row("order", &word.order.to_string());
+    }
+    let phase = analysis.phase_error_per_step.map_or_else(
+        || "none: nothing oscillates".to_owned(),
+        |error| format!("{} rad per step", significant(error, 4)),
+    );
+    summary.row("phase error", &phase);
+    summary.row("force evaluations", &format!("{} per step", analysis.force_evaluations_per_step));
+    let drift = match &analysis.drift {
+        None => "undefined: the energy at the start is zero".to_owned(),
+        Some(drift) => {
+            let size = match drift.max_energy_drift.get() {
+                "null" => "beyond the range of f64; more than any part".to_owned(),
+                size => few_digits(size),
+            };
+            format!(
+                "{size} of the start, at step {} of {} ({})",
+                drift.max_energy_drift_step, about.steps, drift.max_energy_drift_method
+            )
+        }
+    };
+    summary.row("energy drift", &drift);
+}
+
+/// A decimal with four digits, also beyond the range of floats.
+fn few_digits(decimal: &str) -> String {
+    match (decimal.parse::<f64>(), decimal.split_once('e')) {
+        (Ok(x), _) if x.is_finite() => significant(x, 4),
+        (_, Some((mantissa, exponent))) => {
+            format!("{}e{exponent}", significant(mantissa.parse().unwrap_or(f64::NAN), 4))
+        }
+        _ => decimal.to_owned(),
+    }
+}
+
+/// The recommended command and its purpose.
+fn next(analysis: &Analysis, is_loop: bool) -> Option<(&'static str, String)> {
+    let about = &analysis.request;
+    if is_loop {
+        let timing = analysis.timing.as_ref()?;
+        let late = timing.latency_steps? * about.dt;
+        let critical = timing.critical.as_ref()?.critical_latency_seconds;
+        return Some(match critical.filter(|critical| *critical <= late && *critical > 0.0) {
+            Some(critical) => {
+                // Below it: at the limit itself the loop does not decay.
+                ("Take a shorter latency", with_option("--latency", &limit(0.9 * critical, 2)))
+            }
+            None => {
+                let period = format!("{}", about.dt);
+                let options =
+                    [&SYSTEM[..], &["--feedback", "--latency", "--jitter", "--loss"]].concat();
+                let command = of_subcommand("advise", &options, &["--period", &period]);
+                ("Find the limits of each imperfection", command)
+            }
+        });
+    }
+    match (analysis.bounded, &analysis.stability_windows) {
+        (Some(false), Some(windows)) => match windows.first() {
+            Some(&[Some(0.0), Some(to)]) if about.dt > to => {
+                Some(("Take shorter steps", with_option("--dt", &limit(0.9 * to, 2))))
+            }
+            Some(_) => None,
+            None => Some((
+                "Take an integrator that is stable",
+                with_option("--integrator", "velocity-verlet"),
+            )),
+        },
+        // `advise` has systems of at most two degrees of freedom.
+        _ if about.q.len() <= 2 => Some((
+            "Find the cheapest integrator for an error",
+            of_subcommand("advise", &SYSTEM, &["--tolerance", "trajectory=1e-3"]),
+        )),
+        _ => None,
+    }
+}

@@ -1,0 +1,93 @@
+//! The loop around a step of a system of the catalogue.
+
+use libration_analyze::{LoopAnalysis, Timing};
+
+use super::super::closed_loop::{CLIPPED, NOMINAL, TOO_FAR, dephasing};
+use super::super::digits::{limit, significant};
+use super::Summary;
+
+/// Largest number of later windows of stable latencies.
+const MOST: usize = 3;
+
+/// How motions and second moments change.
+pub(super) fn verdict(analysis: &LoopAnalysis) -> Option<String> {
+    let excess = analysis.closed_loop_spectral_radius_minus_one?;
+    let moments = analysis.growth.and_then(|growth| growth.mean_square_growth);
+    let motions = format!("its motions {}", changes(excess));
+    let squares = moments.map(|growth| format!(", and their second moments {}", changes(growth)));
+    let worst = moments.map_or(excess, |growth| excess.max(growth));
+    let verdict = match (worst > 0.0, worst < 0.0) {
+        (true, _) => "unstable",
+        (_, true) => "stable",
+        _ => "at the limit of stability",
+    };
+    Some(format!("The loop is {verdict}: {motions}{}.", squares.unwrap_or_default()))
+}
+
+/// A relative change per step, in words.
+pub(super) fn changes(change: f64) -> String {
+    let percent = significant(100.0 * change.abs(), 4);
+    match (change > 0.0, change < 0.0) {
+        (true, _) => format!("grow by {percent} % per step"),
+        (_, true) => format!("decay by {percent} % per step"),
+        _ => "neither grow nor decay".to_owned(),
+    }
+}
+
+/// Appends latencies, growth and cost.
+pub(super) fn append_loop(analysis: &LoopAnalysis, timing: &Timing, summary: &mut Summary) {
+    if let (Some([kp, kd]), Some(steps)) = (analysis.feedback, analysis.latency_steps) {
+        let [of_kp, of_kd] = analysis.feedback_units.unwrap_or_default();
+        let [kp, kd] = [kp, kd].map(|gain| significant(gain, 6));
+        let law = format!("-({kp} {of_kp}) q - ({kd} {of_kd}) v");
+        let late = significant(steps, 5);
+        summary.row(analysis.command.unwrap_or("command"), &format!("{law}, latency {late} steps"));
+    }
+    if let Some(critical) = &analysis.critical {
+        let windows = &critical.latency_windows;
+        let shown = match (critical.critical_latency_steps, critical.critical_latency_seconds) {
+            (Some(steps), Some(seconds)) => {
+                format!("{} s, {} steps", limit(seconds, 4), limit(steps, 4))
+            }
+            _ if windows.is_empty() => "none: the loop is stable with no latency".to_owned(),
+            _ => "none".to_owned(),
+        };
+        summary.row("critical latency", &shown);
+        let end = |x: Option<f64>| x.map_or("∞".into(), |x| limit(x, 4));
+        let again = windows.iter().skip(1).take(MOST);
+        let again: Vec<String> =
+            again.map(|&(from, to)| format!("{} to {}", significant(from, 4), end(to))).collect();
+        if !again.is_empty() {
+            summary.row("stable again", &format!("{} steps late", again.join(", ")));
+        }
+    }
+    if let Some(growth) = &analysis.growth {
+        let shown = growth.mean_square_growth.map(changes);
+        summary.row("second moments", shown.as_deref().unwrap_or(TOO_FAR));
+        if analysis.jitter_clips == Some(true) {
+            summary.row("", CLIPPED);
+        }
+        if let Some(exponent) = growth.lyapunov_exponent {
+            summary.row("Lyapunov exponent", &format!("{} a step", significant(exponent, 4)));
+        }
+        if timing.skew.is_some() {
+            summary.row("", NOMINAL);
+        }
+    }
+    if let Some(steps) = analysis.dephasing_steps {
+        summary.row("mean falls to 1/e in", &dephasing(steps.map(|x| x.round())));
+    }
+    if let Some(cost) = &analysis.cost {
+        let increase = cost.cost_increase.map(|rise| {
+            let side = if rise < 0.0 { "below" } else { "above" };
+            let percent = significant(100.0 * rise.abs(), 3);
+            format!(", {percent} % {side} that of an ideal clock and link")
+        });
+        let shown = match (cost.cost, cost.cost_infinite) {
+            (Some(cost), _) => format!("{} under unit noise", significant(cost, 5)),
+            (None, Some(_)) => "infinite: second moments grow".to_owned(),
+            (None, None) => "not known: the state of the loop has too many dimensions".to_owned(),
+        };
+        summary.row("cost", &(shown + &increase.unwrap_or_default()));
+    }
+}
