@@ -11,6 +11,9 @@ use crate::args::AdviseArgs;
 /// Largest number of integrators.
 const MOST: usize = 5;
 
+/// Error of a motion from which nothing is left of it.
+const USEFUL: f64 = 0.1;
+
 /// Returns a screen of advice.
 pub(crate) fn of_advice(advice: &Advice, args: &AdviseArgs) -> String {
     let mut summary = Summary::new(&advice.answer);
@@ -87,9 +90,11 @@ fn append_integrators(advice: &Advice, summary: &mut Summary) {
     summary.table(&heads, &rows);
     let more = advice.integrators.len() - rows.len();
     if more > 0 {
-        summary.sentence(&format!("and {more} more, which are not cheaper"));
+        summary.sentence(&format!("and {more} more"));
     }
-    summary.blank();
+    if !advice.floats.is_empty() {
+        summary.blank();
+    }
     for float in &advice.floats {
         let meets = if float.meets { "within" } else { "above" };
         let error = significant(float.lost, 3);
@@ -129,7 +134,13 @@ fn next(advice: &Advice, args: &AdviseArgs) -> Option<(&'static str, String)> {
     }
     // The smallest error that was found, rounded up.
     let least = advice.integrators.iter().map(|choice| choice.lost).fold(f64::INFINITY, f64::min);
-    let error = format!("{}={:.1e}", advice.tolerance.of, 1.1 * least);
-    let is_possible = least.is_finite() && args.config.is_none() && advice.tolerance.of != "cost";
-    is_possible.then(|| ("Allow the smallest error found", with_option("--tolerance", &error)))
+    let error = format!("{}={}", advice.tolerance.of, significant(1.1 * least, 2));
+    let shorter = significant(0.25 * advice.horizon, 4);
+    match args.config {
+        Some(_) => None,
+        None if least < USEFUL => {
+            Some(("Allow the smallest error found", with_option("--tolerance", &error)))
+        }
+        None => Some(("Follow the motion for less time", with_option("--horizon", &shorter))),
+    }
 }

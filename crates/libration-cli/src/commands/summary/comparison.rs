@@ -2,8 +2,8 @@
 
 use libration_analyze::comparison::{ComparedIntegrator, Comparison};
 
-use super::super::digits::{limit, significant};
-use super::super::repeat_command::of_subcommand;
+use super::super::digits::significant;
+use super::super::repeat_command::{of_subcommand, with_option};
 use super::step::SYSTEM;
 use super::{Summary, numbers, words};
 
@@ -50,9 +50,8 @@ pub(crate) fn of_comparison(comparison: &Comparison, verdict: &str, notes: &[Str
         let more = ["--integrator", best.integrator, "--dt", &dt.to_string(), "--steps", &steps];
         summary.command("Take these steps", &of_subcommand("simulate", &SYSTEM, &more));
     } else {
-        let least = comparison.integrators.iter().filter_map(|one| one.error);
-        let least = least.fold(f64::INFINITY, f64::min);
-        summary.row("smallest error", &limit(least, 3));
+        let shorter = significant(0.25 * comparison.horizon, 4);
+        summary.command("Compare on less time", &with_option("--horizon", &shorter));
     }
     summary.finish("20 integrators, their stages, and how errors are measured and predicted")
 }

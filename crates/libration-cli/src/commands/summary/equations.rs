@@ -3,7 +3,7 @@
 use libration_analyze::equation_analysis::{EquationAnalysis, EquationMotion};
 
 use super::super::digits::significant;
-use super::super::repeat_command::of_subcommand;
+use super::super::repeat_command::{of_subcommand, with_option};
 use super::linear_plant::{append_steps, verdict};
 use super::step::SYSTEM;
 use super::{Summary, numbers, words};
@@ -39,10 +39,16 @@ pub(crate) fn of_equations(analysis: &EquationAnalysis, order: &str) -> String {
     }
     let horizon = significant(motion.error_steps as f64 * motion.dt, 4);
     let more = ["--tolerance", "trajectory=1e-6", "--horizon", &horizon];
-    summary.command(
-        "Find the cheapest integrator for an error",
-        &of_subcommand("advise", &SYSTEM, &more),
-    );
+    match resolves(motion) {
+        true => summary.command(
+            "Find the cheapest integrator for an error",
+            &of_subcommand("advise", &SYSTEM, &more),
+        ),
+        false => {
+            let dt = significant(0.5 * motion.dt, 6);
+            summary.command("Take shorter steps", &with_option("--dt", &dt));
+        }
+    }
     let system = format!("the operations of a step, all states of {}, and the modes", system.name);
     summary.finish(&system)
 }
@@ -59,12 +65,17 @@ fn verdict_of_motion(analysis: &EquationAnalysis) -> String {
         return format!("{step} diverges: a state is not finite after step {diverged}.");
     }
     let time = significant(motion.error_steps as f64 * motion.dt, 6);
-    let unresolved = motion.errors.iter().any(|state| !motion.is_resolved(state.reduction));
-    let verdict = match unresolved {
-        true => "does not resolve the motion: take smaller steps.",
-        false => "resolves the motion: halved steps reduce errors as predicted.",
+    let verdict = match resolves(motion) {
+        true => "resolves the motion: halved steps reduce errors as predicted.",
+        false => "does not resolve the motion.",
     };
     format!("{step} {verdict} Errors are those after {time} s.")
+}
+
+/// Whether the state stays finite and its errors are those of small steps.
+fn resolves(motion: &EquationMotion) -> bool {
+    let small = motion.errors.iter().all(|state| motion.is_resolved(state.reduction));
+    small && motion.diverged_at_step.is_none()
 }
 
 fn append_errors(motion: &EquationMotion, summary: &mut Summary) {

@@ -9,9 +9,8 @@ use super::loop_limits::{append_limits, append_simulated, change, cost};
 use super::{Summary, in_decimals, map_command, numbers, words};
 use crate::args::AdviseArgs;
 
-/// Largest number of entries of a gain, of rows for inputs and of states.
-const MOST_GAINS: usize = 12;
-const MOST_INPUTS: usize = 2;
+/// Largest number of entries of a gain, of states, and of limits with a redesign.
+const MOST_GAINS: usize = 6;
 const MOST_STATES: usize = 3;
 const MOST_REDESIGN_LIMITS: usize = 5;
 
@@ -74,7 +73,10 @@ fn append_margins<'a>(
     let known = |x: Option<f64>, unit: &str| {
         x.map_or_else(|| "none".to_owned(), |x| significant(x, 4) + unit)
     };
-    for own in margins.into_iter().take(MOST_INPUTS) {
+    // Of several inputs that with the least phase margin.
+    let phase = |own: &InputMargins| own.phase.unwrap_or(f64::INFINITY);
+    let least = margins.into_iter().min_by(|a, b| phase(a).total_cmp(&phase(b)));
+    if let Some(own) = least {
         let shown = format!(
             "at {}: gain from {} to {}, phase {} at {}",
             own.input,
@@ -132,7 +134,9 @@ fn append_deviations(advice: &LinearAdvice, summary: &mut Summary) {
     if more > 0 {
         shown.push(format!("and {more} more"));
     }
-    summary.row("rms under noise", &shown.join(", "));
+    let is_known = advice.deviations.iter().any(|deviation| deviation.stated.is_some());
+    let shown = if is_known { shown.join(", ") } else { advice.no_deviation().to_owned() };
+    summary.row("rms under noise", &shown);
 }
 
 /// The recommended command and its purpose.

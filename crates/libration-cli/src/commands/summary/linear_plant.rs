@@ -67,11 +67,24 @@ pub(crate) fn of_plant(analysis: &LinearAnalysis, is_one: bool) -> String {
                 &with_option("--integrator", "rk4"),
             );
         }
-        None => {}
+        None => {
+            if let (true, Some(dt)) = (is_one, shorter_step(analysis)) {
+                summary.command("Take shorter steps", &with_option("--dt", &limit(dt, 2)));
+            }
+        }
     }
     summary.finish(
         "all modes with natural frequencies and time constants, and what steps make of them",
     )
+}
+
+/// A stable step shorter than that of the analysis, which is not stable; none if it is.
+fn shorter_step(analysis: &LinearAnalysis) -> Option<f64> {
+    let windows = analysis.steps.first()?.stable_dt.as_ref()?;
+    match windows.first()? {
+        &[Some(0.0), Some(to)] if analysis.dt? > to => Some(0.9 * to),
+        _ => None,
+    }
 }
 
 /// The stability of a plant in a sentence.
@@ -241,9 +254,8 @@ pub(super) fn append_steps(analysis: &LinearAnalysis, is_one: bool, summary: &mu
             "never stable".into(),
             "not known".into(),
         ],
-        None => {
-            ["stable for any dt", "stable in part", "never stable", "not known"].map(str::to_owned)
-        }
+        None => ["stable for any dt", "stable for some dt", "never stable", "not known"]
+            .map(str::to_owned),
     }
     .map(|name| (name, Vec::new()));
     for step in &analysis.steps {
@@ -252,14 +264,12 @@ pub(super) fn append_steps(analysis: &LinearAnalysis, is_one: bool, summary: &mu
             None => (3, name.to_owned()),
             Some([]) => (2, name.to_owned()),
             Some(windows) => {
-                let windows_text: Vec<String> = windows
-                    .iter()
-                    .map(|&[from, to]| match from {
-                        Some(0.0) => format!("up to {}", end(to)),
-                        from => format!("{} to {}", end(from), end(to)),
-                    })
-                    .collect();
-                let limits = format!("{name} ({} s)", windows_text.join(", "));
+                let again = if windows.len() > 1 { ", and again later" } else { "" };
+                let first = match windows[0] {
+                    [Some(0.0), to] => format!("up to {} s", end(to)),
+                    [from, to] => format!("{} to {} s", end(from), end(to)),
+                };
+                let limits = format!("{name} ({first}{again})");
                 let holds = analysis.dt.map(|dt| {
                     let is_in = |&[from, to]: &[Option<f64>; 2]| {
                         from.is_none_or(|from| from <= dt) && to.is_none_or(|to| dt <= to)

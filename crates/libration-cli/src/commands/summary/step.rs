@@ -30,7 +30,7 @@ pub(crate) fn of_step(analysis: &Analysis, request: &Request) -> String {
     }
     summary.blank();
     if let Some(timing) = &analysis.timing {
-        append_loop(timing, &request.timing, &mut summary);
+        append_loop(timing, &request.timing, request.dt, &mut summary);
     }
     append_step(analysis, request, &mut summary);
     if let Some((purpose, command)) = next(analysis, is_loop) {

@@ -35,13 +35,18 @@ pub(super) fn changes(change: f64) -> String {
 }
 
 /// Appends latencies, growth and cost.
-pub(super) fn append_loop(analysis: &LoopAnalysis, timing: &Timing, summary: &mut Summary) {
+pub(super) fn append_loop(
+    analysis: &LoopAnalysis,
+    timing: &Timing,
+    dt: f64,
+    summary: &mut Summary,
+) {
     if let (Some([kp, kd]), Some(steps)) = (analysis.feedback, analysis.latency_steps) {
         let [of_kp, of_kd] = analysis.feedback_units.unwrap_or_default();
         let [kp, kd] = [kp, kd].map(|gain| significant(gain, 6));
         let law = format!("-({kp} {of_kp}) q - ({kd} {of_kd}) v");
-        let late = significant(steps, 5);
-        summary.row(analysis.command.unwrap_or("command"), &format!("{law}, latency {late} steps"));
+        let late = significant(steps * dt, 5);
+        summary.row(analysis.command.unwrap_or("command"), &format!("{law}, latency {late} s"));
     }
     if let Some(critical) = &analysis.critical {
         let windows = &critical.latency_windows;

@@ -16,10 +16,14 @@ const COARSE: f64 = 0.01;
 pub(crate) fn of_temperatures(report: &TemperatureReport, verdict: &str, setting: &str) -> String {
     let mut summary = Summary::new(verdict);
     summary.sentence(setting);
-    for one in &report.thermostats {
-        if let Some(note) = &one.note {
-            summary.wrap("", &format!("warning: {}: {note}", one.thermostat), 2);
-        }
+    let mut notes: Vec<&String> =
+        report.thermostats.iter().filter_map(|one| one.note.as_ref()).collect();
+    notes.sort();
+    notes.dedup();
+    for note in notes {
+        let names = report.thermostats.iter().filter(|one| one.note.as_ref() == Some(note));
+        let names: Vec<&str> = names.map(|one| one.thermostat.as_str()).collect();
+        summary.warnings(&[format!("{}: {note}", names.join(", "))]);
     }
     let percent = |x: Option<f64>| x.map_or("-".to_owned(), |x| decimals(100.0 * x));
     let measured = |bias: &TemperatureBias| match (bias.measured_bias, bias.standard_error) {
