@@ -12,7 +12,7 @@ use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::limits;
 
 use super::closed_loop::{dephasing, describe_loop};
-use super::digits::{beside_one, exact, short, sum};
+use super::digits::{UNKNOWN, beside_one, exact, short, sum};
 use super::simulate::linear_file;
 use super::{
     analyze_equations, analyze_linear, compare_integrators, equation_file, summary, temperature,
@@ -208,9 +208,6 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
     }
     text
 }
-
-/// Text in place of a result that exact arithmetic cannot derive.
-pub(super) const UNKNOWN: &str = "not known: the polynomials of this step outgrow exact arithmetic";
 
 /// Returns a largest time step as text.
 fn known(dt: Option<Option<f64>>) -> String {

@@ -8,6 +8,7 @@ use libration_analyze::linear_analysis::{
 };
 
 use super::linear_closed_loop::closed_loop;
+use super::mode_text::{counted, known, shape};
 use super::summary;
 use crate::args::AnalyzeArgs;
 use crate::error::Failure;
@@ -69,29 +70,9 @@ fn plant(analysis: &LinearAnalysis, text: &mut String) {
     );
 }
 
-/// A number of things.
-pub(super) fn counted(count: usize, noun: &str) -> String {
-    let plural = if count == 1 { "" } else { "s" };
-    format!("{count} {noun}{plural}")
-}
-
-/// Names of states with their sizes relative to the largest.
-pub(super) fn shape(states: &[(String, f64)]) -> String {
-    let each = states.iter().map(|(name, share)| match share {
-        share if *share > 0.995 => name.clone(),
-        share => format!("{share:.2} {name}"),
-    });
-    each.collect::<Vec<_>>().join(", ")
-}
-
 /// A number with nine digits at most.
 fn rounded(x: f64) -> String {
     format!("{x:.8e}").parse().map_or_else(|_| x.to_string(), |x: f64| x.to_string())
-}
-
-/// A number if it is known.
-pub(super) fn known(x: Option<f64>, digits: usize) -> String {
-    x.map_or_else(|| "none".to_owned(), |x| format!("{x:.digits$}"))
 }
 
 fn modes(analysis: &LinearAnalysis, text: &mut String) {

@@ -1,5 +1,8 @@
 //! Numbers in answers: as many digits as mean something to a reader. JSON has all of them.
 
+/// Text in place of a result that exact arithmetic cannot derive.
+pub(super) const UNKNOWN: &str = "not known: the polynomials of this step outgrow exact arithmetic";
+
 /// A number with at most ten digits, without zeros at its end.
 pub(super) fn short(x: f64) -> String {
     significant(x, 10)

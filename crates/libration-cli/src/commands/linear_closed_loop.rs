@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use libration_analyze::linear_analysis::ClosedLoop;
 
-use super::analyze_linear::{counted, known, shape};
+use super::mode_text::{counted, known, shape};
 
 /// Appends the modes, the growth, the cost and the deviations of a loop.
 pub(super) fn closed_loop(own: &ClosedLoop, text: &mut String) {

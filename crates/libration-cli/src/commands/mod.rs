@@ -34,6 +34,7 @@ mod linear_closed_loop;
 mod list;
 mod log_warnings;
 mod measure_jitter;
+mod mode_text;
 mod mujoco;
 mod presets;
 mod probe;

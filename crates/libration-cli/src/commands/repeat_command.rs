@@ -2,6 +2,9 @@
 
 use crate::args::quoted;
 
+/// Options of a system.
+pub(super) const SYSTEM: [&str; 5] = ["--system", "--force", "--set", "--q", "--v"];
+
 /// Returns the command line that repeats this request, without the options of its output.
 pub(super) fn command_line() -> String {
     quoted(repeated())

@@ -161,7 +161,7 @@ fn limits_are_printed_with_all_their_digits() {
     let words = "analyze --system oscillator --set omega2=10 --integrator yoshida4 --dt";
     let text = |dt: &str| {
         let mut command = Command::cargo_bin("libration").unwrap();
-        let output = command.args(words.split(' ')).arg(dt).output().unwrap();
+        let output = command.args(words.split(' ')).args([dt, "--verbose"]).output().unwrap();
         String::from_utf8_lossy(&output.stdout).into_owned()
     };
     let said = text("0.01");

@@ -52,13 +52,13 @@ fn losses_are_in_the_growth_of_second_moments_also_alone() {
     assert!((growth(LOSSY) - 0.028_147_536_838_268).abs() < 1e-12, "{}", growth(LOSSY));
     let alone = "analyze --system oscillator --set omega2=10 --integrator exact --dt 0.05 --feedback 10,2 --loss 0.3";
     assert!((growth(alone) - (0.924_232_830_713_709 - 1.0)).abs() < 1e-12, "{}", growth(alone));
-    let text = told(alone);
+    let text = told(&format!("{alone} --verbose"));
     assert!(
         text.contains("second moments grow by") && text.contains("not known with losses"),
         "{text}"
     );
     assert!(json(alone)["lyapunov_exponent"].is_null());
-    assert!(told(LOSSY).contains("not known with a latency and losses"));
+    assert!(told(&format!("{LOSSY} --verbose")).contains("not known with a latency and losses"));
     // A law of skews is one of other clocks.
     let skewed = told(&format!("{alone} --skew uniform:0.01"));
     assert!(skewed.contains("for a clock at its nominal rate"), "{skewed}");
@@ -66,7 +66,7 @@ fn losses_are_in_the_growth_of_second_moments_also_alone() {
 
 #[test]
 fn what_is_open_and_what_is_closed_stands_in_blocks_of_their_own() {
-    let blocks = blocks(&told(LOSSY));
+    let blocks = blocks(&told(&format!("{LOSSY} --verbose")));
     let headings: Vec<&str> = blocks[1..].iter().map(|(heading, _)| heading.as_str()).collect();
     let wanted = [
         "Open loop: one step of the plant",
@@ -91,11 +91,11 @@ fn what_is_open_and_what_is_closed_stands_in_blocks_of_their_own() {
     assert!((radius - 1.0 - excess).abs() < 1e-15);
     // Without a loop there is one block, and the plant alone loses its phase under a skewed clock.
     let plain = "analyze --system oscillator --integrator rk4 --dt 0.01";
-    assert!(!told(plain).contains("loop"));
-    let skewed = told(&format!("{plain} --skew gaussian:0.01 --feedback 10,2"));
+    assert!(!told(&format!("{plain} --verbose")).contains("loop"));
+    let skewed = told(&format!("{plain} --skew gaussian:0.01 --feedback 10,2 --verbose"));
     let open = skewed.split("Closed loop").next().unwrap();
     assert!(open.contains("mean falls to 1/e in"), "{skewed}");
-    libration(&format!("{plain} --jitter uniform:0.1"))
+    libration(&format!("{plain} --jitter uniform:0.1 --verbose"))
         .assert()
         .success()
         .stdout(contains("Open loop: with jitter").and(contains("Closed loop").not()));

@@ -52,7 +52,7 @@ fn published_methods_are_listed_with_sources_and_run() {
         all["integrators"].as_array().unwrap().iter().filter(|one| one["source"].is_string());
     assert_eq!(sources.count(), 86);
     let step = "--system oscillator --integrator blanes-moan-srkn-11-6 --dt 0.1";
-    libration(&format!("analyze {step}"))
+    libration(&format!("analyze {step} --verbose"))
         .success()
         .stdout(contains("order 6 for forces of positions, symmetric"));
     libration(&format!("simulate {step} --steps 9 --count 3")).success();

@@ -22,7 +22,7 @@ fn a_period_and_a_latency_with_units_are_those_in_seconds() {
         assert_eq!(answer(&words)["budget"], seconds["budget"], "{words:?}");
     }
     // The command that repeats the answer has the words of the user, those of its parts are in seconds.
-    let text = libration(&[&short[..], &["--rate", "50"]].concat()).success();
+    let text = libration(&[&short[..], &["--rate", "50", "--verbose"]].concat()).success();
     let text = String::from_utf8_lossy(&text.get_output().stdout).into_owned();
     assert!(text.contains("--rate 50\n") && text.contains("--dt 0.02 "), "{text}");
 }

@@ -212,7 +212,7 @@ fn an_analysis_of_equations_says_what_it_cannot_say() {
     let path = written(&folder, "driven.toml", text);
     let path = path.to_str().unwrap();
     let words = ["analyze", "--system", path, "--integrator", "rk4", "--dt", "0.01"];
-    libration(&words)
+    libration(&[&words[..], &["--verbose"]].concat())
         .success()
         .stdout(predicate::str::contains("kinks or jumps"))
         .stdout(predicate::str::contains("the file has none, so nothing is said of its drift"))

@@ -37,7 +37,7 @@ fn implicit_integrators_are_listed_simulated_and_analysed() {
             libration(&many).success();
         }
     }
-    let z = "analyze --system oscillator --integrator backward-euler --dt 0.1";
+    let z = "analyze --system oscillator --integrator backward-euler --dt 0.1 --verbose";
     libration(z).success().stdout(contains("1/(1 + z²)").and(contains("0 to ∞")));
 }
 

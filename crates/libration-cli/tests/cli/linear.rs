@@ -200,7 +200,7 @@ fn an_unstable_loop_and_a_limit_of_probability_have_words_in_the_text() {
     let folder = tempfile::tempdir().unwrap();
     let text = format!("{OSCILLATOR}latency = 2.0\n");
     let path = written(&folder, "late.toml", &text);
-    libration(&["advise", "--config", path.to_str().unwrap()])
+    libration(&["advise", "--verbose", "--config", path.to_str().unwrap()])
         .stdout(predicate::str::contains("cost under noise: infinite"))
         .stdout(predicate::str::is_match("(?m)^x1 .* infinite$").unwrap());
     // A plant that decays without commands is stable with all losses.

@@ -107,13 +107,13 @@ fn predictions_measurements_and_the_analysis_of_the_same_oscillator_agree() {
 #[test]
 fn text_names_modes_that_no_input_reaches_and_integrators_that_do_not_apply() {
     let found = |text: &'static str| predicate::str::contains(text);
-    analyze(HEATER, "--dt 0.01")
+    analyze(HEATER, "--dt 0.01 --verbose")
         .success()
         .stdout(found("not controllable: no input reaches it; not observable: no output shows it"))
         .stdout(found("stiffness (their ratio) 4.0000e1"))
         .stdout(found("explicit-euler               0 to 0.1\n"))
         .stdout(found("not applicable, half of the states are not the rates of the other half: symplectic-euler"));
-    analyze(HEATER, "--dt 0.01 --integrator rk4")
+    analyze(HEATER, "--dt 0.01 --integrator rk4 --verbose")
         .success()
         .stdout(found("stability function, z = dt·λ: 1 + z + z²/2 + z³/6 + z⁴/24"))
         .stdout(found("exact growth per step"))
@@ -198,7 +198,7 @@ fn plants_without_motion_and_equal_subsystems_have_modes() {
         (&Value::from(0.0), &Value::from(true))
     );
     let joints = "mass = [[1, 0], [0, 1]]\nstiffness = [[100, 0], [0, 100]]\nb = [[1], [1]]\n";
-    analyze(joints, "")
+    analyze(joints, "--verbose")
         .success()
         .stdout(predicate::str::contains(
             "the inputs do not reach all motions with this eigenvalue",

@@ -59,7 +59,7 @@ fn a_redesign_of_a_pid_controller_requires_a_cost_and_misses_its_integral() {
         .stderr(predicate::str::contains("expected [controller.lqr], [controller.lqg], or `cost`"));
     let text = format!("{PID}cost = {{ states = [1, 0.01], inputs = [0.01] }}\n");
     let path = written(&folder, "with.toml", &text);
-    libration(&["advise", "--config", path.to_str().unwrap(), "--redesign"])
+    libration(&["advise", "--config", path.to_str().unwrap(), "--redesign", "--verbose"])
         .success()
         .stdout(predicate::str::contains("has integral action, and the redesign has none"))
         .stdout(predicate::str::contains("Optimal compensator"));

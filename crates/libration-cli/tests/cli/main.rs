@@ -54,6 +54,8 @@ mod report_folder;
 mod rollout;
 mod serve;
 mod shared_config;
+#[cfg(unix)]
+mod short_answers;
 mod simulate;
 mod stability;
 mod steps;

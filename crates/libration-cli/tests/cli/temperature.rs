@@ -12,7 +12,7 @@ fn libration(words: &str) -> assert_cmd::assert::Assert {
 #[test]
 fn temperatures_are_printed_with_their_closed_forms_and_as_json() {
     let words = "analyze --system oscillator --set omega2=1 --temperature 2 --friction 1 --dt 1 --steps 1e5 --seed 3";
-    libration(words)
+    libration(&format!("{words} --verbose"))
         .success()
         .stdout(contains("BAOA: the least bias of positions").and(contains("1/(1 − z²/4)")));
     let output = libration(&format!("{words} --json --thermostat BAOAB --thermostat obabo"))
@@ -60,7 +60,7 @@ fn numbers_of_any_size_are_printed_with_five_digits() {
 
 #[test]
 fn an_exact_thermostat_is_exact_at_a_high_friction() {
-    libration("analyze --system oscillator --set omega2=1 --temperature 1 --friction 1e4 --dt 1 --thermostat BAOAB --steps 32")
+    libration("analyze --system oscillator --set omega2=1 --temperature 1 --friction 1e4 --dt 1 --thermostat BAOAB --steps 32 --verbose")
         .success()
         .stdout(contains(" exact ").and(contains("dt^0").not()));
 }

@@ -76,8 +76,9 @@ fn jitter_and_skew_are_told_with_and_without_feedback() {
     );
     assert_eq!(radius("--latency 400steps"), Value::Null);
     assert!(json(&format!("{exact} --latency 1steps"))["lyapunov_exponent"].is_null());
-    let text =
-        libration(&format!("{LOOP} --integrator rk4 --latency 1.5steps --jitter uniform:0.1"));
+    let text = libration(&format!(
+        "{LOOP} --integrator rk4 --latency 1.5steps --jitter uniform:0.1 --verbose"
+    ));
     let told = contains("critical latency").and(contains("second moments grow by"));
     { text }.assert().success().stdout(told);
 }

@@ -1,10 +1,10 @@
 //! Advice on a simulation, or on a loop around a system of the catalogue.
 
-use libration_advise::{Advice, Imperfection, LoopAdvice};
+use libration_advise::{Advice, LoopAdvice};
 
 use super::super::digits::{limit, short, significant};
 use super::super::repeat_command::with_option;
-use super::loop_limits::{append_limits, append_simulated, change, cost};
+use super::loop_limits::{append_limits, append_share, append_simulated, change, cost};
 use super::{Summary, map_command, numbers, words};
 use crate::args::AdviseArgs;
 
@@ -46,6 +46,7 @@ fn append_loop(looped: &LoopAdvice, summary: &mut Summary) {
     if combined.growth < 0.0 {
         summary.row("cost", &cost(combined.cost, combined.ideal_cost));
     }
+    append_share(combined.margin, summary);
     append_simulated(combined.simulated.as_ref(), "at samples, without commands", summary);
     if let Some(r) = &combined.region_of_attraction {
         let [back, all] = r.returned;
@@ -124,13 +125,8 @@ fn next(advice: &Advice, args: &AdviseArgs) -> Option<(&'static str, String)> {
             (None, None) => None,
         };
     }
-    let looped = advice.looped.as_ref();
-    let budgets = looped.map_or(&[][..], |looped| &looped.budgets);
-    let late = budgets.iter().find(|budget| budget.kind == Imperfection::Latency);
-    if let Some(most) = late.and_then(|budget| budget.tolerated_up_to.flatten()) {
-        let is_more = late.is_some_and(|budget| budget.stated > most);
-        return is_more
-            .then(|| ("Confirm a tolerated latency", with_option("--latency", &limit(most, 4))));
+    if advice.looped.is_some() && advice.chosen().is_some() {
+        return None;
     }
     // The smallest error that was found, rounded up.
     let least = advice.integrators.iter().map(|choice| choice.lost).fold(f64::INFINITY, f64::min);

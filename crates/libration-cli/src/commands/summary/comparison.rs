@@ -3,8 +3,7 @@
 use libration_analyze::comparison::{ComparedIntegrator, Comparison};
 
 use super::super::digits::significant;
-use super::super::repeat_command::{of_subcommand, with_option};
-use super::step::SYSTEM;
+use super::super::repeat_command::{SYSTEM, of_subcommand, with_option};
 use super::{Summary, numbers, words};
 
 /// Largest number of integrators.

@@ -3,9 +3,9 @@
 use libration_analyze::equation_analysis::{EquationAnalysis, EquationMotion};
 
 use super::super::digits::significant;
-use super::super::repeat_command::{of_subcommand, with_option};
-use super::linear_plant::{append_steps, verdict};
-use super::step::SYSTEM;
+use super::super::repeat_command::{SYSTEM, of_subcommand, with_option};
+use super::linear_plant::verdict;
+use super::linear_steps::append_steps;
 use super::{Summary, numbers, words};
 
 /// Largest number of states.

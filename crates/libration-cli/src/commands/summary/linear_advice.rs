@@ -5,7 +5,7 @@ use libration_advise::{Budget, Imperfection};
 
 use super::super::digits::{limit, significant};
 use super::super::repeat_command::{with_flag, with_option};
-use super::loop_limits::{append_limits, append_simulated, change, cost};
+use super::loop_limits::{append_limits, append_share, append_simulated, change, cost};
 use super::{Summary, in_decimals, map_command, numbers, words};
 use crate::args::AdviseArgs;
 
@@ -13,6 +13,9 @@ use crate::args::AdviseArgs;
 const MOST_GAINS: usize = 6;
 const MOST_STATES: usize = 3;
 const MOST_REDESIGN_LIMITS: usize = 5;
+
+/// Lines of an answer and its warnings from which it is long.
+const LONG: usize = 5;
 
 /// Increase of the cost from which a redesign is proposed.
 const COSTLY: f64 = 0.01;
@@ -25,33 +28,39 @@ pub(crate) fn of_linear_advice(advice: &LinearAdvice, args: &AdviseArgs) -> Stri
     };
     let mut summary = Summary::new(&answer);
     summary.warnings(&advice.warnings);
+    // A long answer leaves less room for numbers.
+    let is_long = summary.line_count() > LONG;
     match &advice.redesign {
-        Some(_) => append_redesign(advice, &mut summary),
+        Some(_) => append_redesign(advice, is_long, &mut summary),
         None => append_limits(&advice.budgets, &mut summary),
     }
     summary.blank();
-    if advice.redesign.is_none() {
+    let has_room = advice.redesign.is_none() && !is_long;
+    if has_room {
         append_gain(advice, &mut summary);
     }
     if !advice.schedule.is_empty() {
         summary.row("margins", "none: a cascade has no frequency response");
     }
-    append_margins("margins", &advice.margins, &mut summary);
+    if advice.redesign.is_none() || !is_long {
+        append_margins("margins", &advice.margins, &mut summary);
+    }
     let redesigned = advice.redesign.iter().flat_map(|redesign| &redesign.margins);
     append_margins("of the redesign", redesigned, &mut summary);
     summary.row("second moments", &change(advice.growth));
     summary.row("cost", &cost(advice.cost, advice.ideal_cost));
+    append_share(advice.margin, &mut summary);
     append_simulated(advice.simulated.as_ref(), "at samples", &mut summary);
-    if advice.redesign.is_none() {
+    if has_room {
         append_deviations(advice, &mut summary);
     }
     if let Some((purpose, command)) = next(advice, args) {
         summary.command(purpose, &command);
     }
-    let more = "every limit with its method, each part of the latency, all deviations";
+    let more = "all limits with methods, the parts of the latency, all deviations";
     summary.finish(&match (&advice.redesign, &advice.deadline_misses) {
-        (Some(_), _) => format!("the redesigned controller, {more}"),
-        (None, Some(_)) => format!("{more} and sequences of missed deadlines"),
+        (Some(_), _) => format!("the controller, {more}"),
+        (None, Some(_)) => format!("{more}, sequences of misses"),
         (None, None) => more.to_owned(),
     })
 }
@@ -90,7 +99,7 @@ fn append_margins<'a>(
 }
 
 /// Appends the limits with the given and with the redesigned controller.
-fn append_redesign(advice: &LinearAdvice, summary: &mut Summary) {
+fn append_redesign(advice: &LinearAdvice, is_long: bool, summary: &mut Summary) {
     let Some(redesign) = &advice.redesign else { return };
     summary.blank();
     summary.sentence(&in_decimals(&format!("Redesign: {}", advice.redesign_effect())));
@@ -100,7 +109,7 @@ fn append_redesign(advice: &LinearAdvice, summary: &mut Summary) {
     let mut limits: Vec<&RedesignLimit> = redesign.limits.iter().collect();
     // Those of single channels that are not stated come last, and `false` is first.
     limits.sort_by_key(|limit| limit.stated == 0.0 && limit.channel.is_some());
-    limits.truncate(MOST_REDESIGN_LIMITS);
+    limits.truncate(MOST_REDESIGN_LIMITS - usize::from(is_long));
     let rows: Vec<Vec<String>> = limits
         .iter()
         .map(|limit| {

@@ -79,6 +79,14 @@ pub(super) fn change(growth: f64) -> String {
     )
 }
 
+/// Appends the part of the imperfections that the tolerance of the cost allows; nothing if it allows all of them.
+pub(super) fn append_share(margin: Option<f64>, summary: &mut Summary) {
+    if let Some(share) = margin.filter(|share| *share < 1.0) {
+        let shown = format!("all imperfections at most {} times as large", limit(share, 3));
+        summary.row("reduce to", &shown);
+    }
+}
+
 /// Appends a simulated cost and its prediction, `of` samples.
 pub(super) fn append_simulated(own: Option<&SimulatedCost>, of: &str, summary: &mut Summary) {
     let Some(own) = own else { return };

@@ -5,6 +5,7 @@ mod comparison;
 mod equations;
 mod linear_advice;
 mod linear_plant;
+mod linear_steps;
 mod loop_limits;
 mod step;
 mod step_loop;
@@ -38,6 +39,10 @@ impl Summary {
         let mut summary = Summary { text: String::new() };
         summary.sentence(&in_decimals(verdict));
         summary
+    }
+
+    fn line_count(&self) -> usize {
+        self.text.lines().count()
     }
 
     fn blank(&mut self) {

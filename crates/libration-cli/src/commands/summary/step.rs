@@ -2,17 +2,13 @@
 
 use libration_analyze::{Analysis, Request, Stepping};
 
-use super::super::analyze::UNKNOWN;
-use super::super::digits::{limit, short, significant};
-use super::super::repeat_command::{of_subcommand, with_option};
+use super::super::digits::{UNKNOWN, limit, short, significant};
+use super::super::repeat_command::{SYSTEM, of_subcommand, with_option};
 use super::Summary;
 use super::step_loop::{append_loop, changes, verdict};
 
 /// Largest number of windows of stable steps.
 const MOST: usize = 3;
-
-/// Options of a system.
-pub(super) const SYSTEM: [&str; 5] = ["--system", "--force", "--set", "--q", "--v"];
 
 /// Returns a screen of an analysis.
 pub(crate) fn of_step(analysis: &Analysis, request: &Request) -> String {

@@ -1,0 +1,95 @@
+//! Steps of integrators on a linear plant.
+
+use libration_analyze::linear_analysis::{LinearAnalysis, StepAnalysis};
+
+use super::super::digits::{limit, significant};
+use super::Summary;
+
+/// Appends the integrators whose steps are stable, those that are not, and the difference of simulations from predictions.
+pub(super) fn append_steps(analysis: &LinearAnalysis, is_one: bool, summary: &mut Summary) {
+    let Some(first) = analysis.steps.first() else { return };
+    let end = |x: Option<f64>| x.map_or("∞".to_owned(), |x| limit(x, 4));
+    let mut groups: [(String, Vec<String>); 4] = match analysis.dt {
+        Some(dt) => [
+            format!("stable at dt = {dt} s"),
+            "unstable there".into(),
+            "never stable".into(),
+            "not known".into(),
+        ],
+        None => ["stable for any dt", "stable for some dt", "never stable", "not known"]
+            .map(str::to_owned),
+    }
+    .map(|name| (name, Vec::new()));
+    for step in &analysis.steps {
+        let name = step.integrator;
+        let (group, text) = match step.stable_dt.as_deref() {
+            None => (3, name.to_owned()),
+            Some([]) => (2, name.to_owned()),
+            Some(windows) => {
+                let again = if windows.len() > 1 { ", and again later" } else { "" };
+                let first = match windows[0] {
+                    [Some(0.0), to] => format!("up to {} s", end(to)),
+                    [from, to] => format!("{} to {} s", end(from), end(to)),
+                };
+                let limits = format!("{name} ({first}{again})");
+                let holds = analysis.dt.map(|dt| {
+                    let is_in = |&[from, to]: &[Option<f64>; 2]| {
+                        from.is_none_or(|from| from <= dt) && to.is_none_or(|to| dt <= to)
+                    };
+                    windows.iter().any(is_in)
+                });
+                let is_unlimited = matches!(windows, [[Some(0.0), None]]);
+                match (holds, is_unlimited) {
+                    (Some(true) | None, true) => (0, name.to_owned()),
+                    (Some(true), false) => (0, limits),
+                    (Some(false), _) => (1, limits),
+                    (None, false) => (1, limits),
+                }
+            }
+        };
+        groups[group].1.push(text);
+    }
+    for (name, members) in groups.iter().filter(|(_, members)| !members.is_empty()) {
+        summary.wrap(&format!("{name}: "), &members.join(", "), 2);
+    }
+    if groups[3].1.is_empty() && analysis.steps.iter().any(|step| step.stable_dt.is_none()) {
+        summary.sentence("a mode of the plant grows");
+    }
+    append_predictions(&analysis.steps, summary);
+    if is_one && let Some(radius) = first.predicted_spectral_radius {
+        summary.row("spectral radius", &format!("1 {}, predicted", signed(radius - 1.0)));
+    }
+}
+
+fn signed(x: f64) -> String {
+    format!("{} {}", if x < 0.0 { "−" } else { "+" }, significant(x.abs(), 5))
+}
+
+/// Relative difference of a simulated growth from the prediction that is rounding.
+const AGREES: [f64; 2] = [1e-12, 1e-4];
+
+/// Appends the largest difference of the growth in simulations from predictions.
+fn append_predictions(steps: &[StepAnalysis], summary: &mut Summary) {
+    let largest = |of: fn(&StepAnalysis) -> Option<f64>| {
+        let own = steps.iter().filter_map(|step| {
+            let (measured, predicted) = (of(step)?, step.predicted_spectral_radius?);
+            Some(((measured - predicted).abs() / predicted.abs().max(1.0), step.integrator))
+        });
+        own.max_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let both = [
+        ("f64", AGREES[0], largest(|step| step.simulated.map(|own| own.growth))),
+        ("f32", AGREES[1], largest(|step| step.simulated_f32.map(|own| own.growth))),
+    ];
+    let shown = both.into_iter().filter_map(|(float, rounding, found)| {
+        let (size, integrator) = found?;
+        Some(match size <= rounding {
+            true => format!("as predicted in {float}"),
+            false => format!("differs by {} in {float} ({integrator})", significant(size, 2)),
+        })
+    });
+    let shown: Vec<String> = shown.collect();
+    if !shown.is_empty() {
+        summary.row("simulated growth", &shown.join(", "));
+    }
+}
