@@ -162,7 +162,7 @@ Examples:
   libration advise --config mine.toml --jitter-file robot.csv --page budget.html
 
 The limits are those of the loop linearised at --q, with one exact step of the plant per period.
-A simulation of the loop contains all imperfections at once.
+A simulation of the loop contains all imperfections at once. --verbose prints the whole text.
 The exit code is 1 if the loop with the stated values is unstable or exceeds the tolerance, or if no
 integrator is accurate enough.";
 

@@ -141,12 +141,13 @@ Examples:
 
 Linear plants (--plant, --config): the modes by name of their states; without a controller also the
 time steps at which each integrator is stable, and with --dt what a step makes of each mode, predicted
-and measured in f64 and f32. --integrator prints each mode for itself. With a controller: the modes,
-the growth, the cost and the deviations of the loop. docs/plants.md has the keys of --json.
+and measured in f64 and f32. --integrator with --verbose prints each mode for itself. With a
+controller: the modes, the growth, the cost and the deviations of the loop. docs/plants.md has the
+keys of --json.
 
 For a nonlinear system, the step is linearised about --q, --v.
-With --feedback there are three blocks of rows: one step of the plant without feedback; the closed
-loop; the closed loop with jitter, skew and losses. In JSON, `spectral_radius` is that of the plant
+The answer fits a screen. With --verbose and --feedback there are three blocks of rows: one step of
+the plant without feedback; the closed loop; the closed loop with jitter, skew and losses. In JSON, `spectral_radius` is that of the plant
 and `closed_loop_spectral_radius` that of the loop with its latency.
 
 Critical latency: for a latency of d steps the characteristic polynomial contains λᵈ, also for a

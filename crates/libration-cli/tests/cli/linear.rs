@@ -124,7 +124,7 @@ fn examples_hold_and_their_pages_name_their_channels() {
         ("two_mass_drive.toml", ["motor lag", "load angle", "hold (half a period)"]),
     ] {
         let page = folder.path().join("page.html");
-        libration(&["advise", "--config", &example(name), "--page", page.to_str().unwrap()])
+        libration(&["advise", "-v", "--config", &example(name), "--page", page.to_str().unwrap()])
             .success()
             .stdout(predicate::str::contains("part of the latency"));
         let page = fs::read_to_string(page).unwrap();

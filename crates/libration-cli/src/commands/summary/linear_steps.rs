@@ -5,6 +5,9 @@ use libration_analyze::linear_analysis::{LinearAnalysis, StepAnalysis};
 use super::super::digits::{limit, significant};
 use super::Summary;
 
+/// Why stable steps are not known.
+const GROWING: &str = "not known, as a mode of the plant grows";
+
 /// Appends the integrators whose steps are stable, those that are not, and the difference of simulations from predictions.
 pub(super) fn append_steps(analysis: &LinearAnalysis, is_one: bool, summary: &mut Summary) {
     let Some(first) = analysis.steps.first() else { return };
@@ -14,10 +17,11 @@ pub(super) fn append_steps(analysis: &LinearAnalysis, is_one: bool, summary: &mu
             format!("stable at dt = {dt} s"),
             "unstable there".into(),
             "never stable".into(),
-            "not known".into(),
+            GROWING.into(),
         ],
-        None => ["stable for any dt", "stable for some dt", "never stable", "not known"]
-            .map(str::to_owned),
+        None => {
+            ["stable for any dt", "stable for some dt", "never stable", GROWING].map(str::to_owned)
+        }
     }
     .map(|name| (name, Vec::new()));
     for step in &analysis.steps {
@@ -51,9 +55,6 @@ pub(super) fn append_steps(analysis: &LinearAnalysis, is_one: bool, summary: &mu
     }
     for (name, members) in groups.iter().filter(|(_, members)| !members.is_empty()) {
         summary.wrap(&format!("{name}: "), &members.join(", "), 2);
-    }
-    if groups[3].1.is_empty() && analysis.steps.iter().any(|step| step.stable_dt.is_none()) {
-        summary.sentence("a mode of the plant grows");
     }
     append_predictions(&analysis.steps, summary);
     if is_one && let Some(radius) = first.predicted_spectral_radius {

@@ -16,8 +16,10 @@ pub(super) fn verdict(analysis: &LoopAnalysis) -> Option<String> {
     let motions = format!("its motions {}", changes(excess));
     let squares = moments.map(|growth| format!(", and their second moments {}", changes(growth)));
     let worst = moments.map_or(excess, |growth| excess.max(growth));
+    let is_known = analysis.growth.is_none() || moments.is_some();
     let verdict = match (worst > 0.0, worst < 0.0) {
         (true, _) => "unstable",
+        _ if !is_known => "stable without jitter and losses, and with them it is not known",
         (_, true) => "stable",
         _ => "at the limit of stability",
     };
