@@ -56,12 +56,12 @@ pub(super) fn append_loop(
             (Some(steps), Some(seconds)) => {
                 format!("{} s, {} steps", limit(seconds, 4), limit(steps, 4))
             }
-            _ if windows.is_empty() => "none: the loop is stable with no latency".to_owned(),
-            _ => "none".to_owned(),
+            _ if windows.iter().any(|(from, _)| *from == 0.0) => "none was found".to_owned(),
+            _ => "none: the loop is unstable without latency".to_owned(),
         };
         summary.row("critical latency", &shown);
         let end = |x: Option<f64>| x.map_or("∞".into(), |x| limit(x, 4));
-        let again = windows.iter().skip(1).take(MOST);
+        let again = windows.iter().filter(|(from, _)| *from > 0.0).take(MOST);
         let again: Vec<String> =
             again.map(|&(from, to)| format!("{} to {}", significant(from, 4), end(to))).collect();
         if !again.is_empty() {
