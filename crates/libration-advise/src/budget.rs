@@ -134,7 +134,7 @@ impl TimedLoop {
             let how = describe_motion(mode.angle, self.period()).1;
             let names: Vec<&str> = mode.states.iter().map(|(name, _)| name.as_str()).collect();
             let shape = match self.names_states && !names.is_empty() {
-                true => format!(", most of all in {}", names.join(", ")),
+                true => format!(", most in {}", names.join(", ")),
                 false => String::new(),
             };
             match mode.radius - 1.0 {

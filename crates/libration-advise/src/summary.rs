@@ -92,7 +92,7 @@ pub(super) fn describe_loop(looped: &LoopAdvice, tolerance: &ToleranceAnswer) ->
 /// A relative increase of the cost in words.
 pub(super) fn beside_ideal(increase: f64) -> String {
     let side = if increase < 0.0 { "below" } else { "above" };
-    format!("{:.3} % {side} that of the ideal loop", 100.0 * increase.abs())
+    format!("{} % {side} that of the ideal loop", percent(increase.abs()))
 }
 
 /// The imperfection as the subject of a sentence: one thing, of which there is more or less.
@@ -125,7 +125,13 @@ impl Budget {
 /// A share in percent with significant digits.
 pub(super) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
-    if percent < 0.01 { format!("{percent:.2e}") } else { format!("{percent:.3}") }
+    // Four digits, without those of a fraction that a large number has.
+    let rounded: f64 = format!("{percent:.3e}").parse().unwrap_or(percent);
+    match rounded {
+        0.0 => "0".to_owned(),
+        small if small < 0.01 => format!("{percent:.2e}"),
+        other => format!("{other}"),
+    }
 }
 
 /// A loop that is stable only in a separate window, in words.

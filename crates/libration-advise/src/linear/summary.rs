@@ -53,7 +53,7 @@ impl LinearAdvice {
                 [] => String::new(),
                 states => {
                     let names: Vec<&str> = states.iter().map(|(name, _)| name.as_str()).collect();
-                    format!(", most of all in {}", names.join(", "))
+                    format!(", most in {}", names.join(", "))
                 }
             };
             let kind = noun(failing.kind);

@@ -245,7 +245,7 @@ fn equations_are_a_plant_for_analyses_and_budgets_in_their_own_names() {
         libration(&["advise", "--config", file.to_str().unwrap()])
     };
     advised("").success().stdout(predicate::str::contains(
-        "the system cart-pole linearised at x = 0.0 m, theta = 0.0 rad under u = 0.0 N",
+        "the system cart-pole linearised at x = 0 m, theta = 0 rad under u = 0 N",
     ));
     // Hanging, by name.
     advised("at = { theta = 3.0 }").success().stdout(predicate::str::contains("theta = 3.141593"));

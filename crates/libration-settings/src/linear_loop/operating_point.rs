@@ -49,18 +49,10 @@ impl OperatingPoint {
 
     /// The operating point in a sentence.
     pub fn sentence(&self) -> String {
-        self.sentence_with(&format!(", where an acceleration of {:.1e} is left", self.residual))
-    }
-
-    /// The same without an acceleration of zero.
-    pub fn short_sentence(&self) -> String {
-        match self.residual == 0.0 {
-            true => self.sentence_with(""),
-            false => self.sentence(),
-        }
-    }
-
-    fn sentence_with(&self, residual: &str) -> String {
+        let residual = match self.residual == 0.0 {
+            true => String::new(),
+            false => format!(", with an acceleration of {:.1e}", self.residual),
+        };
         let list = |values: &[OperatingValue]| {
             let one = |OperatingValue { name, value, unit }: &OperatingValue| {
                 format!("{name} = {} {unit}", seven_digits(*value)).trim_end().to_owned()
@@ -85,5 +77,6 @@ impl OperatingPoint {
 /// A number with seven digits, and an exponent if it is small or large.
 fn seven_digits(x: f64) -> String {
     let rounded: f64 = format!("{x:.6e}").parse().unwrap_or(x);
-    format!("{rounded:?}")
+    let text = format!("{rounded:?}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }

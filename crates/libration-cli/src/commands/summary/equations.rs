@@ -32,7 +32,7 @@ pub(crate) fn of_equations(analysis: &EquationAnalysis, order: &str) -> String {
         append_steps(linear, false, &mut summary);
     }
     if let Some(point) = &analysis.operating_point {
-        summary.sentence(&point.short_sentence());
+        summary.sentence(&point.sentence());
     }
     if let Some(linear) = &analysis.linear {
         summary.sentence(&verdict(linear));

@@ -22,11 +22,7 @@ const COSTLY: f64 = 0.01;
 
 /// Returns a screen of advice.
 pub(crate) fn of_linear_advice(advice: &LinearAdvice, args: &AdviseArgs) -> String {
-    let answer = match &advice.operating_point {
-        Some(point) => advice.answer.replace(&point.sentence(), &point.short_sentence()),
-        None => advice.answer.clone(),
-    };
-    let mut summary = Summary::new(&answer);
+    let mut summary = Summary::new(&advice.answer);
     summary.warnings(&advice.warnings);
     // A long answer leaves less room for numbers.
     let is_long = summary.line_count() > LONG;

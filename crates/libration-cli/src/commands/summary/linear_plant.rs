@@ -103,10 +103,8 @@ pub(super) fn verdict(analysis: &LinearAnalysis) -> String {
     let Some(first) = analysis.modes.first() else { return format!("{about} has no modes.") };
     let least = ROUNDING * analysis.fastest_rate;
     let growing = analysis.modes.iter().filter(|mode| mode.growth_rate > least).count();
-    let moved = first
-        .states
-        .first()
-        .map_or_else(String::new, |(name, _)| format!(", most of all in {name}"));
+    let moved =
+        first.states.first().map_or_else(String::new, |(name, _)| format!(", most in {name}"));
     match first.growth_rate {
         rate if rate > least => {
             let more = if growing > 1 {
