@@ -15,6 +15,10 @@ pub struct Page {
     pub answer: String,
     /// The key numbers, most important first; four are shown.
     pub highlights: Vec<Highlight>,
+    /// What is used of each limit, as bars below the key numbers of a single page.
+    pub bars: Vec<Bar>,
+    /// What a reader should do, in a few sentences with `code` between backticks. They close a chapter, and the first screen of a single page.
+    pub actions: Vec<String>,
     /// The settings of the [live section](crate::live) of a single page, below its answer; without any there is none.
     pub live: Vec<LiveSetting>,
     /// The evidence.
@@ -27,6 +31,17 @@ pub struct Highlight {
     /// The number with its unit.
     pub value: String,
     /// The description of the number.
+    pub text: String,
+}
+
+/// A bar: the used part of a limit.
+#[derive(Clone, Debug)]
+pub struct Bar {
+    /// What is used.
+    pub name: String,
+    /// The used part, where 1 is the limit.
+    pub part: f64,
+    /// The used size and its limit in words.
     pub text: String,
 }
 
@@ -71,6 +86,11 @@ impl Page {
     /// Adds lines of code to paste.
     pub fn code(&mut self, text: impl Into<String>) {
         self.blocks.push(Block::Code(text.into()));
+    }
+
+    /// Adds what a reader should do.
+    pub fn action(&mut self, text: impl Into<String>) {
+        self.actions.push(text.into());
     }
 
     /// Adds a figure if it shows data. A configuration may exclude all data of a figure.

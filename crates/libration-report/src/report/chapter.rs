@@ -2,7 +2,7 @@
 
 use crate::figure;
 use crate::notation::number;
-use crate::page::{Block, Chapter, Highlight, Page};
+use crate::page::{Bar, Block, Chapter, Highlight, Page};
 use crate::record::{Cell, Finding, Quantity, Table, Verdict};
 use crate::text::{escape, plain, render_html};
 
@@ -22,13 +22,14 @@ pub(super) fn render(chapter: &Chapter, command: &str) -> String {
         [first, .., last] => format!(" · data: {first} … {last}"),
     };
     format!(
-        "<section>\n<h2 id=\"{name}\">{title}</h2>\n<p class=\"q\">{question}</p>\n{opening}{blocks}\
+        "<section>\n<h2 id=\"{name}\">{title}</h2>\n<p class=\"q\">{question}</p>\n{opening}{blocks}{actions}\
          {findings}<p class=\"sub\">Recompute this chapter alone: <code>{command} \
          {name}</code>; one finding: <code>{command} --only FINDING</code>{shown}</p>\n</section>\n",
         command = escape(command),
         title = render_html(&page.title),
         question = render_html(&record.question),
         opening = opening(page),
+        actions = actions(page),
         findings = findings(&record.findings),
     )
 }
@@ -52,6 +53,32 @@ pub(super) fn highlights(page: &Page) -> String {
     match numbers.as_str() {
         "" => String::new(),
         numbers => format!("<div class=\"four\">{numbers}</div>\n"),
+    }
+}
+
+/// The used parts of limits of a page, as bars; empty without any.
+pub(super) fn bars(page: &Page) -> String {
+    let bar = |own: &Bar| {
+        let kind = if own.part >= 1.0 { " class=\"over\"" } else { "" };
+        format!(
+            "<div{kind}><dt>{}</dt><dd><span><i style=\"width:{:.1}%\"></i></span>{}</dd></div>",
+            render_html(&own.name),
+            100.0 * own.part.clamp(0.0, 1.0),
+            render_html(&own.text)
+        )
+    };
+    match page.bars.iter().map(bar).collect::<String>().as_str() {
+        "" => String::new(),
+        bars => format!("<dl class=\"bars\">{bars}</dl>\n"),
+    }
+}
+
+/// What a reader should do; empty without any.
+pub(super) fn actions(page: &Page) -> String {
+    let action = |text: &String| format!("<li>{}</li>", render_html(text));
+    match page.actions.iter().map(action).collect::<String>().as_str() {
+        "" => String::new(),
+        actions => format!("<div class=\"do\"><b>What to do</b><ul>{actions}</ul></div>\n"),
     }
 }
 

@@ -105,13 +105,15 @@ pub fn render_page(page: &Page, sub: &str) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
          <title>{name}</title>\n<style>{STYLE}</style></head><body>\n\
          <nav aria-label=\"Chapters\"><b>Libration</b>{links}</nav>\n<main id=\"top\">\n\
-         <h1>{title}</h1>\n<p class=\"sub\">{sub}</p>\n<p class=\"lead\">{answer}</p>\n{numbers}{live}{blocks}</main>\n\
+         <h1>{title}</h1>\n<p class=\"sub\">{sub}</p>\n<p class=\"lead\">{answer}</p>\n{numbers}{bars}{actions}{live}{blocks}</main>\n\
          {scripts}<script>{SCRIPT}</script>\n</body></html>\n",
         name = escape(&plain(&page.title)),
         title = render_html(&page.title),
         sub = render_html(sub),
         answer = render_html(&page.answer),
         numbers = chapter::highlights(page),
+        bars = chapter::bars(page),
+        actions = chapter::actions(page),
         live = live::section(&page.live),
         scripts = figure::scripts(),
     )
