@@ -11,6 +11,7 @@ mod control;
 mod ensemble;
 mod file;
 mod file_tables;
+mod first_screen;
 mod free_motion;
 mod imperfection;
 mod integrator_choice;

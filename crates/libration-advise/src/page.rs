@@ -2,13 +2,13 @@
 
 use libration_report::figure::{Axis, ColorMap, Colors, Dash, Figure, Mark, Marker, Panel, Role};
 use libration_report::notation::number;
-use libration_report::page::{Highlight, Page};
+use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 use libration_report::report;
 
 use super::advice::{Advice, LoopAdvice};
 use super::budget::Budget;
-use super::imperfection::Imperfection;
+use super::first_screen::{actions, budget_bars, budget_numbers, simulated_cost};
 use super::live_setting;
 use super::stability_map::StabilityMap;
 use super::summary::{ANY_PROBABILITY, is_any_probability};
@@ -31,6 +31,10 @@ pub fn page(advice: &Advice) -> String {
     }
     if let Some(looped) = &advice.looped {
         page.highlights = budget_numbers(&looped.budgets);
+        page.highlights.truncate(3);
+        page.highlights.extend(looped.combined.simulated.as_ref().map(simulated_cost));
+        page.bars = budget_bars(&looped.budgets);
+        page.actions = actions(looped);
         of_loop(&mut page, looped, advice.map.as_ref());
     }
     integrators(&mut page, advice);
@@ -136,28 +140,6 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&StabilityMap>) {
         );
     }
     page.table(&table, 4);
-}
-
-/// The limits of the stated imperfections, and of latency, most used first.
-pub(super) fn budget_numbers(budgets: &[Budget]) -> Vec<Highlight> {
-    let mut shown: Vec<&Budget> = budgets
-        .iter()
-        .filter(|own| own.stated != 0.0 || own.kind == Imperfection::Latency)
-        .filter(|own| own.stable_up_to.is_some())
-        .collect();
-    shown.sort_by(|a, b| b.used.unwrap_or(0.0).total_cmp(&a.used.unwrap_or(0.0)));
-    let number = |own: &Budget| {
-        let unit = if own.unit == "s" { " s" } else { "" };
-        Highlight {
-            value: own.stable_up_to.map_or_else(String::new, |x| number(x, 4) + unit),
-            text: format!(
-                "{} up to which the loop is stable; stated {}{unit}",
-                own.kind.name(),
-                number(own.stated, 4)
-            ),
-        }
-    };
-    shown.into_iter().map(number).collect()
 }
 
 /// The row of a budget in its table.

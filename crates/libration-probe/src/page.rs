@@ -16,6 +16,7 @@ pub fn page(audit: &ProbeReport) -> String {
     let mut page = Page { title: format!("Audit of a step: {}", audit.title), ..Page::default() };
     page.answer.clone_from(&audit.answer);
     page.live = live_settings(audit);
+    page.actions = actions(audit);
     findings(&mut page, audit);
     modes(&mut page, audit);
     latency(&mut page, audit);
@@ -38,6 +39,16 @@ pub fn page(audit: &ProbeReport) -> String {
         audit.libration_version,
     );
     report::render_page(&page, &sub)
+}
+
+/// The most that the first screen says to do; the table below has all.
+const MOST_ACTIONS: usize = 3;
+
+/// What to do about the findings, faults first.
+fn actions(audit: &ProbeReport) -> Vec<String> {
+    let mut all: Vec<_> = audit.findings.iter().collect();
+    all.sort_by_key(|finding| !finding.is_fault);
+    all.iter().take(MOST_ACTIONS).map(|finding| capitalised(&finding.help)).collect()
 }
 
 fn findings(page: &mut Page, audit: &ProbeReport) {

@@ -1,14 +1,15 @@
 //! Advice on loops around linear plants as an HTML page.
 
 use libration_report::notation::number;
-use libration_report::page::Page;
+use libration_report::page::{Highlight, Page};
 use libration_report::record::{Cell, Table};
 use libration_report::report;
 
 use super::deadlines_page::deadlines;
 use super::{ChainLink, InputMargins, LinearAdvice, redesign_page};
+use crate::first_screen::{budget_bars, budget_numbers, cut, measure, simulated_cost};
 use crate::live_setting::{NO_LIVE_SECTION, shown};
-use crate::page::{budget_numbers, budget_row, figure};
+use crate::page::{budget_row, figure};
 use crate::{Budget, StabilityWindow};
 
 /// Why a cascade has no margins.
@@ -19,7 +20,9 @@ pub fn page(advice: &LinearAdvice) -> String {
     let state = if advice.growth < 0.0 { "stable" } else { "unstable" };
     let mut page = Page { title: format!("The loop is {state}: budget"), ..Page::default() };
     page.answer.clone_from(&advice.answer);
-    page.highlights = budget_numbers(&advice.budgets);
+    page.highlights = numbers(advice);
+    page.bars = budget_bars(&advice.budgets);
+    page.actions = actions(advice);
     page.live = advice.live.as_ref().map(shown).unwrap_or_default();
     if page.live.is_empty() {
         page.note(NO_LIVE_SECTION);
@@ -47,6 +50,54 @@ pub fn page(advice: &LinearAdvice) -> String {
     );
     report::render_page(&page, &sub)
 }
+
+/// The limits of what is stated, the margin at the input with the least, and the simulated cost with its prediction.
+fn numbers(advice: &LinearAdvice) -> Vec<Highlight> {
+    let mut all = budget_numbers(&advice.budgets);
+    all.truncate(2);
+    let phase = |own: &&InputMargins| own.phase.unwrap_or(f64::INFINITY);
+    let tightest = advice.margins.iter().min_by(|a, b| phase(a).total_cmp(&phase(b)));
+    if let Some((own, phase)) = tightest.and_then(|own| Some((own, own.phase?))) {
+        let gain = own.gain_up.map(|most| format!("; gain up to {} times", number(most, 4)));
+        all.push(Highlight {
+            value: format!("{}°", number(phase, 3)),
+            text: format!("phase margin at {}{}", own.input, gain.unwrap_or_default()),
+        });
+    }
+    all.extend(advice.simulated.as_ref().map(simulated_cost));
+    all
+}
+
+/// What to do about the answer.
+fn actions(advice: &LinearAdvice) -> Vec<String> {
+    let mut actions = Vec::new();
+    let is_stable = advice.growth < 0.0;
+    if let Some(remedies) = advice.remedies.filter(|_| !is_stable) {
+        if let Some(latency) = remedies.latency {
+            actions.push(format!(
+                "Reduce the latency to at most {} s, or change the gains as above, and repeat the command with the changed value.",
+                number(cut(latency), 4)
+            ));
+        } else if remedies.gain_factor.is_some() {
+            actions.push("Change the gains as above, and repeat the command.".to_owned());
+        }
+    }
+    let is_costly = advice.cost_increase.is_some_and(|rise| rise > COSTLY);
+    if advice.redesign.is_none() && (is_costly || !is_stable) && advice.schedule.is_empty() {
+        actions.push(
+            "Add `--redesign`, with weights of a cost, for the controller of least cost under this timing."
+                .to_owned(),
+        );
+    }
+    if advice.redesign.is_some() {
+        actions.push("Use the redesigned controller below, which is ready to paste.".to_owned());
+    }
+    actions.extend(is_stable.then(|| measure(&advice.budgets)).flatten());
+    actions
+}
+
+/// Increase of the cost from which a redesign is worth its work.
+const COSTLY: f64 = 0.01;
 
 fn budgets(page: &mut Page, advice: &LinearAdvice) {
     page.heading("Budget of each imperfection");

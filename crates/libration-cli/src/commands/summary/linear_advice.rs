@@ -53,7 +53,7 @@ pub(crate) fn of_linear_advice(advice: &LinearAdvice, args: &AdviseArgs) -> Stri
     if let Some((purpose, command)) = next(advice, args) {
         summary.command(purpose, &command);
     }
-    let more = "all limits with methods, the parts of the latency, all deviations";
+    let more = "all limits with methods, parts of the latency, deviations";
     summary.finish(&match (&advice.redesign, &advice.deadline_misses) {
         (Some(_), _) => format!("the controller, {more}"),
         (None, Some(_)) => format!("{more}, sequences of misses"),
