@@ -86,6 +86,30 @@ period = 0.01
 ";
 
 #[test]
+fn the_first_screen_shows_what_is_used_and_says_what_to_do() {
+    let text = DECAYING.replace("0.5", "30.0");
+    let page_of = |latency: &str| {
+        let found = linear_advice(&format!("{text}latency = {latency}\n"));
+        let page = linear::page(&found);
+        let [first, _] = page.split_once("<h2 id=\"live\">").map_or([&*page; 2], |(a, b)| [a, b]);
+        (first.to_owned(), found)
+    };
+    let (stable, found) = page_of("0.02");
+    assert!(stable.contains("simulated cost") && stable.contains("phase margin at flow"));
+    let limit = found.budgets[0].stable_up_to.unwrap();
+    let part = format!("width:{:.1}%", 100.0 * 0.02 / limit);
+    assert!(stable.contains(&part) && !stable.contains("class=\"over\""), "{part}: {stable}");
+    assert!(stable.contains("must stay below 0.0"), "{stable}");
+    let (unstable, found) = page_of("0.1");
+    let latency = found.remedies.unwrap().latency.unwrap();
+    // Cut off, not rounded: the shown latency makes the loop stable.
+    let shown = unstable.split("latency to at most ").nth(1).unwrap().split(' ').next().unwrap();
+    let shown: f64 = shown.parse().unwrap();
+    assert!(shown <= latency && shown > 0.999 * latency, "{shown} of {latency}");
+    assert!(unstable.contains("class=\"over\"") && unstable.contains("--redesign"), "{unstable}");
+}
+
+#[test]
 fn an_unstable_loop_has_infinite_deviations_beside_its_infinite_cost() {
     // With a gain of 30 the loop endures about (π/2)/30 s of latency.
     let text = DECAYING.replace("0.5", "30.0");
