@@ -186,7 +186,7 @@ fn run_all(
 }
 
 /// The studies whose answers open the report, where they are in the run: which steps are stable, and which integrator costs least.
-const FIRST_ANSWERS: &[&str] = &["spectrum", "stability", "efficiency"];
+const FIRST_ANSWERS: &[&str] = &["stability", "spectrum", "efficiency"];
 
 /// The findings whose numbers open the report, where they are in the run.
 const KEY_FINDINGS: &[&str] = &[

@@ -1,16 +1,23 @@
 //! Chapters of the report.
 
-use crate::figure;
+use super::first_screen;
+use crate::figure::{self, Figure};
 use crate::notation::number;
 use crate::page::{Bar, Block, Chapter, Highlight, Page};
 use crate::record::{Cell, Finding, Quantity, Table, Verdict};
 use crate::text::{escape, plain, render_html};
 
-/// Renders a chapter: question, evidence and all findings.
-pub(super) fn render(chapter: &Chapter, command: &str) -> String {
+/// Renders a chapter: question, evidence, what to do and all findings. The moved figure is on the first screen.
+pub(super) fn render(chapter: &Chapter, command: &str, moved: Option<&Figure>) -> String {
     let (record, page) = (&chapter.record, &chapter.page);
     let name = escape(&record.name);
-    let blocks: String = page.blocks.iter().map(block).collect();
+    let own_block = |own: &Block| match own {
+        Block::Figure(own) if moved.is_some_and(|moved| moved.id == own.id) => {
+            first_screen::link_to_figure(own)
+        }
+        own => block(own),
+    };
+    let blocks: String = page.blocks.iter().map(own_block).collect();
     let data: Vec<String> = record
         .series
         .iter()
@@ -75,8 +82,13 @@ pub(super) fn bars(page: &Page) -> String {
 
 /// What a reader should do; empty without any.
 pub(super) fn actions(page: &Page) -> String {
+    action_list(page.actions.iter())
+}
+
+/// Actions with their heading; empty without any.
+pub(super) fn action_list<'a>(actions: impl Iterator<Item = &'a String>) -> String {
     let action = |text: &String| format!("<li>{}</li>", render_html(text));
-    match page.actions.iter().map(action).collect::<String>().as_str() {
+    match actions.map(action).collect::<String>().as_str() {
         "" => String::new(),
         actions => format!("<div class=\"do\"><b>What to do</b><ul>{actions}</ul></div>\n"),
     }

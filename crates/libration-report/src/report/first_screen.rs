@@ -1,6 +1,9 @@
-//! The first screen of a report: what the run found, four numbers with their predictions, and the answers.
+//! The first screen of a report: what the run found, four numbers with their predictions, the answers, one figure, and what to do.
 
-use super::Cover;
+use std::collections::HashSet;
+
+use super::{Cover, chapter};
+use crate::figure::{self, Figure};
 use crate::notation::number;
 use crate::page::Chapter;
 use crate::record::{Finding, Relation, Verdict};
@@ -8,6 +11,12 @@ use crate::text::{escape, render_html};
 
 /// The most answers above the live section.
 const FIRST: usize = 2;
+
+/// The most actions above the live section.
+const ACTIONS: usize = 3;
+
+/// The width of a figure over the height of all its frames that leaves room for the rest of the screen.
+const WIDTH_OVER_HEIGHT: f64 = 4.4;
 
 /// The headline: how many predictions agree, behind the headline of the cover.
 pub(super) fn headline(cover: &Cover, chapters: &[Chapter]) -> String {
@@ -82,14 +91,41 @@ fn answer(chapter: &Chapter, class: &str) -> String {
     format!("<p{class}><a class=\"asked\" href=\"#{name}\">{question}</a> {answer}</p>\n")
 }
 
+/// The figure that moves from its chapter to the first screen: the first figure of the first answered chapter with one.
+pub(super) fn moved_figure<'c>(cover: &Cover, chapters: &'c [Chapter]) -> Option<&'c Figure> {
+    answered(cover, chapters).into_iter().find_map(|chapter| chapter.page.figures().next())
+}
+
+/// The moved figure, low enough for the screen.
+pub(super) fn lead_figure(moved: Option<&Figure>) -> String {
+    moved.map_or_else(String::new, |own| figure::embed(&lowered(own)))
+}
+
+/// The figure with frames as low as the screen requires, or as they are if they are lower.
+fn lowered(own: &Figure) -> Figure {
+    let columns = own.columns.clamp(1, own.panels.len().max(1));
+    let rows = own.panels.len().div_ceil(columns);
+    let aspect = WIDTH_OVER_HEIGHT * rows as f64 / columns as f64;
+    own.clone().aspect(aspect.max(own.aspect))
+}
+
+/// The line of a chapter in place of the moved figure.
+pub(super) fn link_to_figure(own: &Figure) -> String {
+    let link = format!("<a href=\"#{}\">{}</a>", escape(&own.id), render_html(&own.title));
+    format!("<p class=\"sub\">Figure on the first screen: {link}</p>\n")
+}
+
+/// The first action of each of the first answered chapters.
+pub(super) fn actions(cover: &Cover, chapters: &[Chapter]) -> String {
+    let first = answered(cover, chapters).into_iter();
+    chapter::action_list(first.filter_map(|own| own.page.actions.first()).take(ACTIONS))
+}
+
 /// Four numbers with their predictions: the findings that the cover names, then the first of each chapter whose prediction is neither
-/// zero nor a bound.
+/// zero nor a bound; of fewer than four chapters further ones that differ most.
 pub(super) fn numbers(cover: &Cover, chapters: &[Chapter]) -> String {
     let findings = || chapters.iter().flat_map(|chapter| &chapter.record.findings);
     let named = cover.key_findings.iter().filter_map(|id| findings().find(|own| own.id == **id));
-    let shown = |own: &&Finding| {
-        own.relation == Relation::Equal && own.predicted.is_some_and(|x| x != 0.0) && own.agrees()
-    };
     let others = chapters.iter().filter_map(|chapter| chapter.record.findings.iter().find(shown));
     let mut four: Vec<&Finding> = Vec::new();
     for finding in named.chain(others) {
@@ -98,10 +134,32 @@ pub(super) fn numbers(cover: &Cover, chapters: &[Chapter]) -> String {
             four.push(finding);
         }
     }
+    let is_key = |own: &Finding| cover.key_findings.contains(&own.id.as_str());
+    while four.len() < 4 {
+        let rest = findings().filter(shown).filter(|own| four.iter().all(|one| one.id != own.id));
+        let common = |own: &Finding| four.iter().map(|one| common_parts(one, own)).sum::<usize>();
+        let Some(next) = rest.min_by_key(|own| (!is_key(own), common(own))) else { break };
+        four.push(next);
+    }
     if four.is_empty() {
         return String::new();
     }
     format!("<div class=\"four\">{}</div>\n", four.into_iter().map(key_number).collect::<String>())
+}
+
+/// Whether a finding is worth a place among the four: its prediction is a number other than zero, and agrees.
+fn shown(own: &&Finding) -> bool {
+    let predicted = own.predicted.is_some_and(|x| x != 0.0);
+    own.relation == Relation::Equal && predicted && own.agrees() && !own.agrees_with_zero()
+}
+
+/// The number of parts that two identifiers have in common, without numbers.
+fn common_parts(a: &Finding, b: &Finding) -> usize {
+    let parts = |own: &'_ Finding| -> HashSet<String> {
+        let parts = own.id.split(['.', '-']).filter(|part| part.parse::<f64>().is_err());
+        parts.map(str::to_owned).collect()
+    };
+    parts(a).intersection(&parts(b)).count()
 }
 
 fn key_number(finding: &Finding) -> String {

@@ -47,6 +47,7 @@ pub const SCOPE_ID: &str = "scope";
 /// Renders the report: the cover and the chapters.
 pub fn render(cover: &Cover, chapters: &[Chapter]) -> String {
     let headline = first_screen::headline(cover, chapters);
+    let moved = first_screen::moved_figure(cover, chapters);
     let mut links = String::from("<a href=\"#top\">The answer</a>");
     links += &live_link(&cover.live);
     if !cover.claims.is_empty() {
@@ -56,7 +57,7 @@ pub fn render(cover: &Cover, chapters: &[Chapter]) -> String {
     for chapter in chapters {
         let (name, title) = (escape(&chapter.record.name), render_html(&chapter.page.title));
         links += &format!("<a href=\"#{name}\">{title}</a>");
-        body += &chapter::render(chapter, &cover.command);
+        body += &chapter::render(chapter, &cover.command, moved);
     }
     if !cover.scope.is_empty() {
         links += &format!("<a href=\"#{SCOPE_ID}\">Other studies</a>");
@@ -67,14 +68,16 @@ pub fn render(cover: &Cover, chapters: &[Chapter]) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
          <title>{name}</title>\n<style>{STYLE}</style></head><body>\n\
          <nav aria-label=\"Chapters\"><b>Libration</b>{links}</nav>\n<main id=\"top\">\n\
-         <h1>{title}</h1>\n<p class=\"sub\">{setting}</p>\n{alarm}{numbers}{first}{live}{others}{system}{body}\
-         {claims}{scope}{machine}</main>\n{scripts}<script>{SCRIPT}</script>\n</body></html>\n",
+         <h1>{title}</h1>\n<p class=\"sub\">{setting}</p>\n{alarm}{numbers}{first}{figure}{actions}{live}{others}\
+         {system}{body}{claims}{scope}{machine}</main>\n{scripts}<script>{SCRIPT}</script>\n</body></html>\n",
         name = escape(&plain(&headline)),
         title = render_html(&headline),
         setting = render_html(&cover.setting),
         alarm = alarm(cover, chapters),
         numbers = first_screen::numbers(cover, chapters),
         first = first_screen::first_answers(cover, chapters),
+        figure = first_screen::lead_figure(moved),
+        actions = first_screen::actions(cover, chapters),
         others = first_screen::other_answers(cover, chapters),
         live = live::section(&cover.live),
         system = cover.system,
