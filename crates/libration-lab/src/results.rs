@@ -50,6 +50,9 @@ pub struct StudiedSystem {
     /// The command of its studies.
     #[serde(skip)]
     pub command: String,
+    /// The options that name it to any command.
+    #[serde(skip)]
+    pub options: String,
     /// The setting of the live section of its page.
     #[serde(skip)]
     pub live: Setting,

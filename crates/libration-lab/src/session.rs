@@ -14,7 +14,7 @@ use libration_study::StudyError;
 use crate::output::{Output, OutputError};
 use crate::results::{Results, SCHEMA};
 use crate::system_page;
-use crate::system_studies::SystemStudies;
+use crate::system_studies::{SYSTEM_OPTION, SystemStudies};
 pub use crate::unjudged_claims::unjudged;
 use crate::{claims_table, live_page};
 use libration_report::notation::{number, plural, seconds};
@@ -161,6 +161,12 @@ fn run_all(
         study
             .render(&record, &mut page)
             .map_err(|source| Cause::Render { study: study.name(), source })?;
+        if let Some(system) = &results.system {
+            // The commands of the page are those of this system.
+            for action in &mut page.actions {
+                *action = action.replace(SYSTEM_OPTION, &system.options);
+            }
+        }
         if results.studies.is_empty() {
             // The unfinished files of an earlier run stay until the first study is complete.
             output.clear()?;
@@ -185,8 +191,12 @@ fn run_all(
     Ok(output.put_in_place()?)
 }
 
-/// The studies whose answers open the report, where they are in the run: which steps are stable, and which integrator costs least.
+/// The studies whose answers, figure and actions open the report, where they are in the run: which steps are stable, and which
+/// integrator costs least.
 const FIRST_ANSWERS: &[&str] = &["stability", "spectrum", "efficiency"];
+
+/// Those of a report on a system of equations: which steps are stable, and which keep the energy or have the least error.
+const FIRST_ANSWERS_OF_SYSTEM: &[&str] = &["stability", "nonlinear", "convergence"];
 
 /// The findings whose numbers open the report, where they are in the run.
 const KEY_FINDINGS: &[&str] = &[
@@ -237,7 +247,10 @@ fn cover(results: &Results, chapters: &[Chapter]) -> Cover {
         setting,
         machine: host,
         complete: results.complete,
-        first_answers: FIRST_ANSWERS,
+        first_answers: match system {
+            Some(_) => FIRST_ANSWERS_OF_SYSTEM,
+            None => FIRST_ANSWERS,
+        },
         key_findings: KEY_FINDINGS,
         live: live_page::settings(config, system),
         claims: match system {

@@ -37,6 +37,8 @@ pub struct SystemStudies<'a> {
     pub problem: &'a Problem,
     /// The command that runs them, as the report shows it.
     pub command: String,
+    /// The options that name the system to any command: `--system FILE` and its parameters.
+    pub options: String,
     /// The studies that apply.
     pub studies: Vec<Box<dyn Study + 'a>>,
     /// The others, with reasons.
@@ -45,6 +47,9 @@ pub struct SystemStudies<'a> {
 
 /// The studies of systems of equations, in the order of the report. The answer of the last one leads it.
 const ORDER: [&str; 5] = ["determinism", "precision", "convergence", "nonlinear", "stability"];
+
+/// The option of a system in the actions of studies.
+pub(crate) const SYSTEM_OPTION: &str = "--system FILE";
 
 /// The most that a reference orbit may be off, as a part of its size: far below any error that is taken against it.
 const REFERENCE: f64 = 1e-20;
@@ -59,8 +64,9 @@ impl<'a> SystemStudies<'a> {
     /// Those of a system, with the problem that [`Problem::of_equations`] makes of it.
     pub fn new(system: &'a EquationSystem, problem: &'a Problem) -> Self {
         let command = "libration lab --system FILE".to_owned();
+        let options = SYSTEM_OPTION.to_owned();
         let (studies, not_applicable) = (Vec::new(), Vec::new());
-        let mut all = SystemStudies { system, problem, command, studies, not_applicable };
+        let mut all = SystemStudies { system, problem, command, options, studies, not_applicable };
         let has_own = |study: &&&dyn Study| ORDER.contains(&study.name());
         let own = ORDER.iter().filter_map(|name| STUDIES.by_name(name));
         for study in own.chain(STUDIES.studies.iter().filter(|study| !has_own(study)).copied()) {
@@ -78,9 +84,10 @@ impl<'a> SystemStudies<'a> {
     pub fn with_command(self, file: &str, set: &[(String, f64)], effort: Option<Effort>) -> Self {
         let file = shlex::try_quote(file).unwrap_or_default();
         let set = set.iter().map(|(name, value)| format!(" --set {name}={value:?}"));
+        let options = format!("--system {file}{}", set.collect::<String>());
         let effort = effort.map(|effort| format!(" --effort {}", effort.name()));
-        let options: String = set.chain(effort).collect();
-        SystemStudies { command: format!("libration lab --system {file}{options}"), ..self }
+        let command = format!("libration lab {options}{}", effort.unwrap_or_default());
+        SystemStudies { command, options, ..self }
     }
 
     /// The system as results show it.
@@ -90,6 +97,7 @@ impl<'a> SystemStudies<'a> {
             summary,
             turn: self.problem.turn(),
             command: self.command.clone(),
+            options: self.options.clone(),
             live: live_settings::of_equations(self.system),
         }
     }

@@ -87,7 +87,7 @@ pub(super) fn actions(page: &Page) -> String {
 
 /// Actions with their heading; empty without any.
 pub(super) fn action_list<'a>(actions: impl Iterator<Item = &'a String>) -> String {
-    let action = |text: &String| format!("<li>{}</li>", render_html(text));
+    let action = |text: &String| format!("<li>{}</li>", whole_options(&render_html(text)));
     match actions.map(action).collect::<String>().as_str() {
         "" => String::new(),
         actions => format!("<div class=\"do\"><b>What to do</b><ul>{actions}</ul></div>\n"),
@@ -103,6 +103,18 @@ pub(super) fn block(block: &Block) -> String {
         Block::Figure(figure) => figure::embed(figure),
         Block::Table { table, digits } => self::table(table, *digits),
     }
+}
+
+/// Keeps options of commands whole, such as `--dt`, within which browsers break lines.
+fn whole_options(html: &str) -> String {
+    let word = |word: &str| match word.strip_prefix("--") {
+        Some(_) => {
+            let end = word.find('<').unwrap_or(word.len());
+            format!("<span class=\"option\">{}</span>{}", &word[..end], &word[end..])
+        }
+        None => word.to_owned(),
+    };
+    html.split(' ').map(word).collect::<Vec<_>>().join(" ")
 }
 
 /// Renders lines of code. Browsers break lines at hyphens too, and so within `1e-3`: each word is kept whole.
@@ -250,6 +262,13 @@ mod tests {
             html.contains("<td class=\"num\" data-label=\"10⁻³\"><span>4</span></td>"),
             "{html}"
         );
+    }
+
+    #[test]
+    fn options_of_actions_stay_whole_and_keep_their_text() {
+        let html = action_list([&"Run `a-b --dt 0.01 --open`.".to_owned()].into_iter());
+        let wanted = "<code>a-b <span class=\"option\">--dt</span> 0.01 <span class=\"option\">--open</span></code>.";
+        assert!(html.contains(wanted), "{html}");
     }
 
     #[test]

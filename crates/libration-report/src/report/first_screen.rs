@@ -137,8 +137,11 @@ pub(super) fn numbers(cover: &Cover, chapters: &[Chapter]) -> String {
     let is_key = |own: &Finding| cover.key_findings.contains(&own.id.as_str());
     while four.len() < 4 {
         let rest = findings().filter(shown).filter(|own| four.iter().all(|one| one.id != own.id));
+        let alike = |own: &Finding| four.iter().filter(|one| kind(one) == kind(own)).count();
         let common = |own: &Finding| four.iter().map(|one| common_parts(one, own)).sum::<usize>();
-        let Some(next) = rest.min_by_key(|own| (!is_key(own), common(own))) else { break };
+        let Some(next) = rest.min_by_key(|own| (!is_key(own), alike(own), common(own))) else {
+            break;
+        };
         four.push(next);
     }
     if four.is_empty() {
@@ -153,13 +156,20 @@ fn shown(own: &&Finding) -> bool {
     own.relation == Relation::Equal && predicted && own.agrees() && !own.agrees_with_zero()
 }
 
-/// The number of parts that two identifiers have in common, without numbers.
+/// The parts of an identifier, without numbers.
+fn parts(own: &Finding) -> impl Iterator<Item = &str> {
+    own.id.split(['.', '-']).filter(|part| part.parse::<f64>().is_err())
+}
+
+/// The quantity of a finding: the last part of its identifier.
+fn kind(own: &Finding) -> Option<&str> {
+    parts(own).last()
+}
+
+/// The number of parts that two identifiers have in common.
 fn common_parts(a: &Finding, b: &Finding) -> usize {
-    let parts = |own: &'_ Finding| -> HashSet<String> {
-        let parts = own.id.split(['.', '-']).filter(|part| part.parse::<f64>().is_err());
-        parts.map(str::to_owned).collect()
-    };
-    parts(a).intersection(&parts(b)).count()
+    let own: HashSet<&str> = parts(a).collect();
+    parts(b).collect::<HashSet<_>>().intersection(&own).count()
 }
 
 fn key_number(finding: &Finding) -> String {

@@ -68,7 +68,7 @@ pub fn render(cover: &Cover, chapters: &[Chapter]) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
          <title>{name}</title>\n<style>{STYLE}</style></head><body>\n\
          <nav aria-label=\"Chapters\"><b>Libration</b>{links}</nav>\n<main id=\"top\">\n\
-         <h1>{title}</h1>\n<p class=\"sub\">{setting}</p>\n{alarm}{numbers}{first}{figure}{actions}{live}{others}\
+         <h1>{title}</h1>\n<p class=\"sub\">{setting}</p>\n{alarm}{numbers}<div class=\"first\">\n{first}{figure}{actions}</div>\n{live}{others}\
          {system}{body}{claims}{scope}{machine}</main>\n{scripts}<script>{SCRIPT}</script>\n</body></html>\n",
         name = escape(&plain(&headline)),
         title = render_html(&headline),

@@ -94,7 +94,7 @@ fn the_first_screen_has_the_first_action_of_three_chapters_and_chapters_keep_all
 }
 
 #[test]
-fn a_single_study_fills_the_four_numbers_with_findings_of_different_kinds() {
+fn four_numbers_of_a_single_study_are_not_four_of_a_kind() {
     let ids =
         ["b.rk4.end-1", "b.euler.end-1", "b.rk4.end-2", "b.rk4.rate", "b.drift", "b.euler.step"];
     let html = render(&cover(), &[chapter("b", &ids)]);

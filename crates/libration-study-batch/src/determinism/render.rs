@@ -1,5 +1,6 @@
 //! The chapter on determinism.
 
+use libration_report::notation::number;
 use libration_report::page::Page;
 use libration_report::record::{Record, RecordError};
 
@@ -28,5 +29,15 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
          or reorder operations, calls no function of the platform within a step, and sums over \
          trajectories in an order that is independent of threads.",
     );
+    page.action(
+        "Recompute a report and compare all its bits: `libration verify libration-report`.",
+    );
+    let fused = record.finding("determinism.broken.fused").ok().map(|f| f.measured);
+    if let Some(fused) = fused.filter(|fused| *fused > 0.0) {
+        page.action(format!(
+            "Disable fused multiply-add in your program if its bits must agree with others: it changes {} trajectories here.",
+            number(fused, 8)
+        ));
+    }
     Ok(())
 }

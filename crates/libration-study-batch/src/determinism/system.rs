@@ -90,6 +90,9 @@ impl Study for SystemDeterminism<'_> {
              each integrator in f64 and in f32. What is not a number counts as one value."
         ));
         page.table(bit_comparison::table(record)?, 4);
+        page.action(
+            "Repeat the run on another machine with `--out after`, and list what differs: `libration compare libration-report after`.",
+        );
         Ok(())
     }
 }

@@ -44,5 +44,12 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
          than that saves.",
     );
     page.table(record.table("bytes of a transition")?, 3);
+    page.action(match record.finding("memory.full") {
+        Ok(full) => format!(
+            "Write rollouts to a data set if you keep those of more than {}: `libration rollout --out data --transitions 1e8`.",
+            seconds(full.measured, 2)
+        ),
+        Err(_) => "Write rollouts that exceed the memory to a data set: `libration rollout --out data --transitions 1e8`.".into(),
+    });
     Ok(())
 }

@@ -76,6 +76,10 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
          environment. Environment 7 has the same hash among 77 and among 3000.",
     );
     page.table(bit_comparison::table(record)?, 4);
+    page.action(
+        "Measure your number of environments and your horizon: `libration bench --rollouts --case 4096x1024`.",
+    );
+    page.action("Reuse the tensors of a rollout: new ones cause a page fault for every page.");
     Ok(())
 }
 

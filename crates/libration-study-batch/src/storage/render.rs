@@ -37,6 +37,8 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
          on several threads, interrupted and resumed twice, and in shards. The checksums of all files are compared.",
     );
     page.table(bit_comparison::table(record)?, 4);
+    page.action("Check a data set after each copy: `libration verify data`.");
+    page.action("Measure the disk before a long run: `libration bench --storage --folder DIR`.");
     Ok(())
 }
 

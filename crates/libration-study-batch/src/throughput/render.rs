@@ -86,6 +86,7 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.heading("The machine");
     page.table(record.table("machine")?, 4);
     noise(record, page);
+    actions(record, page);
     Ok(())
 }
 
@@ -118,6 +119,19 @@ fn answer(record: &Record, page: &mut Page) {
         sentences.push(format!("All cores reach {} times the rate of one.", number(gain, 3)));
     }
     page.answer = sentences.join(" ");
+}
+
+/// How to use the speed of the machine.
+fn actions(record: &Record, page: &mut Page) {
+    let value = |id: &str| record.finding(id).ok().map(|f| f.measured);
+    page.action(
+        "Measure the rate of your number of trajectories: `libration bench --implementation fused --count 1e4`.",
+    );
+    if value("throughput.fused-over-in-place.f32.1e5").is_some_and(|gain| gain > 1.0) {
+        page.action(
+            "Take all steps of a block of trajectories before the next block, not one step of all in turn.",
+        );
+    }
 }
 
 /// Of symplectic Euler in f32: 10⁹ steps a second, their share of independent arithmetic, and how far

@@ -49,6 +49,18 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
         page.table(table, 5);
     }
     page.figure(alone(record)?);
+    page.action(
+        "Compare the clocks of two topics of a log: `libration clock LOG --topic /joint_states --against /cmd`.",
+    );
+    if let Some(steps) = found("asynchrony.gaussian.steps") {
+        page.action(format!(
+            "Synchronize clocks with rates of 1 % rms well before {} steps if you use the mean of an ensemble.",
+            number(steps, 3)
+        ));
+    }
+    page.action(
+        "Compute which rate error your loop tolerates: `libration advise --config loop.toml --skew 1e-4`.",
+    );
     Ok(())
 }
 

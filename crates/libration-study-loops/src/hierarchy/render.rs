@@ -1,5 +1,6 @@
 //! The chapter on the hierarchy.
 
+use libration_report::notation::count;
 use libration_report::page::Page;
 use libration_report::record::{Record, RecordError};
 
@@ -39,5 +40,37 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
          is measured only.",
     );
     page.table(record.table("divergence")?, 3);
+    actions(record, page);
     Ok(())
+}
+
+/// The imperfections by their part of an identifier.
+const IMPERFECTIONS: [(&str, &str); 4] = [
+    ("latency", "latency"),
+    ("jitter", "jitter"),
+    ("asynchrony", "the differences of clock rates"),
+    ("precision", "rounding"),
+];
+
+/// The imperfection to reduce first, and the budget of the reader's loop.
+fn actions(record: &Record, page: &mut Page) {
+    page.action(
+        "Rank the imperfections of your loop by their share of its budget: `libration advise --config loop.toml --verbose`.",
+    );
+    // The distance after the longest run.
+    let distance = |name: &str| {
+        let prefix = format!("hierarchy.robot.{name}.");
+        let runs = record.findings.iter().filter_map(|f| {
+            let steps: u64 = f.id.strip_prefix(&prefix)?.parse().ok()?;
+            Some((steps, f.measured))
+        });
+        runs.max_by_key(|(steps, _)| *steps)
+    };
+    let found = IMPERFECTIONS.iter().filter_map(|(name, words)| Some((words, distance(name)?)));
+    if let Some((words, (steps, _))) = found.max_by(|a, b| a.1.1.total_cmp(&b.1.1)) {
+        page.action(format!(
+            "Reduce {words} first in a loop with the typical sizes of a robot: it displaces orbits most after {} steps.",
+            count(steps)
+        ));
+    }
 }

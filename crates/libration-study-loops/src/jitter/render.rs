@@ -52,7 +52,27 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.figure(figures::switching(record)?);
     page.heading("Maps");
     page.figure(maps::maps(record)?);
+    actions(record, page);
     host::render(record, page)
+}
+
+/// How to measure jitter, and what to include in the budget of a loop.
+fn actions(record: &Record, page: &mut Page) {
+    let found = |id: &str| record.finding(id).ok().map(|f| f.measured);
+    page.action(
+        "Measure the jitter of a loop on your machine: `libration measure-jitter --rate 500`.",
+    );
+    if let Some(times) = found("jitter.resonance.beside-white").filter(|times| *times > 1.0) {
+        page.action(format!(
+            "Search a log for periodic clock errors with `libration clock LOG`. In resonance they act {} times as strongly as white ones.",
+            number(times, 2)
+        ));
+    }
+    if found("jitter.switching.worst").is_some_and(|worst| worst > 0.0) {
+        page.action(
+            "Include missed ticks in the budget of your loop: `libration advise --config loop.toml --loss 0.01`.",
+        );
+    }
 }
 
 fn summary(record: &Record, page: &mut Page) {

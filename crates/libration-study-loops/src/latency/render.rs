@@ -58,5 +58,24 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
          latencies alone therefore does not determine stability.",
     );
     page.table(record.table("random latency")?, 8);
+    page.action(
+        "Measure the dead time of your loop from a log: `libration identify LOG --command cmd --response q`.",
+    );
+    page.action(
+        "Compute the critical latency of your loop: `libration advise --config loop.toml --latency 15ms`. \
+         `libration advise --print-config > loop.toml` writes a file to edit.",
+    );
+    let radius = |hold: &str| {
+        let id = format!("latency.random.velocity-verlet.hold-{hold}.radius");
+        record.finding(&id).ok().map(|f| f.measured)
+    };
+    if let (Some(independent), Some(persistent)) = (radius("0"), radius("0.5"))
+        && independent < 1.0
+        && persistent > 1.0
+    {
+        page.action(
+            "Record the sequence of latencies: their histogram does not determine stability.",
+        );
+    }
     Ok(())
 }

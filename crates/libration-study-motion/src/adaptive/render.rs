@@ -43,6 +43,18 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
          a grid of fixed spacing sums are exact, and the motion returns to the last bit.",
     );
     page.table(record.table("returns")?, 3);
+    page.action(
+        "Let steps follow an integrated density on eccentric orbits: \
+         `libration simulate --system FILE --integrator leapfrog --dt 0.01 --steps 1e4 --adaptive integrating`.",
+    );
+    if let (Some(fixed), Some(integrating)) = (of("fixed", "largest"), of("integrating", "bounded"))
+        && fixed > integrating
+    {
+        page.action(format!(
+            "Do not use fixed steps at eccentricity {most}: their energy error is {} times as large.",
+            number(fixed / integrating, 2)
+        ));
+    }
     Ok(())
 }
 

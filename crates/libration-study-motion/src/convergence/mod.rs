@@ -1,5 +1,6 @@
 //! The order of every method, on linear and nonlinear systems.
 
+mod actions;
 mod claims;
 mod render;
 mod settings;
@@ -70,7 +71,7 @@ impl Study for Convergence<'_> {
     }
 
     fn render(&self, record: &Record, page: &mut Page) -> Result<(), RecordError> {
-        render::render(record, page)
+        render::render(record, page, !self.own.is_empty())
     }
 }
 

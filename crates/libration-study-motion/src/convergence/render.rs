@@ -6,14 +6,16 @@ use libration_report::notation::number;
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Record, RecordError, Series};
 
+use super::actions;
 use super::state_orders::table_name;
 use crate::method_color::method_color;
 
 /// Writes the chapter.
-pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
+pub(super) fn render(record: &Record, page: &mut Page, is_own: bool) -> Result<(), RecordError> {
     page.title = "Order".into();
     let systems = systems(record)?;
     summary(record, page, &systems);
+    actions::add(record, &systems, is_own, page);
     page.paragraph(
         "Every method runs in double-double arithmetic, whose rounding is negligible. The time step is halved \
          until the slopes between successive errors settle. The reference is the exact flow to about \

@@ -1,5 +1,6 @@
 //! The study `drift`: energy drift over long horizons, predicted and measured.
 
+mod actions;
 mod claims;
 mod crossover;
 mod drift_observer;

@@ -6,7 +6,7 @@ use libration_report::notation::{number, seconds};
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Record, RecordError, Series};
 
-use super::{methods, tag};
+use super::{actions, methods, tag};
 use crate::method_color::method_color;
 
 /// Unit roundoff of `f64`, where drift sinks into rounding.
@@ -19,6 +19,7 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     let dts: Vec<f64> = steps.filter_map(|s| s.name["dt-".len()..].parse().ok()).collect();
     let Some((&first, &last)) = dts.first().zip(dts.last()) else { return Ok(()) };
     summary(record, page, first);
+    actions::add(record, first, page);
     page.paragraph(
         "Each step multiplies a quadratic form by its determinant, `Q(My) = det M · Q(y)`, and the energy \
          lies between two multiples of that form. With determinant one and a stable step, the energy stays \

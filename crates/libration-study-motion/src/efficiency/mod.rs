@@ -1,6 +1,7 @@
 //! The study `efficiency`: force evaluations and time against stability and errors.
 
 mod accuracy_target;
+mod actions;
 mod claims;
 mod cost;
 mod recommendations;

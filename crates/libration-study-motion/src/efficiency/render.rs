@@ -6,6 +6,7 @@ use libration_report::notation::list;
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Cell, Record, RecordError, Series};
 
+use super::actions;
 use crate::method_color::method_color;
 use crate::subject::Symmetry;
 
@@ -87,6 +88,7 @@ fn answer(record: &Record, page: &mut Page) -> Result<(), RecordError> {
             text(&row[5]),
         )
     };
+    actions::add(record.table("answers")?, middle, page);
     let sentences: Vec<String> =
         ["energy", "state"].iter().filter_map(|kind| chosen(kind)).map(sentence).collect();
     page.answer = sentences.join(" ");

@@ -47,6 +47,7 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     if record.series("growth").is_ok() {
         page.figure(growth(record)?.number("9.4"));
     }
+    actions(record, page);
     Ok(())
 }
 
@@ -80,6 +81,30 @@ fn summary(record: &Record, page: &mut Page, is_the_sources: bool) {
             number(verlet, 2)
         );
     }
+}
+
+/// What a comparison at wrong times costs, and the step of the reader's system for an error.
+fn actions(record: &Record, page: &mut Page) {
+    let error = |m: Method, kind: &str| {
+        record.finding(&format!("error.{}.{kind}", m.name())).ok().map(|f| f.measured)
+    };
+    let pairs = Method::ALL
+        .into_iter()
+        .filter_map(|m| Some((m, [error(m, "aligned")?, error(m, "late")?])));
+    let hidden = pairs.filter(|(_, [aligned, late])| late > aligned);
+    if let Some((method, [aligned, late])) =
+        hidden.max_by(|a, b| (a.1[1] / a.1[0]).total_cmp(&(b.1[1] / b.1[0])))
+    {
+        page.action(format!(
+            "Compare states with a reference at the same time. A shift of one step turns the error of {} from {} m into {} m.",
+            method.title(),
+            number(aligned, 2),
+            number(late, 2)
+        ));
+    }
+    page.action(
+        "Find the time step for an error of your trajectory: `libration advise --system FILE --tolerance trajectory=1e-3 --horizon 10`.",
+    );
 }
 
 /// The methods of which the record holds series with this prefix, in the order of the catalogue.

@@ -1,5 +1,6 @@
 //! The study `nonlinear`: energy, symmetry and stability of nonlinear systems.
 
+mod actions;
 mod captions;
 mod growth;
 mod limit;
@@ -68,8 +69,7 @@ impl Study for Nonlinear<'_> {
     }
 
     fn render(&self, record: &Record, page: &mut Page) -> Result<(), RecordError> {
-        let title = if self.own.is_empty() { "Nonlinear systems" } else { "Energy" };
-        render::render(record, page, title)
+        render::render(record, page, !self.own.is_empty())
     }
 }
 

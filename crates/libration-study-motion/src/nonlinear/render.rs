@@ -6,12 +6,13 @@ use libration_report::notation::{number, seconds};
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Column, Record, RecordError};
 
+use super::actions;
 use super::captions::{growths, rates, step_of_portraits};
 use crate::method_color::method_color;
 
 /// Writes the chapter.
-pub(super) fn render(record: &Record, page: &mut Page, title: &str) -> Result<(), RecordError> {
-    page.title = title.into();
+pub(super) fn render(record: &Record, page: &mut Page, is_own: bool) -> Result<(), RecordError> {
+    page.title = if is_own { "Energy" } else { "Nonlinear systems" }.into();
     let systems = systems(record)?;
     summary(record, page, &systems)?;
     page.paragraph(
@@ -49,6 +50,7 @@ pub(super) fn render(record: &Record, page: &mut Page, title: &str) -> Result<()
     );
     page.table(record.table("limits")?, 4);
     page.figure(portraits(record, &systems)?);
+    actions::add(record, is_own, page);
     Ok(())
 }
 

@@ -75,18 +75,33 @@ fn summary(record: &Record, page: &mut Page) -> Result<(), RecordError> {
             drifts.join(", ")
         );
     }
+    let clock = record.table("clocks")?.rows.iter().rfind(|row| row[1] == "f32".into());
+    if clock.is_some() {
+        page.action(
+            "Compute the time in f32 as the number of the step times Δt, and do not sum time steps.",
+        );
+    }
     if let (Some(plain), Some(kept)) = (last("f32"), last("f32-compensated")) {
+        if kept < plain {
+            page.action(format!(
+                "Sum the state in f32 with compensation: its drift falls from {} to {}.",
+                number(plain, 2),
+                number(kept, 2)
+            ));
+        }
         page.highlights.push(Highlight {
             value: format!("{} times", number(plain / kept, 2)),
             text: "less drift in f32 with compensated sums".into(),
         });
     }
-    let clock = record.table("clocks")?.rows.iter().rfind(|row| row[1] == "f32".into());
     if let Some(row) = clock {
         page.highlights.push(Highlight {
             value: format!("{} s", row[5].typeset(3)),
             text: format!("delay of an f32 clock that sums steps, after {} s", row[2].typeset(3)),
         });
     }
+    page.action(
+        "Measure which float type suffices for your system: `libration lab --system FILE precision`.",
+    );
     Ok(())
 }

@@ -3,7 +3,7 @@
 use half::{bf16, f16};
 use libration::{Float, Method};
 use libration_report::Record;
-use libration_report::notation::{count, number};
+use libration_report::notation::{count, list, number};
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Cell, Finding, RecordError, Table};
 use libration_study::{Lab, Study, StudyError};
@@ -127,6 +127,25 @@ impl Study for SystemPrecision<'_> {
              No theory predicts the rounding of an arbitrary system, so these are measurements.",
         );
         page.table(table, 2);
+        let of = |is_enough: bool| {
+            let some = Method::ALL.into_iter().filter(|&m| suffices("f32", m) == Some(is_enough));
+            some.map(|m| m.title()).collect::<Vec<_>>()
+        };
+        let (enough, coarse) = (of(true), of(false));
+        if !enough.is_empty() {
+            page.action(format!(
+                "Run {} in f32: at {} steps a turn or fewer, rounding stays below the error of the step.",
+                list(&enough),
+                count(STEPS)
+            ));
+        }
+        if !coarse.is_empty() {
+            page.action(format!(
+                "Run {} in f64: at {} steps a turn, rounding of f32 exceeds the error of the step.",
+                list(&coarse),
+                count(STEPS)
+            ));
+        }
         Ok(())
     }
 }

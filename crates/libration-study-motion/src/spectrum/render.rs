@@ -50,7 +50,28 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
          Orbits decay inside the contour and grow outside it.",
     );
     page.figure(regions(record, &shown)?);
+    actions(&shown, page);
     Ok(())
+}
+
+/// Which integrators to avoid, and the largest step of the reader's system.
+fn actions(shown: &[(Method, f64)], page: &mut Page) {
+    let usable = shown.iter().filter(|(_, z)| *z > 0.0).max_by(|a, b| a.1.total_cmp(&b.1));
+    if let Some((method, _)) = usable {
+        page.action(format!(
+            "Find the largest stable step of {} for your system: `libration analyze --system FILE --integrator {} --dt 0.01`.",
+            method.title(),
+            method.name()
+        ));
+    }
+    let never: Vec<&str> =
+        shown.iter().filter(|(_, z)| *z == 0.0).map(|(m, _)| m.title()).collect();
+    if !never.is_empty() {
+        page.action(format!(
+            "Do not use {} for motion without damping: no time step keeps it bounded.",
+            list(&never)
+        ));
+    }
 }
 
 /// Phase error against the step, prediction over measurement.

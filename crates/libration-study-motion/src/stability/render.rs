@@ -34,6 +34,7 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
          a number of steps N*(ε), and Verlet beyond it; from rest N* is about 9/(8ε²). \
          Per force evaluation (Verlet two, RK4 four) Verlet leads earlier.",
     );
+    actions(record, page);
     Ok(())
 }
 
@@ -66,6 +67,32 @@ fn summary(record: &Record, page: &mut Page) -> Result<(), RecordError> {
         });
     }
     Ok(())
+}
+
+/// The step of the reader's system for a tolerance of the run, and what a short sweep misses.
+fn actions(record: &Record, page: &mut Page) {
+    let tags = record.series.iter().filter_map(|s| s.name.strip_prefix("limit-drift-"));
+    if let Some(tolerance) = tags.filter_map(|tag| tag.parse::<f64>().ok()).next() {
+        page.action(format!(
+            "Choose the tolerated energy error and the length of the run before the time step: \
+             `libration advise --system FILE --tolerance energy={tolerance} --horizon 100`."
+        ));
+    }
+    let missed = record.findings.iter().find_map(|sweep| {
+        let of = |end: &str| {
+            let id = format!("{}.{end}", sweep.id.strip_suffix(".hasty")?);
+            record.finding(&id).ok().map(|f| f.measured)
+        };
+        let (from, to) = (of("window-1-to")?, of("window-2-from")?);
+        (sweep.measured > from).then_some([from, to])
+    });
+    if let Some([from, to]) = missed {
+        page.action(format!(
+            "Run the chosen time step for the whole duration. A short sweep misses the unstable steps from ωΔt = {} to {}.",
+            number(from, 4),
+            number(to, 4)
+        ));
+    }
 }
 
 /// The windows as bars.

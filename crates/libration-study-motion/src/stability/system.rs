@@ -267,6 +267,16 @@ fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
     );
     page.table(record.table("steps")?, 6);
     page.figure(radii(record)?);
+    let advise = "`libration advise --system FILE --tolerance trajectory=1e-3 --horizon 10`";
+    page.action(match limits.is_empty() {
+        true => {
+            format!("Choose the time step by its error, since stability gives no limit: {advise}.")
+        }
+        false => format!("Choose a time step below these limits by its error: {advise}."),
+    });
+    page.action(
+        "Drag the time step and see the motion change: `libration serve --system FILE --open`.",
+    );
     Ok(())
 }
 
