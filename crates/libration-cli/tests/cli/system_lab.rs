@@ -7,6 +7,7 @@ use predicates::prelude::*;
 use predicates::str::contains;
 use serde_json::{Value, json};
 
+use super::actions::assert_parses;
 use super::advise::libration;
 use super::linear::written;
 
@@ -53,6 +54,17 @@ fn has_only_its_own(page: &str, states: &[&str]) {
     }
 }
 
+/// The commands in the boxes of what to do.
+fn recommended(page: &str) -> Vec<String> {
+    let boxes =
+        page.split("<div class=\"do\">").skip(1).map(|rest| rest.split("</div>").next().unwrap());
+    let codes = boxes.flat_map(|own| own.split("<code>libration ").skip(1));
+    let text = codes.map(|rest| rest.split("</code>").next().unwrap());
+    let without_tags =
+        |text: &str| text.replace("<span class=\"option\">", "").replace("</span>", "");
+    text.map(|text| format!("libration {}", without_tags(text))).collect()
+}
+
 fn not_applicable<'a>(results: &'a Value, study: &str) -> Option<&'a str> {
     let all = results["not_applicable"].as_array().unwrap();
     all.iter().find(|other| other["study"] == study)?["because"].as_str()
@@ -63,6 +75,13 @@ fn the_report_on_a_system_has_its_own_states_and_every_study_or_the_reason() {
     let (page, results) = report(&example("van_der_pol.toml"), &["--set", "mu=0.8"]);
     has_only_its_own(&page, &["x", "x'"]);
     assert!(page.contains("--set mu=0.8"));
+    let commands = recommended(&page);
+    assert!(commands.len() >= 4, "{commands:?}");
+    for command in commands {
+        let names_it = command.contains("van_der_pol.toml --set mu=0.8");
+        assert!(names_it || command.starts_with("libration compare"), "{command}");
+        assert_parses(&command);
+    }
     let studies = results["studies"].as_array().unwrap();
     let ran: Vec<&str> = studies.iter().map(|study| study["name"].as_str().unwrap()).collect();
     assert_eq!(ran, ["determinism", "precision", "convergence", "stability"]);

@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod chapters;
 mod clocks;
 mod config;
 mod config_fuzz;

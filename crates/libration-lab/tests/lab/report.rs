@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::default_run::file;
 
-fn results() -> Value {
+pub(crate) fn results() -> Value {
     serde_json::from_str(&fs::read_to_string(file("results.json")).unwrap()).unwrap()
 }
 
@@ -17,13 +17,13 @@ fn page() -> String {
 }
 
 /// The values of an attribute wherever it stands in `html`, scripts left out.
-fn attributes<'a>(html: &'a str, name: &str) -> Vec<&'a str> {
+pub(crate) fn attributes<'a>(html: &'a str, name: &str) -> Vec<&'a str> {
     let mark = format!(" {name}=\"");
     html.split(&mark).skip(1).filter_map(|rest| rest.split('"').next()).collect()
 }
 
 /// The page without the insides of its scripts.
-fn markup() -> String {
+pub(crate) fn markup() -> String {
     let page = page();
     let mut pieces = page.split("<script");
     let first = pieces.next().unwrap().to_owned();

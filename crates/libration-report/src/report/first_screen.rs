@@ -16,7 +16,10 @@ const FIRST: usize = 2;
 const ACTIONS: usize = 3;
 
 /// The width of a figure over the height of all its frames that leaves room for the rest of the screen.
-const WIDTH_OVER_HEIGHT: f64 = 4.4;
+const WIDTH_OVER_HEIGHT: f64 = 5.0;
+
+/// The most names on an axis of a lowered figure.
+const NAMES: usize = 6;
 
 /// The headline: how many predictions agree, behind the headline of the cover.
 pub(super) fn headline(cover: &Cover, chapters: &[Chapter]) -> String {
@@ -101,8 +104,11 @@ pub(super) fn lead_figure(moved: Option<&Figure>) -> String {
     moved.map_or_else(String::new, |own| figure::embed(&lowered(own)))
 }
 
-/// The figure with frames as low as the screen requires, or as they are if they are lower.
+/// The figure with frames as low as the screen requires, or as they are if they are lower or have many names.
 fn lowered(own: &Figure) -> Figure {
+    if own.panels.iter().any(|panel| panel.y.names.len() > NAMES) {
+        return own.clone();
+    }
     let columns = own.columns.clamp(1, own.panels.len().max(1));
     let rows = own.panels.len().div_ceil(columns);
     let aspect = WIDTH_OVER_HEIGHT * rows as f64 / columns as f64;

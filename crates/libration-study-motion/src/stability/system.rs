@@ -272,7 +272,7 @@ fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
         true => {
             format!("Choose the time step by its error, since stability gives no limit: {advise}.")
         }
-        false => format!("Choose a time step below these limits by its error: {advise}."),
+        false => format!("Choose a time step below the largest stable one by its error: {advise}."),
     });
     page.action(
         "Drag the time step and see the motion change: `libration serve --system FILE --open`.",
