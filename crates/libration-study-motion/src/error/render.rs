@@ -91,7 +91,7 @@ fn actions(record: &Record, page: &mut Page) {
     let pairs = Method::ALL
         .into_iter()
         .filter_map(|m| Some((m, [error(m, "aligned")?, error(m, "late")?])));
-    let hidden = pairs.filter(|(_, [aligned, late])| late > aligned);
+    let hidden = pairs.filter(|(_, [aligned, late])| *late > 2.0 * aligned);
     if let Some((method, [aligned, late])) =
         hidden.max_by(|a, b| (a.1[1] / a.1[0]).total_cmp(&(b.1[1] / b.1[0])))
     {

@@ -1,7 +1,6 @@
 //! What to do about energy in nonlinear motion.
 
 use libration::Method;
-use libration_report::notation::list;
 use libration_report::page::Page;
 use libration_report::record::Record;
 
@@ -14,8 +13,8 @@ pub(super) fn add(record: &Record, is_own: bool, page: &mut Page) {
         Method::ALL.into_iter().filter(|m| is_bounded(record, *m)).map(|m| m.title()).collect();
     if !bounded.is_empty() {
         page.action(format!(
-            "Use {} for long runs: the energy drift does not grow with time.",
-            list_or(&bounded)
+            "Take an integrator for long runs whose energy drift does not grow: {}.",
+            bounded.join(", ")
         ));
     }
     page.action(match is_own {
@@ -30,8 +29,4 @@ fn is_bounded(record: &Record, method: Method) -> bool {
     let mut growths = record.findings.iter().filter(|f| f.id.ends_with(&end)).peekable();
     let is_promised = growths.clone().any(|f| f.predicted == Some(0.0));
     is_promised && growths.all(|f| f.measured < CONSTANT)
-}
-
-fn list_or(titles: &[&str]) -> String {
-    list(titles).replace(" and ", " or ")
 }
