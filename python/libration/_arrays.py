@@ -17,16 +17,7 @@ def actions(given: Any, shape: Sequence[int], dtype: str) -> np.ndarray:
     ValueError
         If there are not exactly as many as ``shape`` says, ``(num_envs, n)``.
     """
-    if not isinstance(given, np.ndarray) and hasattr(given, "__dlpack__"):
-        try:
-            array = np.from_dlpack(given)
-        except RuntimeError as error:
-            # NumPy lacks this type.
-            raise TypeError(f"actions are of a type that NumPy has not: {error}") from error
-    else:
-        array = np.asarray(given)
-    if isinstance(given, np.ma.MaskedArray):
-        raise TypeError("actions are a masked array, but all values must be present; help: use filled()")
+    array = _array(given)
     if array.dtype.kind not in "fiu":
         raise TypeError(
             f"actions have dtype {array.dtype}, but they must be real numbers: "
@@ -52,7 +43,7 @@ def choices(given: Any, num_envs: int, levels: list[float], dtype: str) -> np.nd
     ValueError
         If their shape is wrong, or one is no action.
     """
-    array = np.from_dlpack(given) if not isinstance(given, np.ndarray) and hasattr(given, "__dlpack__") else np.asarray(given)
+    array = _array(given)
     if array.dtype.kind not in "iu":
         raise TypeError(f"actions have dtype {array.dtype}, but they must be integers from 0 to {len(levels) - 1}")
     if array.shape != (num_envs,) and not (num_envs == 1 and array.shape == ()):
@@ -62,6 +53,29 @@ def choices(given: Any, num_envs: int, levels: list[float], dtype: str) -> np.nd
         n = int(np.argmax((array < 0) | (array >= len(levels))))
         raise ValueError(f"actions[{n}] is {array[n]}, but it must be 0 to {len(levels) - 1}")
     return np.array(levels, dtype).take(array.astype(np.int64, copy=False))
+
+
+def numbers_of(given: Any) -> np.ndarray:
+    """Return a copy of actions that the engine has taken."""
+    return np.array(_array(given), dtype=float)
+
+
+def _array(given: Any) -> np.ndarray:
+    """Return actions as an array.
+
+    Raises
+    ------
+    TypeError
+        If NumPy has no such type, or values are missing.
+    """
+    if isinstance(given, np.ma.MaskedArray):
+        raise TypeError("actions are a masked array, but all values must be present; help: use filled()")
+    if isinstance(given, np.ndarray) or not hasattr(given, "__dlpack__"):
+        return np.asarray(given)
+    try:
+        return np.from_dlpack(given)
+    except RuntimeError as error:
+        raise TypeError(f"actions are of a type that NumPy has not: {error}") from error
 
 
 def infos(

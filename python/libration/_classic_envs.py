@@ -297,7 +297,7 @@ class ClassicEnv(ClassicAttributes, Env):
             self._picture = _Picture(self._classic)
         torque = None
         if self._action is not None and not isinstance(self.action_space, Discrete):
-            torque = float(np.clip(np.ravel(self._action)[0], -self._classic.max_action, self._classic.max_action))
+            torque = float(np.clip(self._action.flat[0], -self._classic.max_action, self._classic.max_action))
         return self._picture(self.state, self._lengths()[0], torque)
 
     @property

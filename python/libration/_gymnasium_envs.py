@@ -11,6 +11,7 @@ from gymnasium.error import ClosedEnvironmentError, ResetNeeded
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
+from ._arrays import numbers_of
 from ._attributes import SETTABLE, keywords_of, refused, unknown
 from ._environment_keywords import Unpack, VectorKeywords
 from ._episode_states import options_of
@@ -229,7 +230,7 @@ class Env(gymnasium.Env):
     spec = JSON_SPEC
     _batch_class: type[Environments] = _Batch
     _action: Any = None
-    """The last one of the episode."""
+    """The last one of the episode, for pictures."""
 
     def __init__(
         self, name: str | EquationSystem | System, *, render_mode: str | None = None, **given: Any
@@ -255,8 +256,9 @@ class Env(gymnasium.Env):
         return observations[0], _single(infos)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        self._action = action
         results = self._all._step_single(action)
+        if self.render_mode is not None:
+            self._action = numbers_of(action)
         if self._tells:
             results[4]["parameters"] = self.parameters
         return results

@@ -139,6 +139,8 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
                 final = np.full(self.num_envs, None, dtype=object)
                 for n in np.flatnonzero(ended):
                     final[n] = observations[n].copy()
+                if "parameters" in infos:
+                    infos = {**infos, **self.inner._parameter_infos(ended)}
                 infos = {
                     "final_obs": final,
                     "_final_obs": ended,
@@ -146,6 +148,8 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
                     "_final_info": ended.copy(),
                 }
                 observations = self.inner.reset(options={"reset_mask": ended})[0]
+                if "parameters" in infos["final_info"]:
+                    infos |= self.inner._parameter_infos()
         else:
             self.inner._end(terminated)
             self._ended = ended

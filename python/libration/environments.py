@@ -318,7 +318,7 @@ class Environments(_native.Batch):
             observations = self._set_states(given.tolist(), which.tolist())
         elif given is not None:
             observations = self._start_within(given.T.tolist(), which.tolist())
-        infos = self._parameter_infos() if self._settings["parameter_infos"] else {}
+        infos = self._parameter_infos(mask) if self._settings["parameter_infos"] else {}
         return observations, infos
 
     def set_state(self, states: Any, mask: np.ndarray | None = None) -> np.ndarray:
@@ -361,13 +361,17 @@ class Environments(_native.Batch):
         """
         return episode_numbers(self._settings, self.preset.actions, self._episode_numbers())
 
-    def _parameter_infos(self) -> dict[str, Any]:
-        """Return the numbers of the episodes as Gymnasium's vector environments give dictionaries of single ones."""
-        all_of_them = np.ones(self.num_envs, dtype=np.bool_)
-        return {"parameters": _spread(self.parameters, all_of_them), "_parameters": all_of_them.copy()}
+    def _parameter_infos(self, mask: np.ndarray | None = None) -> dict[str, Any]:
+        """Return the numbers of the episodes, of all or in a mask, as Gymnasium's vector environments give dictionaries of single ones."""
+        mask = np.ones(self.num_envs, dtype=np.bool_) if mask is None else mask
+        return {"parameters": _spread(self.parameters, mask), "_parameters": mask.copy()}
+
+    def _final_parameters(self) -> dict[str, np.ndarray]:
+        """Return the numbers that the episodes will have after the next step, if they end with it."""
+        return episode_numbers(self._settings, self.preset.actions, self._episode_numbers(1))
 
     def _told(self, results: Any, before: dict[str, np.ndarray]) -> tuple[Any, ...]:
-        """Return the results of a step with the numbers of the episodes, and of those before the step where they ended.
+        """Return the results of a step with the numbers of the episodes, and of those that ended.
 
         The engine calls it under ``parameter_infos``.
         """

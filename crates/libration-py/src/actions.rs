@@ -2,7 +2,7 @@
 
 use libration::Float;
 use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyOverflowError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 
@@ -32,7 +32,9 @@ pub(crate) fn with_actions<T: Number, R>(
         let actions = contiguous_actions::<T>(&made, shape).ok_or_else(no_array)?;
         return work(finite(actions, shape[1])?);
     }
-    if let (1, Some(command)) = (shape[0], command::<T>(given, levels)) {
+    if shape[0] == 1
+        && let Some(command) = command::<T>(given, levels)?
+    {
         return work(&[command]);
     }
     if let Some(commands) = commands::<T>(given, levels, shape[0]) {
@@ -57,10 +59,17 @@ fn finite<T: Number>(actions: &[T], width: usize) -> PyResult<&[T]> {
     Err(value_error(format!("actions[{index}] is {:?}, but it must be finite", actions[n])))
 }
 
-/// The command of an integer.
-fn command<T: Float>(given: &Bound<'_, PyAny>, levels: &[f64]) -> Option<T> {
-    let level = given.extract().ok().and_then(|i: usize| levels.get(i));
-    level.map(|&level| T::from_f64(level))
+/// The command of an integer; none of what is no integer of an action.
+fn command<T: Float>(given: &Bound<'_, PyAny>, levels: &[f64]) -> PyResult<Option<T>> {
+    match given.extract::<usize>() {
+        Ok(i) => Ok(levels.get(i).map(|&level| T::from_f64(level))),
+        Err(error) => {
+            let py = given.py();
+            let is_other = error.is_instance_of::<PyTypeError>(py)
+                || error.is_instance_of::<PyOverflowError>(py);
+            if is_other { Ok(None) } else { Err(error) }
+        }
+    }
 }
 
 /// The commands of an array of so many integers, if it has the type of NumPy's integers and each is a discrete action.

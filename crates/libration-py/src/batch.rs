@@ -82,7 +82,7 @@ impl Batch {
         let tells = open(slf, &mut guard)?.episodes.tells;
         // A function of Python reads them, and takes the lock itself.
         drop(guard);
-        let before = tells.then(|| slf.getattr("parameters")).transpose()?;
+        let before = tells.then(|| slf.call_method0("_final_parameters")).transpose()?;
         let mut guard = slf.get().inner.lock(py)?;
         let Inner { batch, episodes, .. } = open(slf, &mut guard)?;
         episodes.expect_action(slf)?;
@@ -236,12 +236,13 @@ impl Batch {
     }
 
     /// Returns what is drawn of each episode, `(num_envs, n)`: parameters that vary, largest commands unless all are constants, latencies of
-    /// observations and actions in steps of the integrator, error scales of clock and sensor, times of answers if they are drawn, and rates of
+    /// observations and actions in steps of the integrator, error scales of clock and sensor, times of the answers `ahead` steps later if they are drawn, and rates of
     /// clocks.
-    fn _episode_numbers<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+    #[pyo3(signature = (ahead=0))]
+    fn _episode_numbers<'py>(slf: &Bound<'py, Self>, ahead: u64) -> PyResult<Bound<'py, PyAny>> {
         let mut guard = slf.get().inner.lock(slf.py())?;
         let Inner { batch, episodes, .. } = open(slf, &mut guard)?;
-        with_batch!(batch, environments => episode_numbers(slf.py(), &**environments, episodes.skew))
+        with_batch!(batch, environments => episode_numbers(slf.py(), &**environments, episodes.skew, ahead))
     }
 
     /// Returns the state, for environments with the same settings.

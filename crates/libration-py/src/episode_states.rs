@@ -37,14 +37,15 @@ pub(crate) fn put_states<T: Number>(
     Ok(())
 }
 
-/// What is drawn of each episode; at last the rate of its clock under this skew.
+/// What is drawn of each episode, of times of answers that so many steps ahead; at last the rate of its clock under this skew.
 pub(crate) fn episode_numbers<'py, T: Number>(
     py: Python<'py>,
     environments: &dyn AnyEnvironments<T>,
     skew: Jitter,
+    ahead: u64,
 ) -> PyResult<Bound<'py, PyAny>> {
     let row = |n| {
-        let mut row = environments.episode_numbers(n)?;
+        let mut row = environments.episode_numbers(n, ahead)?;
         row.push(environments.episode(n)?.clock_rate(skew));
         Some(row)
     };

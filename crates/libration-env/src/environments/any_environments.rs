@@ -99,7 +99,7 @@ pub trait AnyEnvironments<T>: Send + Sync {
     /// What is drawn of the episode of environment `n`, if it exists: parameters that vary, largest commands unless all are constants,
     /// latencies of observations and actions in steps, error scales of clock and sensor, and the time of the answer to the present
     /// observation in seconds, if answers take times of their own.
-    fn episode_numbers(&self, n: usize) -> Option<Vec<T>>;
+    fn episode_numbers(&self, n: usize, ahead: u64) -> Option<Vec<T>>;
 
     /// The complete state as bytes.
     fn to_bytes(&self) -> Vec<u8>;
@@ -218,7 +218,7 @@ where
         self.set_state(n, State { q: [q], v: [v] })
     }
 
-    fn episode_numbers(&self, n: usize) -> Option<Vec<T>> {
+    fn episode_numbers(&self, n: usize, _: u64) -> Option<Vec<T>> {
         self.perturbations(n).map(|all| flat(Vec::new(), all))
     }
 }
@@ -261,9 +261,9 @@ impl<T: BatchFloat> AnyEnvironments<T> for ProgramEnvironments<T> {
         self.set_state(n, state)
     }
 
-    fn episode_numbers(&self, n: usize) -> Option<Vec<T>> {
+    fn episode_numbers(&self, n: usize, ahead: u64) -> Option<Vec<T>> {
         let mut all = flat(self.numbers(n)?, self.perturbations(n)?);
-        all.extend(self.answer_time(n).map(T::from_f64));
+        all.extend(self.answer_time(n, ahead).map(T::from_f64));
         Some(all)
     }
 }

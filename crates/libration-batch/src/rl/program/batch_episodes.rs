@@ -96,12 +96,15 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
         Some(block.iter().map(|row| row[n % LANES]).collect())
     }
 
-    /// The time of the answer to the present observation of environment `n` in seconds, if answers take times of their own; none if
-    /// `n` is out of range.
-    pub fn answer_time(&self, n: usize) -> Option<f64> {
+    /// The time of the answer to the observation of environment `n` that is so many steps ahead in its episode, in seconds, if answers
+    /// take times of their own; none if `n` is out of range.
+    pub fn answer_time(&self, n: usize, ahead: u64) -> Option<f64> {
         let answers = self.definition.answers.filter(|_| n < self.len())?;
         let (block, l) = (&self.episodes.blocks[n / LANES], n % LANES);
-        Some(answers.draw(block.episode(l), self.step().saturating_sub(block.began[l])))
+        Some(answers.draw(
+            block.episode(l),
+            self.step().saturating_add(ahead).saturating_sub(block.began[l]),
+        ))
     }
 
     /// See [`Environments::perturbations`](crate::rl::Environments::perturbations).
