@@ -388,3 +388,32 @@ def test_an_environment_from_a_pickle_has_the_errors_of_gymnasium():
             other.close()
             with pytest.raises(gymnasium.error.ClosedEnvironmentError):
                 other.reset()
+
+
+def pairs_of(mode, **keywords):
+    """A vector environment, and as many single ones behind Gymnasium's vector environment."""
+    vector = gymnasium.make_vec("libration/CartPole-v1", 3, autoreset_mode=mode, parameter_infos=True, **keywords)
+    single = lambda: gymnasium.make("libration/CartPole-v1", parameter_infos=True, **keywords)  # noqa: E731
+    return vector, gymnasium.vector.SyncVectorEnv([single] * 3, autoreset_mode=mode)
+
+
+def same_infos(own, other):
+    assert own.keys() == other.keys()
+    for key, value in own.items():
+        same_infos(value, other[key]) if isinstance(value, dict) else np.testing.assert_array_equal(value, other[key], err_msg=key)
+
+
+def test_a_partial_reset_tells_the_numbers_of_those_that_it_resets():
+    vector, sync = pairs_of("Disabled", skew=0.1)
+    same_infos(vector.reset(seed=2)[1], sync.reset(seed=2)[1])
+    mask = np.array([True, False, True])
+    same_infos(vector.reset(options={"reset_mask": mask})[1], sync.reset(options={"reset_mask": mask})[1])
+
+
+def test_the_last_infos_of_an_episode_have_the_time_of_the_answer_to_its_last_observation():
+    vector, sync = pairs_of("SameStep", inference=libration.Uniform(0, 0.02), substeps=4, max_episode_steps=3)
+    vector.reset(seed=7), sync.reset(seed=7)
+    for _ in range(3):
+        own, other = (envs.step(np.zeros(3, int))[4] for envs in (vector, sync))
+    same_infos(own["final_info"], other["final_info"])
+    same_infos(own["parameters"], other["parameters"])

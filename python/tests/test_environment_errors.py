@@ -1,5 +1,7 @@
 """Errors of environments: the name of the argument, its value and what is allowed."""
 
+import copy
+
 import numpy as np
 import pytest
 
@@ -79,3 +81,29 @@ def test_a_time_step_must_be_a_normal_number(name, dt, dtype):
         Environments(name, 2, dt=dt, dtype=dtype, **given)
     with pytest.raises(ValueError, match=r"^dt is 2e-38 s, with 4 substeps 5e-39 s, but a step"):
         Environments(name, 2, dt=2e-38, substeps=4, **given)
+
+
+@pytest.mark.parametrize("num_envs", [1, 2])
+def test_masked_discrete_actions_are_refused(num_envs):
+    envs = CartPoleVectorEnv(num_envs)
+    envs.reset(seed=0)
+    with pytest.raises(TypeError, match="actions are a masked array"):
+        envs.step(np.ma.array([1] * num_envs, mask=[True] * num_envs))
+
+
+def test_an_error_of_an_action_that_is_an_integer_reaches_the_caller():
+    class Action:
+        def __index__(self):
+            raise KeyError("mine")
+
+    env = CartPoleEnv()
+    env.reset(seed=0)
+    with pytest.raises(KeyError, match="mine"):
+        env.step(Action())
+
+
+def test_a_single_environment_keeps_no_action_of_the_caller():
+    env = PendulumEnv(render_mode="rgb_array")
+    env.reset(seed=0)
+    env.step(memoryview(np.ones(1, np.float32)))
+    assert copy.deepcopy(env).state.tolist() == env.state.tolist()

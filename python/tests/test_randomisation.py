@@ -366,3 +366,15 @@ def test_a_largest_command_of_discrete_actions_is_refused(most):
     system = System(acceleration={"x": "u"}, inputs=["u"])
     with pytest.raises(TypeError, match="max_action is given, but discrete actions"):
         Environments(system, 3, dt=0.1, reward="0", actions=[-1.0, 1.0], max_action=most)
+
+
+def test_a_custom_task_tells_the_numbers_of_episodes_that_begin_and_of_those_that_end():
+    envs = libration.CustomTaskVectorEnv(
+        "Pendulum", 2, task=lambda before, actions, after: (after[:, 1], np.array([True, False])), skew=0.1, parameter_infos=True, autoreset_mode="SameStep"
+    )
+    first = envs.reset(seed=0)[1]["parameters"]["skew"]
+    infos = envs.step(np.zeros((2, 1)))[4]
+    final = infos["final_info"]
+    assert final["_parameters"].tolist() == final["parameters"]["_skew"].tolist() == [True, False]
+    assert final["parameters"]["skew"].tolist() == [first[0], 0.0]
+    assert infos["_parameters"].all() and infos["parameters"]["skew"][0] != first[0] and infos["parameters"]["skew"][1] == first[1]

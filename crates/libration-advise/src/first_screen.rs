@@ -1,6 +1,6 @@
 //! The first screen of a page about a loop: its numbers, what is used of its limits, and what to do.
 
-use libration_report::notation::number;
+use libration_report::notation::{cut_off, number};
 use libration_report::page::{Bar, Highlight};
 
 use super::advice::LoopAdvice;
@@ -91,12 +91,7 @@ pub(super) fn actions(looped: &LoopAdvice) -> Vec<String> {
     }
 }
 
-/// A limit with four digits, not beyond itself: cut off.
+/// A limit with four digits, not beyond itself.
 pub(super) fn cut(limit: f64) -> f64 {
-    if limit == 0.0 || !limit.is_finite() {
-        return limit;
-    }
-    let last = 10_f64.powi(limit.abs().log10().floor() as i32 - 3);
-    // The limit itself has twelve digits.
-    ((limit / last) * (1.0 + 1e-12)).trunc() * last
+    cut_off(limit, 4)
 }

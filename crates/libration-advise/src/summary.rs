@@ -9,6 +9,7 @@ use super::loop_simulation::MOST_PERIODS;
 use super::loops::{Loop, PlantModel};
 use super::request::{Measure, Request, Tolerance};
 use super::stability_window::StabilityWindow;
+use libration_report::notation::cut_off;
 
 /// The advised integrator in a sentence.
 pub(super) fn describe_integrator(advice: &Advice, request: &Request) -> String {
@@ -32,8 +33,9 @@ pub(super) fn describe_integrator(advice: &Advice, request: &Request) -> String 
         Some((choice, dt)) => {
             let float = advice.float().map_or("no float type", |float| float.float);
             format!(
-                "{} in steps of {dt:.4e} s, in {float}: the cheapest integrator that keeps the {} below {most:e}{over}.",
+                "{} in steps of {:.4e} s, in {float}: the cheapest integrator that keeps the {} below {most:e}{over}.",
                 choice.integrator,
+                cut_off(dt, 5),
                 of.title()
             )
         }

@@ -100,6 +100,28 @@ fn group(number: &str) -> String {
     format!("{sign}{grouped}{fraction}")
 }
 
+/// An upper limit with so many digits, not above itself: cut off behind the twelve digits that a search has.
+pub fn cut_off(limit: f64, digits: usize) -> f64 {
+    let text = format!("{limit:.11e}");
+    let cut = text.split_once('e').map(|(mantissa, exponent)| {
+        let kept = digits + 1 + usize::from(limit < 0.0);
+        let mantissa: String = mantissa.chars().take(kept).collect();
+        format!("{mantissa}e{exponent}")
+    });
+    cut.and_then(|cut| cut.parse().ok()).unwrap_or(limit)
+}
+
+/// A lower limit of positive numbers with so many digits, not below itself.
+pub fn cut_up(limit: f64, digits: usize) -> f64 {
+    let cut = cut_off(limit, digits);
+    // As near to it as its twelve digits tell.
+    if limit - cut <= 1e-11 * limit {
+        cut
+    } else {
+        cut_off(cut + limit * 10_f64.powi(1 - digits as i32), digits)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -118,5 +140,21 @@ mod tests {
         assert_eq!((list(&["a"]), list(&["a", "b", "c"])), ("a".into(), "a, b and c".into()));
         assert_eq!(power_of_ten(41392.685158, 3), "4.84·10⁴¹³⁹²");
         assert_eq!(seconds(0.01, 3), "10 ms");
+    }
+
+    #[test]
+    fn limits_are_not_beyond_themselves() {
+        for (x, off, up) in [
+            (7.306_194_4e-4, 7.306e-4, 7.307e-4),
+            (0.632_455_532, 0.6324, 0.6325),
+            (0.1, 0.1, 0.1),
+            (0.3 - 0.1, 0.2, 0.2),
+            (9.999_96, 9.999, 10.0),
+            (12_345.6, 12_340.0, 12_350.0),
+        ] {
+            assert_eq!([cut_off(x, 4), cut_up(x, 4)], [off, up], "{x}");
+        }
+        assert_eq!(cut_off(-0.012_349, 4), -0.01234);
+        assert!(cut_off(f64::INFINITY, 4).is_infinite());
     }
 }

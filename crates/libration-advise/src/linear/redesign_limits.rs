@@ -1,12 +1,12 @@
 //! Limits of each imperfection while all others are as stated.
 
 use libration::linear::LinearLoopError;
+use libration_report::notation::{cut_off, cut_up};
 use libration_work::Work;
 use serde::Serialize;
 
 use super::request::LinearRequest;
 use crate::AdviseError;
-use crate::budget::rounded;
 use crate::imperfection::Imperfection;
 use crate::loops::LoopError;
 use crate::subject::Subject;
@@ -60,7 +60,7 @@ impl RedesignLimit {
             {
                 from.map_or_else(
                     || ANY_PROBABILITY.to_owned(),
-                    |from| format!("{} to 1", rounded(from)),
+                    |from| format!("{} to 1", cut_up(from, 4)),
                 )
             }
             Some(range) => range.in_words(),
@@ -69,15 +69,14 @@ impl RedesignLimit {
 }
 
 impl StableRange {
-    /// The range in words.
+    /// The range in words, not beyond itself.
     fn in_words(&self) -> String {
-        match (self.from, self.to) {
-            (None, Some(to)) => format!("up to {}", rounded(to)),
-            (None, None) => format!("above {}", rounded(self.tried_up_to)),
-            (Some(from), Some(to)) => format!("{} to {}", rounded(from), rounded(to)),
-            (Some(from), None) => {
-                format!("{} to above {}", rounded(from), rounded(self.tried_up_to))
-            }
+        let [from, to] = [self.from.map(|x| cut_up(x, 4)), self.to.map(|x| cut_off(x, 4))];
+        match (from, to) {
+            (None, Some(to)) => format!("up to {to}"),
+            (None, None) => format!("above {}", self.tried_up_to),
+            (Some(from), Some(to)) => format!("{from} to {to}"),
+            (Some(from), None) => format!("{from} to above {}", self.tried_up_to),
         }
     }
 }

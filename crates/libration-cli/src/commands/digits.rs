@@ -1,5 +1,7 @@
 //! Numbers in answers: as many digits as mean something to a reader. JSON has all of them.
 
+use libration_report::notation::cut_off;
+
 /// Text in place of a result that exact arithmetic cannot derive.
 pub(super) const UNKNOWN: &str = "not known: the polynomials of this step outgrow exact arithmetic";
 
@@ -16,12 +18,7 @@ pub(super) fn significant(x: f64, digits: usize) -> String {
 
 /// A limit with at most so many digits, not beyond itself: cut off behind the twelve digits that a search has.
 pub(super) fn limit(x: f64, digits: usize) -> String {
-    let text = format!("{x:.11e}");
-    let cut = text.split_once('e').map(|(mantissa, exponent)| {
-        let kept: String = mantissa.chars().take(digits + 1 + usize::from(x < 0.0)).collect();
-        format!("{kept}e{exponent}")
-    });
-    exact(cut.and_then(|cut| cut.parse().ok()).unwrap_or(x))
+    exact(cut_off(x, digits))
 }
 
 /// A limit with all its digits: rounded, it might be beyond itself.

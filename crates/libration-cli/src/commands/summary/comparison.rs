@@ -52,5 +52,9 @@ pub(crate) fn of_comparison(comparison: &Comparison, verdict: &str, notes: &[Str
         let shorter = significant(0.25 * comparison.horizon, 4);
         summary.command("Compare on less time", &with_option("--horizon", &shorter));
     }
-    summary.finish("20 integrators, their stages, and how errors are measured and predicted")
+    let more = match cheap.len() > rows.len() {
+        true => "more integrators, their stages",
+        false => "the stages of integrators",
+    };
+    summary.finish(&format!("{more}, and how errors are measured and predicted"))
 }

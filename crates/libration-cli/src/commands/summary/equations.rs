@@ -1,6 +1,7 @@
 //! Steps of a system by equations.
 
 use libration_analyze::equation_analysis::{EquationAnalysis, EquationMotion};
+use libration_analyze::linear_analysis::StepAnalysis;
 
 use super::super::digits::significant;
 use super::super::repeat_command::{SYSTEM, of_subcommand, with_option};
@@ -44,13 +45,24 @@ pub(crate) fn of_equations(analysis: &EquationAnalysis, order: &str) -> String {
             "Find the cheapest integrator for an error",
             &of_subcommand("advise", &SYSTEM, &more),
         ),
-        false => {
-            let dt = significant(0.5 * motion.dt, 6);
+        // Forces with kinks have no order, whatever the step.
+        false if system.smooth => {
+            let dt = significant(shorter(analysis), 6);
             summary.command("Take shorter steps", &with_option("--dt", &dt));
         }
+        false => {}
     }
     let system = format!("the operations of a step, all states of {}, and the modes", system.name);
     summary.finish(&system)
+}
+
+/// Half of the step, or of the largest stable one.
+fn shorter(analysis: &EquationAnalysis) -> f64 {
+    let EquationAnalysis { motion, linear, .. } = analysis;
+    let own = |step: &&StepAnalysis| step.integrator == motion.integrator;
+    let step = linear.as_ref().and_then(|linear| linear.steps.iter().find(own));
+    let end = step.and_then(|step| step.stable_dt.as_deref()?.first()?[1]);
+    0.5 * end.map_or(motion.dt, |end| end.min(motion.dt))
 }
 
 fn verdict_of_motion(analysis: &EquationAnalysis) -> String {
@@ -67,7 +79,8 @@ fn verdict_of_motion(analysis: &EquationAnalysis) -> String {
     let time = significant(motion.error_steps as f64 * motion.dt, 6);
     let verdict = match resolves(motion) {
         true => "resolves the motion: halved steps reduce errors as predicted.",
-        false => "does not resolve the motion.",
+        false if system.smooth => "does not resolve the motion.",
+        false => "has no order: its forces have kinks or jumps.",
     };
     format!("{step} {verdict} Errors are those after {time} s.")
 }

@@ -105,7 +105,15 @@ fn append_redesign(advice: &LinearAdvice, is_long: bool, summary: &mut Summary) 
     let mut limits: Vec<&RedesignLimit> = redesign.limits.iter().collect();
     // Those of single channels that are not stated come last, and `false` is first.
     limits.sort_by_key(|limit| limit.stated == 0.0 && limit.channel.is_some());
-    limits.truncate(MOST_REDESIGN_LIMITS - usize::from(is_long));
+    // The tightest first: those that are used most.
+    let used = |limit: &RedesignLimit| {
+        let end = limit.redesigned.and_then(|range| range.to);
+        end.map_or(0.0, |end| limit.stated / end)
+    };
+    limits.sort_by(|a, b| used(b).total_cmp(&used(a)));
+    let all = limits.len();
+    let notes = redesign.notes.len().min(2);
+    limits.truncate(MOST_REDESIGN_LIMITS - 1 - usize::from(is_long) - notes);
     let rows: Vec<Vec<String>> = limits
         .iter()
         .map(|limit| {
@@ -126,6 +134,10 @@ fn append_redesign(advice: &LinearAdvice, is_long: bool, summary: &mut Summary) 
         words("unit"),
     ];
     summary.table(&heads, &rows);
+    let more = all - rows.len();
+    if more > 0 {
+        summary.sentence(&format!("and {more} more"));
+    }
 }
 
 fn append_deviations(advice: &LinearAdvice, summary: &mut Summary) {
@@ -140,13 +152,21 @@ fn append_deviations(advice: &LinearAdvice, summary: &mut Summary) {
         shown.push(format!("and {more} more"));
     }
     let is_known = advice.deviations.iter().any(|deviation| deviation.stated.is_some());
-    let shown = if is_known { shown.join(", ") } else { advice.no_deviation().to_owned() };
+    let shown = match is_known {
+        true => shown.join(", "),
+        false if advice.growth >= 0.0 => advice.no_deviation().to_owned(),
+        false => "not computed for recorded steps".to_owned(),
+    };
     summary.row("rms under noise", &shown);
 }
 
 /// The recommended command and its purpose.
 fn next(advice: &LinearAdvice, args: &AdviseArgs) -> Option<(&'static str, String)> {
-    if let Some(remedies) = &advice.remedies {
+    if advice.redesign.as_ref().is_some_and(|redesign| redesign.cost.is_some()) {
+        return Some(("Print the redesigned controller to paste", with_flag("--verbose")));
+    }
+    // What stabilises a loop that meets its deadlines may not do so beside missed ones.
+    if let Some(remedies) = advice.remedies.as_ref().filter(|_| advice.deadline_misses.is_none()) {
         let is_late = |budget: &&Budget| {
             matches!(budget.kind, Imperfection::Latency | Imperfection::OutputLatency)
                 && budget.stated != 0.0
@@ -157,9 +177,6 @@ fn next(advice: &LinearAdvice, args: &AdviseArgs) -> Option<(&'static str, Strin
         let latency = remedies.latency.filter(|_| inputs && advice.inputs.len() == 1);
         return latency
             .map(|latency| ("Confirm this latency", with_option("--latency", &limit(latency, 4))));
-    }
-    if advice.redesign.is_some() {
-        return Some(("Print the redesigned controller to paste", with_flag("--verbose")));
     }
     let is_costly = advice.cost_increase.is_none_or(|increase| increase > COSTLY);
     if args.linear.has_weights() && is_costly {

@@ -135,7 +135,7 @@ fn verdict_of_loop(own: &ClosedLoop) -> String {
     let moments = own.mean_square_growth.exp_m1();
     let verb = if own.stable { "fall" } else { "grow" };
     format!(
-        "The loop is {} with a period of {} s: second moments {verb} by {} % per period, with jitter and losses.",
+        "The loop is {} with a period of {} s: second moments {verb} by {} % per period.",
         if own.stable { "stable" } else { "unstable" },
         significant(own.period, 6),
         significant(100.0 * moments.abs(), 4)
@@ -205,7 +205,7 @@ fn append_loop_modes(own: &ClosedLoop, summary: &mut Summary) {
         .map(|(i, mode)| {
             vec![
                 (i + 1).to_string(),
-                significant(mode.growth, 6),
+                growth(mode.growth),
                 mode.damping_ratio.map_or("none".to_owned(), |x| significant(x, 4)),
                 significant(mode.frequency, 4),
                 shape(&mode.states),
@@ -222,6 +222,17 @@ fn append_loop_modes(own: &ClosedLoop, summary: &mut Summary) {
     summary.blank();
     summary.table(&heads, &rows);
     append_rest(own.modes.len() + own.vanishing_modes, rows.len(), summary);
+}
+
+/// A factor; near one with its difference from it, which decides.
+fn growth(factor: f64) -> String {
+    let excess = factor - 1.0;
+    match excess != 0.0 && excess.abs() < 1e-4 {
+        true => {
+            format!("1 {} {}", if excess < 0.0 { "−" } else { "+" }, significant(excess.abs(), 2))
+        }
+        false => significant(factor, 6),
+    }
 }
 
 fn append_noise(own: &ClosedLoop, summary: &mut Summary) {

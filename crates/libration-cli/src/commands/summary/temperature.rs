@@ -2,6 +2,8 @@
 
 use libration_analyze::temperature::{TemperatureBias, TemperatureReport, significant};
 
+use libration_report::notation::cut_off;
+
 use super::super::repeat_command::with_option;
 use super::super::temperature::decimals;
 use super::{Summary, numbers, words};
@@ -41,7 +43,7 @@ pub(crate) fn of_temperatures(report: &TemperatureReport, verdict: &str, setting
                 measured(&one.configuration),
                 percent(one.kinetic.predicted_bias),
                 measured(&one.kinetic),
-                significant(one.stable_dt),
+                significant(cut_off(one.stable_dt, 5)),
             ]
         })
         .collect();
@@ -62,8 +64,8 @@ pub(crate) fn of_temperatures(report: &TemperatureReport, verdict: &str, setting
     if let Some(best) =
         report.thermostats.iter().find(|one| report.recommended.as_ref() == Some(&one.thermostat))
     {
-        let [positions, velocities] =
-            [&best.configuration, &best.kinetic].map(|bias| significant(bias.accurate_dt));
+        let [positions, velocities] = [&best.configuration, &best.kinetic]
+            .map(|bias| significant(cut_off(bias.accurate_dt, 5)));
         summary.blank();
         let shown = format!("{positions} s (positions), {velocities} s (velocities)");
         summary.row(
@@ -71,7 +73,7 @@ pub(crate) fn of_temperatures(report: &TemperatureReport, verdict: &str, setting
             &format!("{shown} of the fastest mode with {}", best.thermostat),
         );
         if best.configuration.accurate_dt < report.dt {
-            let dt = significant(best.configuration.accurate_dt);
+            let dt = significant(cut_off(best.configuration.accurate_dt, 5));
             summary.command("Take shorter steps", &with_option("--dt", &dt));
         } else if best.configuration.standard_error.is_some_and(|error| error > COARSE) {
             let steps = report.steps.saturating_mul(10).to_string();
