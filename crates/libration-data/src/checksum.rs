@@ -3,6 +3,7 @@
 use std::io::{self, Read, Write};
 
 use blake3::Hasher;
+use libration::ensemble::has_global_threads;
 
 /// Bytes that are read at once.
 const PIECE: usize = 1 << 18;
@@ -79,7 +80,7 @@ pub(crate) fn checksum_at_once(bytes: &[u8]) -> String {
 const LARGE: usize = 1 << 20;
 
 fn add(sum: &mut Hasher, bytes: &[u8]) {
-    if bytes.len() < LARGE {
+    if bytes.len() < LARGE || !has_global_threads() {
         sum.update(bytes)
     } else {
         sum.update_rayon(bytes)

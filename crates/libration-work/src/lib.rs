@@ -3,10 +3,9 @@
 mod progress;
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
-use libration::ensemble::{EnsembleError, Execution, InstructionSet};
-use rayon::ThreadPoolBuilder;
+use libration::ensemble::{EnsembleError, Execution, InstructionSet, has_global_threads};
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -107,18 +106,8 @@ impl<'a> Work<'a> {
 /// Calls `run` for 0 to `count`, on all cores, or on this one where the system gives no threads. It is not generic because its machine
 /// code is large.
 fn in_parallel(count: usize, run: &(dyn Fn(usize) + Sync)) {
-    match has_threads() {
+    match has_global_threads() {
         true => (0..count).into_par_iter().for_each(run),
         false => (0..count).for_each(run),
     }
-}
-
-/// Whether there are threads for parallel loops. Without this question, such a loop panics where the system gives none.
-fn has_threads() -> bool {
-    static HAS: OnceLock<bool> = OnceLock::new();
-    *HAS.get_or_init(|| match ThreadPoolBuilder::new().build_global() {
-        Ok(()) => true,
-        // The only error without a cause is that there are threads already.
-        Err(error) => std::error::Error::source(&error).is_none(),
-    })
 }

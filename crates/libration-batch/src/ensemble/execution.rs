@@ -1,7 +1,7 @@
 //! Where an ensemble runs.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
@@ -142,6 +142,17 @@ fn share_out(pool: &ThreadPool, count: usize, threads: usize, run: &(dyn Fn(usiz
             drain();
         }
     });
+}
+
+/// Whether the system gives threads for the parallel loops of `rayon` that have no pool of their own. Without this question, the first of
+/// them panics where it gives none.
+pub fn has_global_threads() -> bool {
+    static HAS: OnceLock<bool> = OnceLock::new();
+    *HAS.get_or_init(|| match ThreadPoolBuilder::new().build_global() {
+        Ok(()) => true,
+        // The only error without a cause is that there are threads already.
+        Err(error) => std::error::Error::source(&error).is_none(),
+    })
 }
 
 /// The cores that this process may use.

@@ -38,7 +38,7 @@ pub use any::{AnyEnsemble, BatchFloat, dynamics_of};
 pub use assign::{All, Assign, PerTrajectory};
 pub use buffer::{Buffer, Pages};
 pub use error::EnsembleError;
-pub use execution::{Execution, MOST_THREADS};
+pub use execution::{Execution, MOST_THREADS, has_global_threads};
 pub use instructions::{InstructionSet, Loop};
 pub use loops::{Loops, Setup};
 pub use memory::{InsufficientMemory, available_memory, installed_memory};
