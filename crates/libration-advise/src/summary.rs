@@ -7,6 +7,7 @@ use super::control::Control;
 use super::imperfection::Imperfection;
 use super::loop_simulation::MOST_PERIODS;
 use super::loops::{Loop, PlantModel};
+use super::motion::four_digits;
 use super::request::{Measure, Request, Tolerance};
 use super::stability_window::StabilityWindow;
 use libration_report::notation::cut_off;
@@ -127,9 +128,7 @@ impl Budget {
 /// A share in percent with significant digits.
 pub(super) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
-    // Four digits, without those of a fraction that a large number has.
-    let rounded: f64 = format!("{percent:.3e}").parse().unwrap_or(percent);
-    match rounded {
+    match four_digits(percent) {
         0.0 => "0".to_owned(),
         small if small < 0.01 => format!("{percent:.2e}"),
         other => format!("{other}"),

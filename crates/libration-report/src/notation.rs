@@ -116,10 +116,10 @@ pub fn cut_up(limit: f64, digits: usize) -> f64 {
     let cut = cut_off(limit, digits);
     // As near to it as its twelve digits tell.
     if limit - cut <= 1e-11 * limit {
-        cut
-    } else {
-        cut_off(cut + limit * 10_f64.powi(1 - digits as i32), digits)
+        return cut;
     }
+    let last = 10_f64.powi(limit.log10().floor() as i32 + 1 - digits as i32);
+    format!("{:.*e}", digits - 1, cut + last).parse().unwrap_or(limit)
 }
 
 #[cfg(test)]

@@ -252,7 +252,7 @@ impl DeadlineMisses {
                 "With at most {deadlines} it is stable: in the worst sequence motions change by a factor of {lower:.5} to {upper:.5} per period.{allowed}"
             ),
             UNSTABLE => format!(
-                "With at most {deadlines} the loop is unstable: motions grow by a factor of {lower:.5} per period in the sequence {}, over and over.{allowed}",
+                "With at most {deadlines} the loop is unstable: motions grow by a factor of {lower:.5} per period in the repeated sequence {}.{allowed}",
                 stated.sequence_text()
             ),
             _ => format!(

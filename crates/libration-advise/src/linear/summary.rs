@@ -9,7 +9,13 @@ impl LinearAdvice {
         let all_met = self.summary_without_misses();
         let mut text = match &self.deadline_misses {
             Some(misses) if misses.holds() => format!("{all_met} {}", misses.sentences()),
-            Some(misses) => format!("{} Without missed deadlines: {all_met}", misses.sentences()),
+            Some(misses) => {
+                let mut letters = all_met.chars();
+                let first: String =
+                    letters.next().into_iter().flat_map(char::to_lowercase).collect();
+                let rest = letters.as_str();
+                format!("{} Without missed deadlines {first}{rest}", misses.sentences())
+            }
             None => all_met,
         };
         if let Some(point) = &self.operating_point {
@@ -83,8 +89,8 @@ impl LinearAdvice {
                 "Its cost with all stated imperfections is {cost:.6e}; the given controller is unstable with them."
             ),
             (Some(before), Some(cost)) => format!(
-                "Its cost with all stated imperfections is {cost:.6e}, {:.4} of that of the given controller, {before:.6e}.",
-                cost / before
+                "Its cost with all stated imperfections is {cost:.6e}; that of the given controller is {before:.6e}, {:.4} times as much.",
+                before / cost
             ),
         }
     }

@@ -62,7 +62,7 @@ impl OperatingPoint {
         let kinks = match self.is_smooth {
             true => "",
             false => {
-                " Its equations have kinks or jumps: at one, and beyond, the linearisation does not hold."
+                " Its equations have kinks or jumps: the linearisation does not hold at or beyond them."
             }
         };
         format!(

@@ -119,6 +119,8 @@ fn append_step(analysis: &Analysis, request: &Request, summary: &mut Summary) {
         Some(drift) => {
             let size = match drift.max_energy_drift.get() {
                 "null" => "beyond the range of f64; more than any part".to_owned(),
+                // The rounding of 1024 bits.
+                size if exponent(size) < -200 => "0".to_owned(),
                 size => few_digits(size),
             };
             format!(
@@ -180,4 +182,9 @@ fn next(analysis: &Analysis, is_loop: bool) -> Option<(&'static str, String)> {
         )),
         _ => None,
     }
+}
+
+/// The decimal exponent of a number in digits.
+fn exponent(number: &str) -> i64 {
+    number.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0)
 }
