@@ -81,7 +81,7 @@ def episodes(env, actions):
 def rows():
     """What is measured: a sentence, what is to be reached and whether that is a lower or an upper end, ratios and medians."""
     zeros = np.zeros((MANY, 1), np.float32)
-    for name in ("Pendulum", "Oscillator"):
+    for name in ("PendulumSwingUp", "Oscillator"):
         env = gymnasium.make_vec(f"libration/{name}-v0", MANY)
         count = 200
 
@@ -99,7 +99,7 @@ def rows():
     robots, horizon = libration.Environments("Oscillator", MANY), 1024
     robots.reset(seed=0)
     policy = Linear([-2.0, 0.0])
-    request = policy._request(2)
+    request = policy._request(2, 1)
     rounds = []
     for _ in range(ROUNDS):
         out = robots.rollout(policy, horizon)
