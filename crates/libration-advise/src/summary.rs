@@ -1,5 +1,7 @@
 //! Summaries in sentences.
 
+use libration_report::notation::cut_off;
+
 use super::advice::{Advice, LoopAdvice, ToleranceAnswer};
 use super::budget::{Budget, rounded};
 use super::combined_effect::CombinedEffect;
@@ -10,7 +12,6 @@ use super::loops::{Loop, PlantModel};
 use super::motion::four_digits;
 use super::request::{Measure, Request, Tolerance};
 use super::stability_window::StabilityWindow;
-use libration_report::notation::cut_off;
 
 /// The advised integrator in a sentence.
 pub(super) fn describe_integrator(advice: &Advice, request: &Request) -> String {

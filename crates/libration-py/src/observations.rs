@@ -29,6 +29,15 @@ impl Rounding {
         self.exact.resize(self.exact.len().max(len), 0.0);
         &mut bytemuck::cast_slice_mut(&mut self.exact)[..len]
     }
+
+    /// A new array `(n,)` of what the engine wrote into the room.
+    pub(crate) fn array<'py, T: Number>(
+        &self,
+        py: Python<'py>,
+        len: usize,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        array_of::<T, 1>(py, &bytemuck::cast_slice(&self.exact)[..len], [len], self)
+    }
 }
 
 /// An array of observations, `[n, i]`.

@@ -232,8 +232,7 @@ pub(crate) fn take_single<'py, T: Number>(
         if ends.ends.iter().any(|end| end.lost) {
             infos.set_item("lost", true)?;
         }
-        let seen = episodes.rounding.room::<T>(observations).to_vec();
-        let seen = array_of(py, &seen, [observations], &episodes.rounding)?;
+        let seen = episodes.rounding.array::<T>(py, observations)?;
         Ok((seen, reward[0].to_f64(), terminated[0] != 0, truncated[0] != 0, infos))
     })
 }

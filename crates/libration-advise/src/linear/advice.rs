@@ -134,12 +134,20 @@ pub struct Deviation {
     pub stated: Option<f64>,
 }
 
+/// The increase of the cost from which a redesign is proposed.
+const COSTLY: f64 = 0.01;
+
 impl LinearAdvice {
     /// Whether the loop is stable with the stated imperfections and missed deadlines, its cost is tolerated and the simulation agrees.
     pub fn holds(&self) -> bool {
         let agrees = self.simulated.is_none_or(|simulated| simulated.agrees());
         let misses = self.deadline_misses.as_ref().is_none_or(DeadlineMisses::holds);
         self.growth < 0.0 && !self.exceeds_tolerated_cost() && agrees && misses
+    }
+
+    /// Whether a controller that is designed for the stated timing is worth its work: the imperfections cost more than 1 %.
+    pub fn is_costly(&self) -> bool {
+        self.cost_increase.is_none_or(|increase| increase > COSTLY)
     }
 
     /// The words for a deviation that is not known.

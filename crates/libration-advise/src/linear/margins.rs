@@ -21,6 +21,14 @@ pub struct InputMargins {
     pub crossover: Option<f64>,
 }
 
+impl InputMargins {
+    /// The margins of the input with the least phase margin; none without inputs.
+    pub fn tightest<'a>(all: impl IntoIterator<Item = &'a Self>) -> Option<&'a Self> {
+        let phase = |own: &InputMargins| own.phase.unwrap_or(f64::INFINITY);
+        all.into_iter().min_by(|a, b| phase(a).total_cmp(&phase(b)))
+    }
+}
+
 /// The gain and phase margins at each input, without jitter and losses; none of an unstable loop, and of a cascade.
 pub(super) fn margins(
     linear: &LinearLoop,

@@ -6,7 +6,7 @@ use libration_report::record::{Cell, Table};
 use libration_report::report;
 
 use super::deadlines_page::deadlines;
-use super::{ChainLink, InputMargins, LinearAdvice, redesign_page};
+use super::{ChainLink, DeadlineMisses, InputMargins, LinearAdvice, redesign_page};
 use crate::first_screen::{budget_bars, budget_numbers, cut, measure, simulated_cost};
 use crate::live_setting::{NO_LIVE_SECTION, shown};
 use crate::page::{budget_row, figure};
@@ -55,8 +55,7 @@ pub fn page(advice: &LinearAdvice) -> String {
 fn numbers(advice: &LinearAdvice) -> Vec<Highlight> {
     let mut all = budget_numbers(&advice.budgets);
     all.truncate(2);
-    let phase = |own: &&InputMargins| own.phase.unwrap_or(f64::INFINITY);
-    let tightest = advice.margins.iter().min_by(|a, b| phase(a).total_cmp(&phase(b)));
+    let tightest = InputMargins::tightest(&advice.margins);
     if let Some((own, phase)) = tightest.and_then(|own| Some((own, own.phase?))) {
         let gain = own.gain_up.map(|most| format!("; gain up to {} times", number(most, 4)));
         all.push(Highlight {
@@ -68,36 +67,40 @@ fn numbers(advice: &LinearAdvice) -> Vec<Highlight> {
     all
 }
 
-/// What to do about the answer.
+/// What to do about the answer. What stabilises a loop that meets its deadlines may not do so beside missed ones.
 fn actions(advice: &LinearAdvice) -> Vec<String> {
     let mut actions = Vec::new();
     let is_stable = advice.growth < 0.0;
-    if let Some(remedies) = advice.remedies.filter(|_| !is_stable) {
-        if let Some(latency) = remedies.latency {
-            actions.push(format!(
-                "Reduce the latency to at most {} s, or change the gains as above, and repeat the command with the changed value.",
-                number(cut(latency), 4)
-            ));
-        } else if remedies.gain_factor.is_some() {
-            actions.push("Change the gains as above, and repeat the command.".to_owned());
+    let remedies = advice.remedies.filter(|_| !is_stable && advice.deadline_misses.is_none());
+    if let Some(remedies) = remedies {
+        let gains = remedies.gain_factor.is_some();
+        let latency = remedies.latency.map(|latency| number(cut(latency), 4));
+        let change = match (latency, gains) {
+            (Some(latency), true) => {
+                format!("Reduce the latency to at most {latency} s, or change the gains as above")
+            }
+            (Some(latency), false) => format!("Reduce the latency to at most {latency} s"),
+            (None, true) => "Change the gains as above".to_owned(),
+            (None, false) => String::new(),
+        };
+        if !change.is_empty() {
+            actions.push(format!("{change}, and repeat the command with the changed value."));
         }
     }
-    let is_costly = advice.cost_increase.is_some_and(|rise| rise > COSTLY);
-    if advice.redesign.is_none() && (is_costly || !is_stable) && advice.schedule.is_empty() {
-        actions.push(
+    match &advice.redesign {
+        Some(redesign) if redesign.cost.is_some() => {
+            actions.push("Use the redesigned controller below, which is ready to paste.".to_owned());
+        }
+        None if advice.is_costly() && advice.schedule.is_empty() => actions.push(
             "Add `--redesign`, with weights of a cost, for the controller of least cost under this timing."
                 .to_owned(),
-        );
+        ),
+        _ => {}
     }
-    if advice.redesign.is_some() {
-        actions.push("Use the redesigned controller below, which is ready to paste.".to_owned());
-    }
-    actions.extend(is_stable.then(|| measure(&advice.budgets)).flatten());
+    let holds = advice.deadline_misses.as_ref().is_none_or(DeadlineMisses::holds);
+    actions.extend((is_stable && holds).then(|| measure(&advice.budgets)).flatten());
     actions
 }
-
-/// Increase of the cost from which a redesign is worth its work.
-const COSTLY: f64 = 0.01;
 
 fn budgets(page: &mut Page, advice: &LinearAdvice) {
     page.heading("Budget of each imperfection");

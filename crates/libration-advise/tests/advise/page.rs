@@ -110,6 +110,17 @@ fn the_first_screen_shows_what_is_used_and_says_what_to_do() {
 }
 
 #[test]
+fn a_remedy_without_missed_deadlines_is_no_advice_beside_them() {
+    let text = example("furuta_pendulum.toml");
+    let late = text.replacen("latency = 0.01", "latency = 0.03", 1);
+    assert_ne!(text, late);
+    let found = linear_advice(&late);
+    assert!(found.remedies.is_some() && found.deadline_misses.is_some());
+    let page = linear::page(&found);
+    assert!(!page.contains("<li>Reduce the latency") && page.contains("<li>Add "), "{page}");
+}
+
+#[test]
 fn an_unstable_loop_has_infinite_deviations_beside_its_infinite_cost() {
     // With a gain of 30 the loop endures about (π/2)/30 s of latency.
     let text = DECAYING.replace("0.5", "30.0");

@@ -11,7 +11,8 @@ use libration_settings::equations::EquationSystem;
 /// smaller than the first, the rounding of weights of a method to `f64` is its largest error.
 const SMALL: [i64; 3] = [-10, -15, -20];
 
-/// The largest distance of a power from a whole number at which the next term of the error is no part of it.
+/// The largest distance of a power from a whole number: that of a next term of 3 % of the error, since `log₂((1 + κ)/(1 + κ/2))` is
+/// about `0.72 κ`.
 const WHOLE: f64 = 0.02;
 
 /// Distances of the places at which the order is computed from the start. At the nearer one, functions are defined where they are at

@@ -89,10 +89,7 @@ fn append_integrators(advice: &Advice, summary: &mut Summary) {
     ];
     summary.blank();
     summary.table(&heads, &rows);
-    let more = advice.integrators.len() - rows.len();
-    if more > 0 {
-        summary.sentence(&format!("and {more} more"));
-    }
+    summary.rest(advice.integrators.len() - rows.len());
     if !advice.floats.is_empty() {
         summary.blank();
     }

@@ -121,10 +121,7 @@ fn append_errors(motion: &EquationMotion, summary: &mut Summary) {
     ];
     summary.blank();
     summary.table(&heads, &rows);
-    let more = motion.errors.len() - rows.len();
-    if more > 0 {
-        summary.sentence(&format!("and {more} more"));
-    }
+    summary.rest(motion.errors.len() - rows.len());
 }
 
 fn append_energy(motion: &EquationMotion, summary: &mut Summary) {

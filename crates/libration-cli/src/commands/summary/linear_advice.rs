@@ -17,9 +17,6 @@ const MOST_REDESIGN_LIMITS: usize = 5;
 /// Lines of an answer and its warnings from which it is long.
 const LONG: usize = 5;
 
-/// Increase of the cost from which a redesign is proposed.
-const COSTLY: f64 = 0.01;
-
 /// Returns a screen of advice.
 pub(crate) fn of_linear_advice(advice: &LinearAdvice, args: &AdviseArgs) -> String {
     let mut summary = Summary::new(&advice.answer);
@@ -78,10 +75,7 @@ fn append_margins<'a>(
     let known = |x: Option<f64>, unit: &str| {
         x.map_or_else(|| "none".to_owned(), |x| significant(x, 4) + unit)
     };
-    // Of several inputs that with the least phase margin.
-    let phase = |own: &InputMargins| own.phase.unwrap_or(f64::INFINITY);
-    let least = margins.into_iter().min_by(|a, b| phase(a).total_cmp(&phase(b)));
-    if let Some(own) = least {
+    if let Some(own) = InputMargins::tightest(margins) {
         let shown = format!(
             "at {}: gain from {} to {}, phase {} at {}",
             own.input,
@@ -134,10 +128,7 @@ fn append_redesign(advice: &LinearAdvice, is_long: bool, summary: &mut Summary) 
         words("unit"),
     ];
     summary.table(&heads, &rows);
-    let more = all - rows.len();
-    if more > 0 {
-        summary.sentence(&format!("and {more} more"));
-    }
+    summary.rest(all - rows.len());
 }
 
 fn append_deviations(advice: &LinearAdvice, summary: &mut Summary) {
@@ -178,8 +169,7 @@ fn next(advice: &LinearAdvice, args: &AdviseArgs) -> Option<(&'static str, Strin
         return latency
             .map(|latency| ("Confirm this latency", with_option("--latency", &limit(latency, 4))));
     }
-    let is_costly = advice.cost_increase.is_none_or(|increase| increase > COSTLY);
-    if args.linear.has_weights() && is_costly {
+    if args.linear.has_weights() && advice.is_costly() {
         return Some((
             "Design the controller of least cost for this timing",
             with_flag("--redesign"),

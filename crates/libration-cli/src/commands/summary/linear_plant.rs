@@ -164,7 +164,7 @@ fn append_modes(analysis: &LinearAnalysis, summary: &mut Summary) {
     ];
     summary.blank();
     summary.table(&heads, &rows);
-    append_rest(analysis.modes.len(), rows.len(), summary);
+    summary.rest(analysis.modes.len() - rows.len());
     append_faults(&analysis.modes, summary);
 }
 
@@ -187,12 +187,6 @@ fn append_faults(modes: &[Mode], summary: &mut Summary) {
         if !faulty.is_empty() {
             summary.wrap("", &format!("warning: mode {faulty} {why}"), 2);
         }
-    }
-}
-
-fn append_rest(all: usize, shown: usize, summary: &mut Summary) {
-    if all > shown {
-        summary.sentence(&format!("and {} more", all - shown));
     }
 }
 
@@ -221,7 +215,7 @@ fn append_loop_modes(own: &ClosedLoop, summary: &mut Summary) {
     ];
     summary.blank();
     summary.table(&heads, &rows);
-    append_rest(own.modes.len() + own.vanishing_modes, rows.len(), summary);
+    summary.rest(own.modes.len() + own.vanishing_modes - rows.len());
 }
 
 /// A factor; near one with its difference from it, which decides.

@@ -59,6 +59,13 @@ impl Summary {
         }
     }
 
+    /// Says how many rows a table leaves out.
+    fn rest(&mut self, more: usize) {
+        if more > 0 {
+            self.sentence(&format!("and {more} more"));
+        }
+    }
+
     fn row(&mut self, name: &str, value: &str) {
         self.wrap(&format!("{name:<NAME$} "), value, NAME + 1);
     }

@@ -57,10 +57,7 @@ pub(crate) fn of_temperatures(report: &TemperatureReport, verdict: &str, setting
     ];
     summary.blank();
     summary.table(&heads, &rows);
-    let more = report.thermostats.len() - rows.len();
-    if more > 0 {
-        summary.sentence(&format!("and {more} more"));
-    }
+    summary.rest(report.thermostats.len() - rows.len());
     if let Some(best) =
         report.thermostats.iter().find(|one| report.recommended.as_ref() == Some(&one.thermostat))
     {
