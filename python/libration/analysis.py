@@ -97,6 +97,8 @@ class Analysis(Answer):
     spectral_radius: float
     """Largest absolute eigenvalue of one step without feedback."""
     spectral_radius_minus_one: float
+    flow_spectral_radius_minus_one: float
+    """That of an exact step: how much the motion itself grows, linearised at the start."""
     bounded: bool | None
     """Whether all trajectories stay bounded; None if the system is not linear."""
     stability_windows: list[list[float | None]]

@@ -13,6 +13,7 @@ use super::request::Tolerance;
 use super::stabilising_changes::NEUTRAL;
 use super::stability_window::StabilityWindow;
 use super::subject::Subject;
+use super::summary::share_in_percent;
 use super::timed_loop::TimedLoop;
 
 /// The budget of one imperfection: the sizes with which the loop is stable without others.
@@ -71,7 +72,7 @@ impl Budget {
     pub fn used_in_percent(&self) -> String {
         match (self.used, self.regained) {
             (_, Some(_)) => "regained".to_owned(),
-            (Some(used), None) => format!("{:.1} %", 100.0 * used),
+            (Some(used), None) => share_in_percent(used),
             (None, None) => String::new(),
         }
     }

@@ -168,7 +168,11 @@ impl StabilisingChanges {
                 OCTAVES[0],
                 OCTAVES[1]
             ),
-            false => format!("It is stable with {}.", all.join(", or with ")),
+            false => format!(
+                "It is stable with {}; at {} it has no margin.",
+                all.join(", or with "),
+                if all.len() > 1 { "these limits" } else { "this limit" }
+            ),
         }
     }
 }

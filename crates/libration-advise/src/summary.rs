@@ -77,15 +77,15 @@ pub(super) fn describe_loop(looped: &LoopAdvice, tolerance: &ToleranceAnswer) ->
     };
     if let Some(failing) = &looped.fails_first {
         text += &format!(
-            " {} fails first, with {:.1} % of its budget used; {}.",
+            " {} fails first, with {} of its budget used; {}.",
             capitalise(noun(failing.kind)),
-            100.0 * failing.used,
+            share_in_percent(failing.used),
             failing.how
         );
     }
     if let Some(increase) = cost_increase {
         let tolerated = match looped.exceeds_tolerated_cost(tolerance) {
-            true => format!(", more than the tolerance of {:.3} %", 100.0 * tolerance.most),
+            true => format!(", more than the tolerance of {} %", percent(tolerance.most)),
             false => String::new(),
         };
         text += &format!(" Its cost is {}{tolerated}.", beside_ideal(increase));
@@ -133,6 +133,16 @@ pub(super) fn percent(share: f64) -> String {
         0.0 => "0".to_owned(),
         small if small < 0.01 => format!("{percent:.2e}"),
         other => format!("{other}"),
+    }
+}
+
+/// The used part of a budget, with one decimal; beyond ten times with three digits.
+pub(super) fn share_in_percent(used: f64) -> String {
+    let percent = 100.0 * used;
+    match percent {
+        all if all >= 1e6 => format!("{all:.2e} %"),
+        all if all >= 1e3 => format!("{all:.0} %"),
+        part => format!("{part:.1} %"),
     }
 }
 
@@ -213,4 +223,21 @@ pub(super) fn loop_warnings<M: PlantModel>(
         }
     }
     warnings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn used_parts_have_no_digits_without_meaning() {
+        for (used, text) in [
+            (0.13049, "13.0 %"),
+            (1.305, "130.5 %"),
+            (25.678, "2568 %"),
+            (1.32034980283e8, "1.32e10 %"),
+        ] {
+            assert_eq!(share_in_percent(used), text);
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! The answer on a loop around a linear plant, in sentences.
 
 use super::LinearAdvice;
-use crate::summary::{beside_ideal, capitalise, describe_window, noun, percent};
+use crate::summary::{beside_ideal, capitalise, describe_window, noun, percent, share_in_percent};
 
 impl LinearAdvice {
     /// The answer in a few sentences. A failure because of missed deadlines comes first.
@@ -68,9 +68,9 @@ impl LinearAdvice {
                 None => kind.to_owned(),
             };
             text += &format!(
-                " {} fails first, with {:.1} % of its budget used; {}{shape}.",
+                " {} fails first, with {} of its budget used; {}{shape}.",
                 capitalise(&subject),
-                100.0 * failing.used,
+                share_in_percent(failing.used),
                 failing.how
             );
         }

@@ -34,6 +34,8 @@ pub struct Analysis {
     pub spectral_radius: f64,
     /// The spectral radius minus one, without cancellation.
     pub spectral_radius_minus_one: f64,
+    /// The spectral radius of an exact step minus one: how much the motion itself grows, linearised likewise.
+    pub flow_spectral_radius_minus_one: f64,
     /// Whether every orbit stays bounded; unknown for nonlinear systems and for marginal coupled modes.
     pub bounded: Option<bool>,
     /// The intervals `[from, to]` of Δt in s within which every orbit of an uncoupled linear system stays

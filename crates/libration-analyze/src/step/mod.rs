@@ -28,7 +28,7 @@ use libration::{AnySystem, Elementary, Integrator, Model, Scalar, State, System,
 pub(crate) use limits::stability_windows;
 pub use limits::{LargestDt, OrderOfWord};
 pub use loop_analysis::{LoopAnalysis, StableLatencies, loop_growth};
-use modes::Modes;
+use modes::{Modes, flow_radius_minus_one};
 pub use request::{Request, Stepping};
 pub use timing::{LatencyOption, Timing};
 
@@ -186,6 +186,7 @@ fn answer<const D: usize>(
         eigenvalues: modes.eigenvalues(),
         spectral_radius: modes.radius.to_f64(),
         spectral_radius_minus_one: modes.radius_minus_one.to_f64(),
+        flow_spectral_radius_minus_one: flow_radius_minus_one(&linear),
         bounded: modes.bounded.filter(|_| linear_system),
         stability_windows: request
             .stepping

@@ -105,6 +105,12 @@ impl Modes {
     }
 }
 
+/// The spectral radius of an exact step minus one, `exp(max Re λ·Δt) − 1` of the generator's eigenvalues `λ`.
+pub(super) fn flow_radius_minus_one<const D: usize>(linear: &Linearisation<D>) -> f64 {
+    let rates = largest(eigenvalues(&linear.generator).iter().map(|z| z.re));
+    unless_rounding(rates * linear.dt).to_f64().exp_m1()
+}
+
 fn pair(spectrum: &Spectrum) -> [Complex; 2] {
     match spectrum.eigenvalues {
         Eigenvalues::Complex { re, im } => [Complex { re, im }, Complex { re, im: -im }],

@@ -6,6 +6,7 @@ mod adaptive;
 mod analyze;
 mod comparison;
 mod dimensions;
+mod exact_growth;
 mod export;
 mod implicit;
 mod linear_analysis;

@@ -134,6 +134,8 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
         "spectral radius",
         beside_one(analysis.spectral_radius, analysis.spectral_radius_minus_one),
     );
+    let of_flow = analysis.flow_spectral_radius_minus_one;
+    line("of an exact step", beside_one(1.0 + of_flow, of_flow));
     if let Some(bounded) = analysis.bounded {
         line("orbits", if bounded { "bounded" } else { "unbounded" }.into());
     }

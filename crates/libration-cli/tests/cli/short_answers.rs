@@ -11,7 +11,7 @@ use tempfile::TempDir;
 const SCREEN: [usize; 2] = [24, 100];
 
 /// Requests with the part of the answer that warns, or decides.
-const FORMS: [(&str, &str); 19] = [
+const FORMS: [(&str, &str); 21] = [
     (
         "advise --system pendulum --feedback 10,2 --period 20ms --latency 12ms --horizon 1",
         "The loop is stable",
@@ -79,6 +79,16 @@ const FORMS: [(&str, &str); 19] = [
         "warning: euler-maruyama: not stable: dt must be below 0.10194 s",
     ),
     ("advise --config examples/loops/furuta_pendulum.toml --redesign", "Redesign: Its cost"),
+    // Nothing but the cost of the loop fails.
+    (
+        "advise --system oscillator --feedback 10,2 --latency 0.02 --tolerance cost=0.01 --horizon 1",
+        "--tolerance cost=0.16",
+    ),
+    // The motion grows, not its error.
+    (
+        "analyze --system examples/systems/cart_pole.toml --integrator rk4 --dt 0.01 --steps 1000",
+        "only the growth of the plant at dt = 0.01 s: rk4 (up to 0.7009 s)",
+    ),
 ];
 
 /// A plant with a mode that no input reaches.
@@ -155,7 +165,7 @@ fn check_whole_text(words: &[String], short: &str, code: Option<i32>) {
 }
 
 /// Requests whose proposed command runs with exit code 0.
-const PROPOSED: [usize; 5] = [1, 9, 10, 14, 15];
+const PROPOSED: [usize; 6] = [1, 9, 10, 14, 15, 19];
 /// Requests whose whole text has what the JSON has.
 const WHOLE: [usize; 4] = [1, 7, 13, 17];
 

@@ -1,6 +1,6 @@
 //! Advice on a simulation, or on a loop around a system of the catalogue.
 
-use libration_advise::{Advice, LoopAdvice};
+use libration_advise::{Advice, LoopAdvice, Measure};
 
 use super::super::digits::{limit, short, significant};
 use super::super::repeat_command::with_option;
@@ -117,13 +117,17 @@ fn next(advice: &Advice, args: &AdviseArgs) -> Option<(&'static str, String)> {
                 Some(("Confirm these gains", with_option("--feedback", &gains)))
             }
             (None, Some(latency)) => {
-                Some(("Confirm this latency", with_option("--latency", &limit(latency, 4))))
+                // Below it: at the limit itself the loop does not decay.
+                Some(("Take a shorter latency", with_option("--latency", &limit(0.9 * latency, 2))))
             }
             (None, None) => None,
         };
     }
-    if advice.looped.is_some() && advice.chosen().is_some() {
-        return None;
+    if let Some(looped) = advice.looped.as_ref().filter(|_| advice.chosen().is_some()) {
+        let rise = looped.combined.cost_increase.filter(|rise| *rise > advice.tolerance.most)?;
+        let cost = format!("cost={}", significant(1.05 * rise, 2));
+        let is_asked = advice.tolerance.of == Measure::Cost.name() && args.config.is_none();
+        return is_asked.then(|| ("Tolerate this cost", with_option("--tolerance", &cost)));
     }
     // The smallest error that was found, rounded up.
     let least = advice.integrators.iter().map(|choice| choice.lost).fold(f64::INFINITY, f64::min);

@@ -24,9 +24,12 @@ pub(crate) fn of_equations(analysis: &EquationAnalysis, order: &str) -> String {
     summary.row("order", order);
     append_energy(motion, &mut summary);
     if let Some(radius) = motion.spectral_radius {
-        let excess = radius - 1.0;
-        let sign = if excess < 0.0 { "−" } else { "+" };
-        let shown = format!("1 {sign} {} at the equilibrium", significant(excess.abs(), 5));
+        let excess =
+            |x: f64| format!("1 {} {}", if x < 0.0 { "−" } else { "+" }, significant(x.abs(), 5));
+        let slowest = analysis.linear.as_ref().and_then(|linear| linear.modes.first());
+        let exact = slowest.map(|mode| excess((mode.growth_rate * motion.dt).exp_m1()));
+        let exact = exact.map_or_else(String::new, |exact| format!(", {exact} of exact steps"));
+        let shown = format!("{} at the equilibrium{exact}", excess(radius - 1.0));
         summary.row("spectral radius", &shown);
     }
     if let Some(linear) = &analysis.linear {

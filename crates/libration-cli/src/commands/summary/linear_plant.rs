@@ -88,6 +88,16 @@ fn shorter_step(analysis: &LinearAnalysis) -> Option<f64> {
     }
 }
 
+/// Whether a mode of the plant grows.
+pub(super) fn is_unstable(analysis: &LinearAnalysis) -> bool {
+    analysis.modes.first().is_some_and(|first| first.growth_rate > rounding(analysis))
+}
+
+/// The growth in 1/s that is rounding.
+fn rounding(analysis: &LinearAnalysis) -> f64 {
+    ROUNDING * analysis.fastest_rate
+}
+
 /// The stability of a plant in a sentence.
 pub(super) fn verdict(analysis: &LinearAnalysis) -> String {
     let counts = [
@@ -101,7 +111,7 @@ pub(super) fn verdict(analysis: &LinearAnalysis) -> String {
         .map_or_else(String::new, |period| format!(", sampled every {} s", significant(period, 6)));
     let about = format!("The plant ({}{clock})", counts.join(", "));
     let Some(first) = analysis.modes.first() else { return format!("{about} has no modes.") };
-    let least = ROUNDING * analysis.fastest_rate;
+    let least = rounding(analysis);
     let growing = analysis.modes.iter().filter(|mode| mode.growth_rate > least).count();
     let moved =
         first.states.first().map_or_else(String::new, |(name, _)| format!(", most in {name}"));

@@ -4,24 +4,39 @@ use libration_analyze::linear_analysis::{LinearAnalysis, StepAnalysis};
 
 use super::super::digits::{limit, significant};
 use super::Summary;
+use super::linear_plant::is_unstable;
 
 /// Why stable steps are not known.
-const GROWING: &str = "not known, as a mode of the plant grows";
+const UNKNOWN: &str = "not known, as a mode of the plant grows";
 
 /// Appends the integrators whose steps are stable, those that are not, and the difference of simulations from predictions.
 pub(super) fn append_steps(analysis: &LinearAnalysis, is_one: bool, summary: &mut Summary) {
     let Some(first) = analysis.steps.first() else { return };
     let end = |x: Option<f64>| x.map_or("∞".to_owned(), |x| limit(x, 4));
-    let mut groups: [(String, Vec<String>); 4] = match analysis.dt {
-        Some(dt) => [
+    let mut groups: [(String, Vec<String>); 4] = match (analysis.dt, is_unstable(analysis)) {
+        (Some(dt), false) => [
             format!("stable at dt = {dt} s"),
             "unstable there".into(),
             "never stable".into(),
-            GROWING.into(),
+            UNKNOWN.into(),
         ],
-        None => {
-            ["stable for any dt", "stable for some dt", "never stable", GROWING].map(str::to_owned)
+        (None, false) => {
+            ["stable for any dt", "stable for some dt", "never stable", UNKNOWN].map(str::to_owned)
         }
+        // The plant grows; the question is whether the steps let other modes grow.
+        (Some(dt), true) => [
+            format!("only the growth of the plant at dt = {dt} s"),
+            "more growth there".into(),
+            "more growth at any dt".into(),
+            UNKNOWN.into(),
+        ],
+        (None, true) => [
+            "only the growth of the plant for any dt",
+            "only that growth for some dt",
+            "more growth at any dt",
+            UNKNOWN,
+        ]
+        .map(str::to_owned),
     }
     .map(|name| (name, Vec::new()));
     for step in &analysis.steps {

@@ -5,7 +5,7 @@ use libration_analyze::{Analysis, Request, Stepping};
 use super::super::digits::{UNKNOWN, limit, short, significant};
 use super::super::repeat_command::{SYSTEM, of_subcommand, with_option};
 use super::Summary;
-use super::step_loop::{append_loop, changes, verdict};
+use super::step_loop::{ROUNDING, append_loop, changes, verdict};
 
 /// Largest number of windows of stable steps.
 const MOST: usize = 3;
@@ -47,13 +47,13 @@ fn verdict_of_step(analysis: &Analysis) -> String {
         .collect();
     let system = format!("{} ({})", about.system, parameters.join(", "));
     match (analysis.bounded, about.linear) {
-        (Some(true), _) if excess < 0.0 => {
+        (Some(true), _) if excess < -ROUNDING => {
             format!("{step} is stable on {}: motions {}.", system, changes(excess))
         }
         (Some(true), _) => {
             format!("{step} is stable on {}: every motion stays bounded.", system)
         }
-        (Some(false), _) if excess == 0.0 => {
+        (Some(false), _) if excess <= ROUNDING => {
             format!("Motions of {step} on {} are unbounded, without exponential growth.", system)
         }
         (Some(false), _) => {
@@ -64,7 +64,12 @@ fn verdict_of_step(analysis: &Analysis) -> String {
             system
         ),
         (None, false) => {
-            format!("{step} on {}: linearised at the start, motions {}.", system, changes(excess))
+            let exact = analysis.flow_spectral_radius_minus_one;
+            format!(
+                "{step} on {system}: linearised at the start, motions {}, and those of exact steps {}.",
+                changes(excess),
+                changes(exact)
+            )
         }
     }
 }

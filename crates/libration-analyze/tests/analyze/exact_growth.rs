@@ -1,0 +1,25 @@
+//! The growth of motions in exact steps.
+
+use libration::Method;
+use libration_analyze::analyze;
+
+use super::analyze::request;
+
+#[test]
+fn the_growth_of_an_exact_step_is_that_of_the_linearised_equations() {
+    let growth = |system: &str, q: &[f64], v: &[f64]| {
+        let answer = analyze(&request(system, Method::Rk4, 0.01, q, v)).unwrap();
+        answer.flow_spectral_radius_minus_one
+    };
+    // Beyond a right angle a pendulum falls at √(−ω² cos q), with ω² = 9.81.
+    let rate = (-9.81 * 2.5_f64.cos()).sqrt();
+    let falls = growth("pendulum", &[2.5], &[0.0]);
+    assert!((falls / (0.01 * rate).exp_m1() - 1.0).abs() < 1e-14, "{falls}");
+    // The tide of a centre stretches at √(2μ/r³) along the radius.
+    let stretches = growth("kepler", &[0.5, 0.0], &[0.0, 1.0]);
+    assert!((stretches / 0.04_f64.exp_m1() - 1.0).abs() < 1e-14, "{stretches}");
+    // At rest a pendulum swings without growth, and friction damps at γ/2 = 0.1/s.
+    assert_eq!(growth("pendulum", &[0.0], &[0.0]), 0.0);
+    let damps = growth("damped-oscillator", &[1.0], &[0.0]);
+    assert!((damps / (-0.001_f64).exp_m1() - 1.0).abs() < 1e-14, "{damps}");
+}
