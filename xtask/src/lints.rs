@@ -2,9 +2,10 @@
 
 use std::ffi::OsString;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
+use crate::scratch::Scratch;
 use crate::{Outcome, command};
 
 /// The compiler through which cargo compiles the crates of the workspace.
@@ -45,9 +46,11 @@ pub(crate) fn documented(arguments: &[OsString]) -> Option<Outcome> {
     // No name of a task begins like an argument of cargo to rustdoc.
     arguments.first().filter(|first| first.to_string_lossy().starts_with('-'))?;
     let outcome = pages(arguments).map_or(Ok(()), |pages| {
+        // In a folder of all crates each would write the index of all once more.
+        let folder = Scratch::new("pages")?;
         let mut command = Command::new(&rustdoc);
         command.args(pages).args(["-D", "warnings", "--out-dir"]);
-        command::run(command.arg(folder()))
+        command::run(command.arg(folder.path()))
     });
     let is_source =
         |argument: &&OsString| Path::new(argument).extension().is_some_and(|e| e == "rs");
@@ -66,12 +69,6 @@ fn may_have_examples(folder: &Path) -> bool {
         false => fs::read_to_string(&path)
             .map_or(true, |text| text.contains("```") || text.contains("doc = include_str!")),
     })
-}
-
-/// Where `cargo doc` would put them: beside the folder of this program.
-fn folder() -> PathBuf {
-    let program = std::env::current_exe().unwrap_or_default();
-    program.ancestors().nth(2).unwrap_or(Path::new("target")).join("doc")
 }
 
 /// The arguments for the pages of a crate whose examples these run; none if they run none.
@@ -98,7 +95,7 @@ mod tests {
 
     #[test]
     fn crates_without_fences_have_no_examples() {
-        let scratch = crate::scratch::Scratch::new("fences").unwrap();
+        let scratch = Scratch::new("fences").unwrap();
         let folder = scratch.path();
         let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
         fs::create_dir_all(folder.join("inner")).unwrap();
