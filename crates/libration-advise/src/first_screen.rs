@@ -7,6 +7,7 @@ use super::advice::LoopAdvice;
 use super::budget::Budget;
 use super::combined_effect::SimulatedCost;
 use super::imperfection::Imperfection;
+use super::stabilising_changes::StabilisingChanges;
 
 /// The limits of the stated imperfections, and of latency, most used first.
 pub(super) fn budget_numbers(budgets: &[Budget]) -> Vec<Highlight> {
@@ -18,13 +19,20 @@ pub(super) fn budget_numbers(budgets: &[Budget]) -> Vec<Highlight> {
     shown.sort_by(|a, b| b.used.unwrap_or(0.0).total_cmp(&a.used.unwrap_or(0.0)));
     let number = |own: &Budget| {
         let unit = if own.unit == "s" { " s" } else { "" };
-        Highlight {
-            value: own.stable_up_to.map_or_else(String::new, |x| number(cut(x), 4) + unit),
-            text: format!(
-                "{} up to which the loop is stable; stated {}{unit}",
-                own.kind.name(),
-                number(own.stated, 4)
-            ),
+        let value = |x: f64| number(cut(x), 4) + unit;
+        let stable = own.stable_up_to.map_or_else(String::new, value);
+        let (name, stated) = (own.kind.name(), number(own.stated, 4));
+        match own.tolerated_up_to.flatten() {
+            Some(tolerated) => Highlight {
+                value: value(tolerated),
+                text: format!(
+                    "{name} up to which the cost is tolerated; stable up to {stable}; stated {stated}{unit}"
+                ),
+            },
+            None => Highlight {
+                text: format!("{name} up to which the loop is stable; stated {stated}{unit}"),
+                value: stable,
+            },
         }
     };
     shown.into_iter().map(number).collect()
@@ -78,17 +86,42 @@ pub(super) fn measure(budgets: &[Budget]) -> Option<String> {
     ))
 }
 
-/// What to do about a loop around a system of the catalogue.
-pub(super) fn actions(looped: &LoopAdvice) -> Vec<String> {
-    let latency = looped.remedies.as_ref().and_then(|remedies| remedies.latency);
-    match (looped.combined.growth < 0.0, latency) {
-        (true, _) => measure(&looped.budgets).into_iter().collect(),
-        (false, Some(latency)) => vec![format!(
-            "Reduce the latency to at most {} s, or change the gains as above, and repeat the command with the changed value.",
-            number(cut(latency), 4)
-        )],
-        (false, None) => Vec::new(),
+/// The verdict of a page in its title.
+pub(super) fn title(growth: f64, is_too_costly: bool) -> &'static str {
+    match (growth < 0.0, is_too_costly) {
+        (false, _) => "The loop is unstable",
+        (true, true) => "The loop is stable, but its cost exceeds the tolerance",
+        (true, false) => "The loop is stable",
     }
+}
+
+/// What to do about a loop around a system of the catalogue; `is_too_costly` if its cost exceeds the tolerance.
+pub(super) fn actions(looped: &LoopAdvice, is_too_costly: bool) -> Vec<String> {
+    if let Some(remedies) = &looped.remedies {
+        return change(remedies, looped.gain_units).into_iter().collect();
+    }
+    let reduce = is_too_costly.then(|| reduce(looped.combined.margin)).flatten();
+    reduce.into_iter().chain(measure(&looped.budgets)).collect()
+}
+
+/// What to do about an unstable loop; none if no change of gains or latency stabilises it.
+pub(super) fn change(remedies: &StabilisingChanges, gain_units: [&str; 2]) -> Option<String> {
+    let all = remedies.changes(gain_units);
+    let changes = all.join(", or to ");
+    let limits = if all.len() > 1 { "these limits" } else { "this limit" };
+    (!all.is_empty()).then(|| {
+        format!("Change to {changes}; at {limits} the loop has no margin. Repeat the command with the changed value.")
+    })
+}
+
+/// What to do about a cost above its tolerance; none if not even smaller imperfections are known to meet it.
+pub(super) fn reduce(margin: Option<f64>) -> Option<String> {
+    margin.filter(|share| (0.0..1.0).contains(share)).map(|share| {
+        format!(
+            "Reduce all imperfections to at most {} times their size, with which the cost meets the tolerance.",
+            number(cut_off(share, 3), 3)
+        )
+    })
 }
 
 /// A limit with four digits, not beyond itself.

@@ -8,17 +8,17 @@ use libration_report::report;
 
 use super::advice::{Advice, LoopAdvice};
 use super::budget::Budget;
-use super::first_screen::{actions, budget_bars, budget_numbers, simulated_cost};
+use super::first_screen::{actions, budget_bars, budget_numbers, cut, simulated_cost, title};
 use super::live_setting;
 use super::stability_map::StabilityMap;
 use super::summary::{ANY_PROBABILITY, is_any_probability};
 
 /// The advice as an HTML page.
 pub fn page(advice: &Advice) -> String {
+    let is_too_costly = |own: &LoopAdvice| own.exceeds_tolerated_cost(&advice.tolerance);
     let title = match &advice.looped {
         None => "The cheapest integrator and its step",
-        Some(own) if own.combined.growth < 0.0 => "The loop is stable: budget",
-        Some(_) => "The loop is unstable: budget",
+        Some(own) => title(own.combined.growth, is_too_costly(own)),
     };
     let mut page = Page { title: title.into(), ..Page::default() };
     page.answer.clone_from(&advice.answer);
@@ -34,7 +34,7 @@ pub fn page(advice: &Advice) -> String {
         page.highlights.truncate(3);
         page.highlights.extend(looped.combined.simulated.as_ref().map(simulated_cost));
         page.bars = budget_bars(&looped.budgets);
-        page.actions = actions(looped);
+        page.actions = actions(looped, is_too_costly(looped));
         of_loop(&mut page, looped, advice.map.as_ref());
     }
     integrators(&mut page, advice);
@@ -74,7 +74,7 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&StabilityMap>) {
     }
     page.table(&table, 4);
     page.paragraph(
-        "Each command prints the growth at a limit, where it is zero, or at the largest tried size:",
+        "Each command computes the growth at a limit, or at the largest tried size. At a limit of stability the growth is zero.",
     );
     for budget in &looped.budgets {
         page.paragraph(format!("`{}`", budget.command));
@@ -148,7 +148,9 @@ pub(super) fn budget_row(budget: &Budget) -> [Cell; 7] {
         true => ANY_PROBABILITY.to_owned(),
         false => format!("above {}", number(budget.tried_up_to, 3)),
     };
-    let limit = |limit: Option<f64>| limit.map_or_else(|| Cell::absent(beyond.clone()), Cell::from);
+    let limit = |limit: Option<f64>| {
+        limit.map_or_else(|| Cell::absent(beyond.clone()), |limit| cut(limit).into())
+    };
     [
         budget.kind.name().into(),
         budget.stated.into(),

@@ -148,8 +148,8 @@ pub(super) fn rounded_down(x: f64) -> f64 {
 }
 
 impl StabilisingChanges {
-    /// The changes in a sentence.
-    pub(super) fn sentence(&self, gain_units: [&str; 2]) -> String {
+    /// The changes in words: of the gains, and of the latency.
+    pub(super) fn changes(&self, gain_units: [&str; 2]) -> Vec<String> {
         let gains = self.shown_factor.map(|factor| match self.gains {
             Some([position, velocity]) => format!(
                 "all gains times {factor} (K_p = {position:.6} {}, K_d = {velocity:.6} {})",
@@ -160,7 +160,12 @@ impl StabilisingChanges {
         });
         let latency =
             self.latency.map(|latency| format!("a latency of at most {} s", rounded_down(latency)));
-        let all: Vec<String> = gains.into_iter().chain(latency).collect();
+        gains.into_iter().chain(latency).collect()
+    }
+
+    /// The changes in a sentence.
+    pub(super) fn sentence(&self, gain_units: [&str; 2]) -> String {
+        let all = self.changes(gain_units);
         match all.is_empty() {
             true => format!(
                 "No multiple of {} from 2^-{} to 2^{}, and no smaller latency, stabilises it at this period.",

@@ -5,6 +5,7 @@ pub mod claims_without_study;
 mod live_page;
 pub mod output;
 mod report_check;
+mod report_cover;
 pub mod results;
 mod results_comparison;
 mod run_manifest;

@@ -17,6 +17,8 @@ pub const SCHEMA: &str = "libration.results/1";
 pub struct Results {
     /// Version of the format.
     pub schema: &'static str,
+    /// The command of the run, without names of studies; with `--only` and an identifier it recomputes one finding alone.
+    pub command: String,
     /// The machine of the run.
     pub machine: Machine,
     /// The configuration of the run.
@@ -47,9 +49,9 @@ pub struct StudiedSystem {
     pub summary: EquationSummary,
     /// Its turn in s, of which time steps are fractions.
     pub turn: f64,
-    /// The command of its studies.
+    /// The number of studies that apply to it.
     #[serde(skip)]
-    pub command: String,
+    pub study_count: usize,
     /// The options that name it to any command.
     #[serde(skip)]
     pub options: String,

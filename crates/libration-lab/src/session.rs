@@ -12,15 +12,12 @@ use libration_report::record::{DataFile, FigureFile, RecordError, Series};
 use libration_study::StudyError;
 
 use crate::output::{Output, OutputError};
+use crate::report_cover::cover;
 use crate::results::{Results, SCHEMA};
-use crate::system_page;
 use crate::system_studies::{SYSTEM_OPTION, SystemStudies};
 pub use crate::unjudged_claims::unjudged;
-use crate::{claims_table, live_page};
-use libration_report::notation::{number, plural, seconds};
-use libration_report::report::Cover;
 use libration_report::{Record, figure, report};
-use libration_study::{Effort, Lab, Machine, Study};
+use libration_study::{Config, Effort, Lab, Machine, Study};
 
 use crate::claims_without_study::CLAIMS_WITHOUT_STUDY;
 
@@ -82,12 +79,33 @@ pub fn run(
     studies: &[&dyn Study],
     output: &Output,
 ) -> Result<Results, SessionError> {
+    run_as(&command(lab.config), lab, studies, output)
+}
+
+/// Does the same for a command of other words, such as those of a file of settings. The report shows it before names of studies.
+///
+/// # Errors
+/// See [`SessionError`].
+pub fn run_as(
+    command: &str,
+    lab: &Lab<'_>,
+    studies: &[&dyn Study],
+    output: &Output,
+) -> Result<Results, SessionError> {
     let results = Results {
         claims_without_study: CLAIMS_WITHOUT_STUDY,
         unjudged: unjudged(lab.config, &[], &[]),
-        ..empty(lab)
+        ..empty(lab, command)
     };
     run_from(results, lab, studies, output)
+}
+
+/// The command of a run with the settings of the program.
+fn command(config: &Config) -> String {
+    match config.effort {
+        Effort::Standard => "libration lab".to_owned(),
+        effort => format!("libration lab --effort {}", effort.name()),
+    }
 }
 
 /// Does the same with studies of a system of equations, of which the source report claims nothing.
@@ -103,15 +121,16 @@ pub fn run_system(
     let results = Results {
         system: Some(system.studied()),
         not_applicable: system.not_applicable.clone(),
-        ..empty(lab)
+        ..empty(lab, &system.command)
     };
     run_from(results, lab, studies, output)
 }
 
 /// The results before any study has ended.
-fn empty(lab: &Lab<'_>) -> Results {
+fn empty(lab: &Lab<'_>, command: &str) -> Results {
     Results {
         schema: SCHEMA,
+        command: command.to_owned(),
         machine: Machine::detect(),
         config: lab.config.clone(),
         system: None,
@@ -161,9 +180,12 @@ fn run_all(
         study
             .render(&record, &mut page)
             .map_err(|source| Cause::Render { study: study.name(), source })?;
-        if let Some(system) = &results.system {
-            // The commands of the page are those of this system.
-            for action in &mut page.actions {
+        // The commands of the page are those of this system and folder.
+        let folder = output.folder().to_string_lossy();
+        let folder = shlex::try_quote(&folder).unwrap_or_default();
+        for action in &mut page.actions {
+            *action = action.replace(FOLDER, &folder);
+            if let Some(system) = &results.system {
                 *action = action.replace(SYSTEM_OPTION, &system.options);
             }
         }
@@ -191,76 +213,8 @@ fn run_all(
     Ok(output.put_in_place()?)
 }
 
-/// The studies whose answers, figure and actions open the report, where they are in the run: which steps are stable, and which
-/// integrator costs least.
-const FIRST_ANSWERS: &[&str] = &["stability", "spectrum", "efficiency"];
-
-/// Those of a report on a system of equations: which steps are stable, and which keep the energy or have the least error.
-const FIRST_ANSWERS_OF_SYSTEM: &[&str] = &["stability", "nonlinear", "convergence"];
-
-/// The findings whose numbers open the report, where they are in the run.
-const KEY_FINDINGS: &[&str] = &[
-    "stability.velocity-verlet.window-1-to",
-    "drift.velocity-verlet.dt-0.01.largest",
-    "convergence.oscillator.rk4.global-order-position",
-    "hierarchy.equal-7.latency.energy",
-];
-
-/// Returns the head and the end of the report.
-fn cover(results: &Results, chapters: &[Chapter]) -> Cover {
-    let Results { config, machine, .. } = results;
-    let (spring, start) = (config.oscillator, config.start);
-    let (subject, command) = match &results.system {
-        Some(system) => (system_page::subject(&system.summary), system.command.clone()),
-        None => {
-            let [m, k, q, v] = [spring.m, spring.k, start.q, start.v].map(|x| number(x, 6));
-            let command = match config.effort {
-                Effort::Standard => "libration lab".to_owned(),
-                effort => format!("libration lab --effort {}", effort.name()),
-            };
-            (format!("Oscillator, m = {m} kg, k = {k} N/m, from ({q}, {v})"), command)
-        }
-    };
-    let setting = format!(
-        "{subject} · {} · {} · {} · `{command}{studies}`",
-        plural(config.integrators.len(), "integrator"),
-        machine.cpu,
-        seconds(results.seconds, 2),
-        studies = match config.studies.as_slice() {
-            [] => String::new(),
-            names => format!(" {}", names.join(" ")),
-        },
-    );
-    let host = format!(
-        "{}, {}, {} · Libration {} · {} · all numbers in `results.json`, all series in \
-         `data/`, all figures in `figures/`",
-        machine.cpu,
-        plural(machine.cores, "core"),
-        machine.platform,
-        machine.version,
-        seconds(results.seconds, 2),
-    );
-    let system = results.system.as_ref();
-    Cover {
-        headline: system.map(|system| system.summary.name.clone()).unwrap_or_default(),
-        command,
-        setting,
-        machine: host,
-        complete: results.complete,
-        first_answers: match system {
-            Some(_) => FIRST_ANSWERS_OF_SYSTEM,
-            None => FIRST_ANSWERS,
-        },
-        key_findings: KEY_FINDINGS,
-        live: live_page::settings(config, system),
-        claims: match system {
-            Some(_) => String::new(),
-            None => claims_table::render(results, chapters),
-        },
-        system: system.map_or_else(String::new, system_page::states),
-        scope: system_page::not_applicable(&results.not_applicable),
-    }
-}
+/// The folder in the commands of studies.
+const FOLDER: &str = "libration-report";
 
 fn write_figures(page: &Page, output: &Output) -> Result<Vec<FigureFile>, OutputError> {
     page.figures()

@@ -96,7 +96,7 @@ impl<'a> SystemStudies<'a> {
         StudiedSystem {
             summary,
             turn: self.problem.turn(),
-            command: self.command.clone(),
+            study_count: self.studies.len(),
             options: self.options.clone(),
             live: live_settings::of_equations(self.system),
         }

@@ -7,7 +7,9 @@ use libration_report::report;
 
 use super::deadlines_page::deadlines;
 use super::{ChainLink, DeadlineMisses, InputMargins, LinearAdvice, redesign_page};
-use crate::first_screen::{budget_bars, budget_numbers, cut, measure, simulated_cost};
+use crate::first_screen::{
+    budget_bars, budget_numbers, change, measure, reduce, simulated_cost, title,
+};
 use crate::live_setting::{NO_LIVE_SECTION, shown};
 use crate::page::{budget_row, figure};
 use crate::{Budget, StabilityWindow};
@@ -17,8 +19,8 @@ pub const NO_MARGINS: &str = "Gain and phase margins are not available for a cas
 
 /// The advice as an HTML page.
 pub fn page(advice: &LinearAdvice) -> String {
-    let state = if advice.growth < 0.0 { "stable" } else { "unstable" };
-    let mut page = Page { title: format!("The loop is {state}: budget"), ..Page::default() };
+    let title = title(advice.growth, advice.exceeds_tolerated_cost());
+    let mut page = Page { title: title.into(), ..Page::default() };
     page.answer.clone_from(&advice.answer);
     page.highlights = numbers(advice);
     page.bars = budget_bars(&advice.budgets);
@@ -72,29 +74,17 @@ fn actions(advice: &LinearAdvice) -> Vec<String> {
     let mut actions = Vec::new();
     let is_stable = advice.growth < 0.0;
     let remedies = advice.remedies.filter(|_| !is_stable && advice.deadline_misses.is_none());
-    if let Some(remedies) = remedies {
-        let gains = remedies.gain_factor.is_some();
-        let latency = remedies.latency.map(|latency| number(cut(latency), 4));
-        let change = match (latency, gains) {
-            (Some(latency), true) => {
-                format!("Reduce the latency to at most {latency} s, or change the gains as above")
-            }
-            (Some(latency), false) => format!("Reduce the latency to at most {latency} s"),
-            (None, true) => "Change the gains as above".to_owned(),
-            (None, false) => String::new(),
-        };
-        if !change.is_empty() {
-            actions.push(format!("{change}, and repeat the command with the changed value."));
-        }
-    }
+    actions.extend(remedies.as_ref().and_then(|remedies| change(remedies, ["", ""])));
+    actions.extend(advice.exceeds_tolerated_cost().then(|| reduce(advice.margin)).flatten());
     match &advice.redesign {
         Some(redesign) if redesign.cost.is_some() => {
-            actions.push("Use the redesigned controller below, which is ready to paste.".to_owned());
+            actions
+                .push("Use the redesigned controller below, which is ready to paste.".to_owned());
         }
-        None if advice.is_costly() && advice.schedule.is_empty() => actions.push(
-            "Add `--redesign`, with weights of a cost, for the controller of least cost under this timing."
-                .to_owned(),
-        ),
+        None if advice.is_costly() && advice.schedule.is_empty() => actions.push(format!(
+            "Design the controller of least cost under this timing: `{} --redesign`.",
+            advice.repeat_command
+        )),
         _ => {}
     }
     let holds = advice.deadline_misses.as_ref().is_none_or(DeadlineMisses::holds);

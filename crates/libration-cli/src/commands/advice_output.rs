@@ -38,6 +38,9 @@ impl<A: Serialize> AdviceOutput<A> {
         let reporter = Reporter::new(quiet);
         let advice = compute(&Work::new(&reporter, stop));
         reporter.clear();
+        if let (Err(_), Some(page)) = (&advice, &args.page) {
+            terminal::warn(&format!("`{}` (--page) is not written", page.display()));
+        }
         let mut advice = advice.map_err(failure)?;
         // The text leaves out what is on stderr.
         let text = match args.verbose {

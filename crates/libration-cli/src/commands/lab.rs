@@ -14,7 +14,7 @@ use libration_study_motion::Problem;
 
 use super::disagreements::check_findings;
 use super::{config_file, equation_file, finding};
-use crate::args::{LabArgs, simd};
+use crate::args::{LabArgs, quoted, simd};
 use crate::error::Failure;
 use crate::progress::Reporter;
 use crate::{interrupt, terminal};
@@ -36,7 +36,9 @@ pub(crate) fn run(args: &LabArgs, quiet: bool) -> Result<(), Failure> {
     let (results, output) = match &args.system {
         None => {
             let output = open()?;
-            let run = |lab: &Lab<'_>| session::run(lab, &STUDIES.chosen(&config), &output);
+            let command = of_settings(args);
+            let run =
+                |lab: &Lab<'_>| session::run_as(&command, lab, &STUDIES.chosen(&config), &output);
             (investigate(&config, &reporter, run)?, output)
         }
         Some(file) => {
@@ -61,6 +63,19 @@ pub(crate) fn run(args: &LabArgs, quiet: bool) -> Result<(), Failure> {
         show(&report);
     }
     check_findings(&results.studies)
+}
+
+/// The command of the same run, without names of studies and the options of its output.
+fn of_settings(args: &LabArgs) -> String {
+    let config = args
+        .config
+        .iter()
+        .flat_map(|path| ["--config".to_owned(), path.to_string_lossy().into_owned()]);
+    let effort =
+        args.effort.iter().flat_map(|effort| ["--effort", effort.name()].map(str::to_owned));
+    quoted(
+        ["libration", "lab"].map(str::to_owned).into_iter().chain(config).chain(effort).collect(),
+    )
 }
 
 /// Opens the report in the browser. A failure is only a warning.

@@ -31,8 +31,13 @@ pub(super) fn render(chapter: &Chapter, command: &str, moved: Option<&Figure>) -
     format!(
         "<section>\n<h2 id=\"{name}\">{title}</h2>\n<p class=\"q\">{question}</p>\n{opening}{blocks}{actions}\
          {findings}<p class=\"sub\">Recompute this chapter alone: <code>{command} \
-         {name}</code>; one finding: <code>{command} --only FINDING</code>{shown}</p>\n</section>\n",
+         {name}</code>{one}{shown}</p>\n</section>\n",
         command = escape(command),
+        one = record.findings.first().map_or_else(String::new, |first| format!(
+            "; one finding alone: <code>{} --only {}</code>",
+            escape(command),
+            escape(&first.id)
+        )),
         title = render_html(&page.title),
         question = render_html(&record.question),
         opening = opening(page),
