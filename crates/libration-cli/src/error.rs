@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use libration::ensemble::{EnsembleError, InsufficientMemory, MOST_THREADS};
 use libration_env::dataset::{DataError, DatasetError};
 
-use crate::terminal;
+use crate::{interrupt, terminal};
 
 /// Exit code of a failed run, and of one whose findings disagree.
 pub(crate) const FAILED: u8 = 1;
@@ -90,7 +90,7 @@ impl Failure {
             }
             Failure::Interrupted(message) => {
                 terminal::say(&message);
-                ExitCode::from(INTERRUPTED)
+                ExitCode::from(interrupt::exit_code())
             }
             Failure::Disagreement => ExitCode::from(FAILED),
         }

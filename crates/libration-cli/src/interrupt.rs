@@ -31,8 +31,19 @@ pub(crate) fn listen() -> &'static AtomicBool {
     &STOP
 }
 
-/// Ends the simulators that this process starts when it is terminated: they are not in its group.
-pub(crate) fn end_programs_on_termination() {
+/// The exit code of a run that a termination stops.
+pub(crate) const TERMINATED: u8 = 143;
+
+static IS_TERMINATED: AtomicBool = AtomicBool::new(false);
+
+/// The exit code of an interrupted run: by Ctrl-C, or by a termination.
+pub(crate) fn exit_code() -> u8 {
+    if IS_TERMINATED.load(Ordering::Relaxed) { TERMINATED } else { INTERRUPTED }
+}
+
+/// Lets a run that listens end in order when it is terminated, so that it keeps what it has, and any other program at once. Simulators
+/// that this process starts end too: they are not in its group.
+pub(crate) fn handle_termination() {
     #[cfg(unix)]
     {
         use signal_hook::{consts::SIGTERM, iterator::Signals, low_level::emulate_default_handler};
@@ -41,7 +52,11 @@ pub(crate) fn end_programs_on_termination() {
         let _ = std::thread::Builder::new().spawn(move || {
             for signal in signals.forever() {
                 end_programs();
-                let _ = emulate_default_handler(signal);
+                let is_again = IS_TERMINATED.swap(true, Ordering::Relaxed);
+                if is_again || !LISTENING.load(Ordering::Relaxed) {
+                    let _ = emulate_default_handler(signal);
+                }
+                STOP.store(true, Ordering::Relaxed);
             }
         });
     }

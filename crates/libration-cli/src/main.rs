@@ -22,6 +22,7 @@ const STACK: usize = 8 << 20;
 fn main() -> ExitCode {
     interrupt::ignore_file_size_signal();
     interrupt::exit_on_failed_allocation();
+    interrupt::handle_termination();
     panic::set_hook(Box::new(report_panic));
     match Builder::new().stack_size(STACK).spawn(run) {
         // The hook has reported a panic.

@@ -1,14 +1,17 @@
 //! Reports, recomputed and compared bit by bit.
 
+use std::collections::BTreeSet;
+use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use libration_data::{read_bounded, read_text_bounded};
-use libration_report::Record;
-use libration_report::record::DataFile;
+use libration_report::page::Page;
+use libration_report::record::{DataFile, FigureFile};
+use libration_report::{Record, figure};
 use libration_study::{Config, Lab, Study, StudyError};
 use serde::Deserialize;
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use crate::STUDIES;
 use crate::results::SCHEMA;
@@ -38,6 +41,8 @@ struct StoredStudy {
     name: String,
     findings: Vec<Value>,
     data: Vec<DataFile>,
+    #[serde(default)]
+    figures: Vec<FigureFile>,
 }
 
 /// A study of a report, recomputed.
@@ -45,7 +50,7 @@ struct StoredStudy {
 pub struct CheckedStudy {
     /// The number of findings that were compared: all that are no times.
     pub findings: usize,
-    /// The number of data files that were compared.
+    /// The number of files with data and figures that were compared.
     pub files: usize,
     /// Each finding and file that differs, in words.
     pub differences: Vec<String>,
@@ -84,6 +89,23 @@ impl ReportCheck {
         Ok(ReportCheck { folder: folder.to_owned(), config, studies: stored.studies })
     }
 
+    /// The files in the folders of data and figures that the results do not name.
+    pub fn unknown_files(&self) -> Vec<String> {
+        let files = |study: &StoredStudy| {
+            let data = study.data.iter().map(|own| own.file.clone());
+            data.chain(study.figures.iter().map(|own| own.file.clone())).collect::<Vec<_>>()
+        };
+        let known: BTreeSet<String> = self.studies.iter().flat_map(files).collect();
+        let mut unknown = Vec::new();
+        for inner in ["data", "figures"] {
+            let entries = fs::read_dir(self.folder.join(inner)).into_iter().flatten().flatten();
+            let names = entries.map(|own| format!("{inner}/{}", own.file_name().display()));
+            unknown.extend(names.filter(|name| !known.contains(name)));
+        }
+        unknown.sort();
+        unknown
+    }
+
     /// The configuration of the run.
     pub fn config(&self) -> &Config {
         &self.config
@@ -110,9 +132,20 @@ impl ReportCheck {
         let stored = self.studies.iter().find(|stored| stored.name == study.name());
         Ok(stored.map_or_else(
             || CheckedStudy { findings: 0, files: 0, differences: Vec::new() },
-            |stored| compare(stored, &record, &self.folder),
+            |stored| compare(stored, study, &record, &self.folder),
         ))
     }
+}
+
+/// The fields that differ, with both values.
+fn differing_fields(old: &Value, new: &Value) -> Vec<String> {
+    let fields = [old, new].into_iter().filter_map(Value::as_object).flat_map(Map::keys);
+    let differing: BTreeSet<&String> =
+        fields.filter(|field| old[field.as_str()] != new[field.as_str()]).collect();
+    differing
+        .into_iter()
+        .map(|field| format!("{field} {}, recomputed {}", old[field.as_str()], new[field.as_str()]))
+        .collect()
 }
 
 /// Whether a finding is a time, which does not repeat.
@@ -120,24 +153,30 @@ fn is_time(id: &str) -> bool {
     id.ends_with(".time")
 }
 
-fn compare(stored: &StoredStudy, record: &Record, folder: &Path) -> CheckedStudy {
+fn compare(
+    stored: &StoredStudy,
+    study: &dyn Study,
+    record: &Record,
+    folder: &Path,
+) -> CheckedStudy {
     let mut differences = Vec::new();
     let id = |finding: &Value| finding["id"].as_str().unwrap_or_default().to_owned();
     let computed: Vec<Value> =
         record.findings.iter().filter_map(|finding| serde_json::to_value(finding).ok()).collect();
     let mut findings = 0;
     for old in stored.findings.iter().filter(|old| !is_time(&id(old))) {
+        // Only a run knows it.
+        let mut old = old.clone();
+        old.as_object_mut().map(|fields| fields.remove("command"));
+        let old = &old;
         findings += 1;
         match computed.iter().find(|new| id(new) == id(old)) {
             None => differences.push(format!("the finding `{}` is not computed any more", id(old))),
             Some(new) if new == old => {}
             Some(new) => differences.push(format!(
-                "the finding `{}` differs: measured {}, recomputed {}; predicted {}, recomputed {}",
+                "the finding `{}` differs: {}",
                 id(old),
-                old["measured"],
-                new["measured"],
-                old["predicted"],
-                new["predicted"]
+                differing_fields(old, new).join("; ")
             )),
         }
     }
@@ -148,11 +187,19 @@ fn compare(stored: &StoredStudy, record: &Record, folder: &Path) -> CheckedStudy
     }
     // A study that also measures times has them in its data.
     let timed = stored.findings.iter().any(|finding| is_time(&id(finding)));
-    let mut files = 0;
-    for DataFile { name, file } in stored.data.iter().filter(|_| !timed) {
-        files += 1;
+    let data = stored.data.iter().map(|DataFile { name, file }| {
         let series = record.series.iter().find(|series| series.name == *name);
-        let new = series.and_then(|series| series_to_parquet(series).ok());
+        (file, series.and_then(|series| series_to_parquet(series).ok()))
+    });
+    let mut page = Page::default();
+    let rendered = study.render(record, &mut page).is_ok();
+    let figures = stored.figures.iter().map(|FigureFile { id, file }| {
+        let figure = page.figures().filter(|_| rendered).find(|figure| figure.id == *id);
+        (file, figure.map(|figure| figure::svg::standalone(figure).into_bytes()))
+    });
+    let mut files = 0;
+    for (file, new) in data.chain(figures).filter(|_| !timed) {
+        files += 1;
         // A longer file differs, and a device has no end.
         let most = new.as_ref().map_or(0, |new| new.len() as u64);
         match (read_bounded(&folder.join(file), most), new) {

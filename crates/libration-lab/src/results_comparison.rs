@@ -26,6 +26,8 @@ pub struct ResultsComparison {
     pub improvements: Vec<Change>,
     /// Other findings that differ.
     pub changed: Vec<Change>,
+    /// Findings of the first run that theory predicted, and that the second run should have as well.
+    pub lost: Vec<String>,
     /// Findings of the first run alone.
     pub only_before: Vec<String>,
     /// Findings of the second run alone.
@@ -108,6 +110,21 @@ impl ComparedResults {
             .map_err(|error| format!("no results of `libration lab`: {error}"))
     }
 
+    /// Whether these results should have a finding that others have: with the same settings but for the studies, and its study among them.
+    fn should_have(&self, other: &Self, finding: &Finding) -> bool {
+        let settings = |results: &Self| {
+            let mut config = results.config.clone();
+            config.remove("studies");
+            config
+        };
+        let study = finding.id.split('.').next().unwrap_or_default();
+        let chosen = self.config.get("studies").and_then(serde_json::Value::as_array);
+        let is_chosen = chosen.is_none_or(|names| {
+            names.is_empty() || names.iter().any(|name| name.as_str() == Some(study))
+        });
+        is_chosen && settings(self) == settings(other)
+    }
+
     fn findings(&self) -> impl Iterator<Item = &Finding> {
         self.studies.iter().flat_map(|record| &record.findings)
     }
@@ -134,18 +151,24 @@ impl ResultsComparison {
             regressions: Vec::new(),
             improvements: Vec::new(),
             changed: Vec::new(),
+            lost: Vec::new(),
             only_before: Vec::new(),
             only_after: Vec::new(),
         };
         for first in before.findings() {
             match known.get(first.id.as_str()) {
                 Some(second) => comparison.add(first, second, noise),
-                None => comparison.only_before.push(first.id.clone()),
+                None => {
+                    comparison.only_before.push(first.id.clone());
+                    if first.verdict != Verdict::Measured && after.should_have(before, first) {
+                        comparison.lost.push(first.id.clone());
+                    }
+                }
             }
         }
         for new in after.findings().filter(|finding| !old.contains_key(finding.id.as_str())) {
             comparison.only_after.push(new.id.clone());
-            if new.verdict == Verdict::Disagrees {
+            if verdict(new) == Verdict::Disagrees {
                 comparison.regressions.push(change(None, new));
             }
         }
@@ -162,7 +185,8 @@ impl ResultsComparison {
         let rose = difference > noise * first.measured.abs();
         let is_rate = second.unit.ends_with("/s");
         let is_another = first.unit != second.unit || first.relation != second.relation;
-        match (first.verdict, second.verdict) {
+        match (verdict(first), verdict(second)) {
+            (Verdict::Agrees, Verdict::Agrees) if is_lost => self.regressions.push(change()),
             (Verdict::Agrees | Verdict::Measured, Verdict::Disagrees) => {
                 self.regressions.push(change())
             }
@@ -187,7 +211,20 @@ fn change(first: Option<&Finding>, second: &Finding) -> Change {
         after: second.measured,
         predicted: second.predicted,
         tolerance: second.tolerance.tolerance,
-        verdicts: [first.map_or(Verdict::Measured, |first| first.verdict), second.verdict],
+        verdicts: [first.map_or(Verdict::Measured, verdict), verdict(second)],
+    }
+}
+
+/// The verdict that the numbers of a finding give, whatever its file says. Files have no infinities, of which the file alone knows.
+fn verdict(own: &Finding) -> Verdict {
+    match own.predicted.filter(|predicted| predicted.is_finite() && own.measured.is_finite()) {
+        Some(predicted)
+            if own.verdict == Verdict::Agrees
+                && !own.relation.holds(predicted, own.measured, own.tolerance.tolerance) =>
+        {
+            Verdict::Disagrees
+        }
+        _ => own.verdict,
     }
 }
 

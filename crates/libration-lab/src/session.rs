@@ -175,6 +175,9 @@ fn run_all(
             Err(StudyError::Interrupted) => return Err(Cause::Interrupted),
             Err(source) => return Err(Cause::Study { study: study.name(), source }),
         };
+        for finding in &mut record.findings {
+            finding.command = format!("{} --only {}", results.command, finding.id);
+        }
         record.seconds = begun.elapsed().as_secs_f64();
         let mut page = Page::default();
         study

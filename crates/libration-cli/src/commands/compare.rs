@@ -28,11 +28,17 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
         false => describe(&comparison),
     };
     terminal::print(&text)?;
-    match comparison.regressions.len() {
-        0 => Ok(()),
-        1 => Err(Failure::run("a finding became worse")),
-        n => Err(Failure::run(format!("{n} findings became worse"))),
-    }
+    let counted = |n: usize, what: &str| match n {
+        0 => None,
+        1 => Some(format!("a finding {what}")),
+        n => Some(format!("{n} findings {what}")),
+    };
+    let [worse, lost] = [
+        counted(comparison.regressions.len(), "became worse"),
+        counted(comparison.lost.len(), "of the first run missing in the second"),
+    ];
+    let failures: Vec<String> = worse.into_iter().chain(lost).collect();
+    if failures.is_empty() { Ok(()) } else { Err(Failure::run(failures.join(", "))) }
 }
 
 fn read(path: &Path) -> Result<ComparedResults, Failure> {

@@ -72,8 +72,18 @@ fn compute(study: &dyn Study, config: &Config, quiet: bool) -> Result<Vec<Findin
 
 /// The finding with all digits.
 fn describe(finding: &Finding) -> String {
-    let Finding { id, text, unit, predicted, measured, relation, tolerance, verdict, undecided } =
-        finding;
+    let Finding {
+        id,
+        text,
+        unit,
+        predicted,
+        measured,
+        relation,
+        tolerance,
+        verdict,
+        undecided,
+        ..
+    } = finding;
     let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
     let relation = match relation {
         Relation::Equal => "",

@@ -6,7 +6,6 @@ use std::time::{Duration, Instant};
 use libration_probe::{BlackBoxError, ChildProcess};
 
 use crate::error::Failure;
-use crate::interrupt;
 
 /// Starts the program for a model, and returns it with the first line of its output.
 pub(super) fn start(
@@ -26,7 +25,6 @@ pub(super) fn start(
         [python, "-m", "libration.hosts", "mujoco"].map(str::to_owned).into();
     words.push(path.display().to_string());
     words.extend_from_slice(options);
-    interrupt::end_programs_on_termination();
     let mut child = ChildProcess::start(&words, patience).map_err(|error| {
         Failure::usage(format!("{error}; expected --python with the packages libration and mujoco"))
     })?;

@@ -18,7 +18,6 @@ use super::result_file::ResultFile;
 use super::watched::Watched;
 use crate::args::{Coordinates, ProbeArgs, quoted};
 use crate::error::Failure;
-use crate::interrupt;
 use crate::terminal;
 
 /// Audits the step of a simulator and prints the report.
@@ -100,7 +99,6 @@ fn simulator(args: &ProbeArgs, deadline: Instant) -> Result<(Box<dyn BlackBox>, 
     match (&args.command, &args.mujoco, &args.matrices) {
         (Some(words), _, _) => {
             let subject = described(args, &quoted(words.0.clone()))?;
-            interrupt::end_programs_on_termination();
             let mut child = ChildProcess::start(&words.0, args.timeout)
                 .map_err(|error| Failure::usage(format!("{error} (--command)")))?;
             child.set_deadline(deadline);

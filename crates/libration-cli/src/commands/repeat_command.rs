@@ -17,7 +17,8 @@ pub(super) fn with_option(option: &str, value: &str) -> String {
 
 /// Returns the same command line with a flag.
 pub(super) fn with_flag(flag: &str) -> String {
-    quoted(repeated().into_iter().chain([flag.to_owned()]).collect())
+    let others = repeated().into_iter().filter(|word| word != flag);
+    quoted(others.chain([flag.to_owned()]).collect())
 }
 
 /// Returns a command line of another subcommand: of the options those that are given, with their values, and `more` words.

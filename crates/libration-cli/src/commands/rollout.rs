@@ -11,6 +11,7 @@ use libration_lab::ReportCheck;
 use libration_settings::ConfigCommand;
 
 use super::dataset_progress::{Watcher, failed, shown};
+use super::repeat_command::with_flag;
 use super::{config_file, verify_report};
 use crate::args::{JoinArgs, RolloutArgs, VerifyArgs};
 use crate::error::Failure;
@@ -79,8 +80,9 @@ fn finish(
     let (count, bytes) = watcher.totals();
     let chunks = chunks.map_err(|error| match error {
         DatasetError::Interrupted => Failure::Interrupted(format!(
-            "interrupted; `{}` holds {count} transitions; help: continue with --resume",
+            "interrupted; `{}` holds {count} transitions; help: continue with `{}`",
             out.display(),
+            with_flag("--resume"),
         )),
         error => failed(error, out),
     })?;

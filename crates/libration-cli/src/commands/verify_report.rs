@@ -29,11 +29,14 @@ pub(super) fn run(folder: &Path, quiet: bool) -> Result<(), Failure> {
             n => plural(n, "difference"),
         };
         let (findings, files) =
-            (plural(checked.findings, "finding"), plural(checked.files, "data file"));
+            (plural(checked.findings, "finding"), plural(checked.files, "file"));
         text += &format!("{}: {findings}, {files}: {verdict}\n", study.name());
         differences.extend(checked.differences);
     }
     reporter.clear();
+    let unknown = report.unknown_files().into_iter();
+    differences.extend(unknown.map(|file| format!("the file `{file}` is not one of the results")));
+    text += "not compared: the page `report.html`, and machine and times in `results.json`\n";
     if !others.is_empty() {
         text += &format!("not recomputed, since they measure the machine: {}\n", others.join(", "));
     }

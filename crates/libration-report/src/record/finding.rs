@@ -27,6 +27,9 @@ pub struct Finding {
     pub verdict: Verdict,
     /// The reason why a measurement could not be judged.
     pub undecided: Option<Undecided>,
+    /// The command that recomputes this finding alone; empty outside of results that a run wrote.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub command: String,
 }
 
 /// JSON has no infinity and no NaN: both are `null` in `results.json`.
@@ -103,6 +106,19 @@ impl Tolerance {
     }
 }
 
+impl Relation {
+    /// Whether a measurement is as related to a prediction as expected, within the allowed difference; false for what is not a number.
+    pub fn holds(self, predicted: f64, measured: f64, allowed: Option<f64>) -> bool {
+        let difference = measured - predicted;
+        let excess = match self {
+            Relation::Equal => difference.abs(),
+            Relation::AtMost => difference,
+            Relation::AtLeast => -difference,
+        };
+        allowed.is_some_and(|allowed| excess <= allowed)
+    }
+}
+
 impl Finding {
     /// A measurement that should equal a prediction.
     pub fn predicted(
@@ -129,14 +145,7 @@ impl Finding {
         if tolerance.relative {
             tolerance.tolerance = tolerance.tolerance.map(|size| size * predicted.abs());
         }
-        let difference = measured - predicted;
-        let excess = match relation {
-            Relation::Equal => difference.abs(),
-            Relation::AtMost => difference,
-            Relation::AtLeast => -difference,
-        };
-        // A comparison with NaN is false: what is not a number never agrees.
-        let agrees = tolerance.tolerance.is_some_and(|allowed| excess <= allowed);
+        let agrees = relation.holds(predicted, measured, tolerance.tolerance);
         Finding {
             id: id.into(),
             text: text.into(),
@@ -147,6 +156,7 @@ impl Finding {
             tolerance,
             verdict: if agrees { Verdict::Agrees } else { Verdict::Disagrees },
             undecided: None,
+            command: String::new(),
         }
     }
 
@@ -171,6 +181,7 @@ impl Finding {
             },
             verdict: Verdict::Measured,
             undecided: None,
+            command: String::new(),
         }
     }
 

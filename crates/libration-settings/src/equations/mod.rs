@@ -119,7 +119,7 @@ impl EquationSystem {
         let states = named_states(&equations, &q, &v, &unit);
         let input_units = definitions.inputs.iter().map(|name| unit(name)).collect();
         let energy_unit = unit("energy");
-        let (name, description) = (system.name, system.description);
+        let (name, description) = (system.name.clone(), system.description.clone());
         let mut read = EquationSystem {
             name,
             description,
@@ -133,6 +133,14 @@ impl EquationSystem {
             v,
             task: None,
         };
+        if varied.is_empty()
+            && let Some((key, value)) = read.first_unbounded_rate()
+        {
+            let message = format!("{key} is {value} at the start; expected a finite number");
+            let help = "choose another start or other parameters".to_owned();
+            let span = system.key_place(&key);
+            return Err(SettingsError::new(file, text, span, message, Some(help)));
+        }
         if let Some(task) = task {
             let found = task.read(&read, text);
             read.task = Some(found.map_err(|(span, message, help)| {
@@ -148,6 +156,20 @@ impl EquationSystem {
     pub fn start(&self) -> Vec<f64> {
         let inputs = self.equations.inputs().iter().map(|_| 0.0);
         self.q.iter().chain(&self.v).copied().chain(inputs).collect()
+    }
+
+    /// The first acceleration or rate that is not finite at the start: its key and its value. Nothing can move from there.
+    fn first_unbounded_rate(&self) -> Option<(String, f64)> {
+        let program = self.equations.dynamics().accelerations();
+        let values = program.on::<f64>().run(&self.start()).collect::<Vec<_>>();
+        let degrees = self.equations.degrees().iter().zip(values);
+        let (degree, value) = degrees.into_iter().find(|(_, value)| !value.is_finite())?;
+        let key = match degree {
+            Degree::Coordinate(name) => format!("acceleration.{name}"),
+            Degree::State(name) => format!("rate.{name}"),
+            Degree::Time => "time".to_owned(),
+        };
+        Some((key, value))
     }
 
     /// The derivatives of the rates of the [states](EquationSystem::states) by the states, from those of the accelerations by
