@@ -34,8 +34,9 @@ pub(super) fn run(folder: &Path, quiet: bool) -> Result<(), Failure> {
         differences.extend(checked.differences);
     }
     reporter.clear();
-    let unknown = report.unknown_files().into_iter();
-    differences.extend(unknown.map(|file| format!("the file `{file}` is not one of the results")));
+    for file in report.unknown_files() {
+        text += &format!("not compared: `{file}`, which the results do not name\n");
+    }
     text += "not compared: the page `report.html`, and machine and times in `results.json`\n";
     if !others.is_empty() {
         text += &format!("not recomputed, since they measure the machine: {}\n", others.join(", "));

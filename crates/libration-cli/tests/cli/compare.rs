@@ -53,6 +53,21 @@ fn findings_that_became_worse_fail_the_comparison_and_are_named() {
     let said = compared(&[&first, &near], 0);
     assert!(said.contains("0 findings are the same, 3 within"), "{said}");
     assert!(said.contains("machine.version differs: \"first\", then \"near\""), "{said}");
+    // A verdict that the numbers do not give.
+    let left = path("left", [1.1, 1e9, 0.5], "agrees");
+    let said = compared(&[&first, &left], 1);
+    assert!(said.contains("agreed with theory at 1, now disagrees: measured 1.1"), "{said}");
+    // A prediction that nobody checks any more, unless the study was not asked for.
+    let lost = path("lost", [1.0, 1e9, 0.5], "agrees");
+    let file = Path::new(&lost).join("results.json");
+    let mut all: Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
+    all["studies"][0]["findings"].as_array_mut().unwrap().remove(0);
+    fs::write(&file, all.to_string()).unwrap();
+    let said = compared(&[&first, &lost], 1);
+    assert!(said.contains("a finding of the first run missing in the second"), "{said}");
+    all["config"]["studies"] = json!(["rollout"]);
+    fs::write(&file, all.to_string()).unwrap();
+    compared(&[&first, &lost], 0);
     let said = compared(&[&first, &first], 0);
     assert!(
         said.contains("3 findings are the same, 0 within") && !said.contains("differs"),
@@ -89,6 +104,7 @@ fn a_comparison_as_json_has_all_that_differs() {
     let file = first.join("results.json");
     let mut shorter: Value = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
     shorter["studies"][0]["findings"].as_array_mut().unwrap().remove(0);
+    shorter["config"]["studies"] = json!(["rollout"]);
     let second = folder.path().join("second.json");
     fs::write(&second, shorter.to_string()).unwrap();
     let said = compared(&[file.to_str().unwrap(), second.to_str().unwrap(), "--json"], 0);
@@ -115,7 +131,6 @@ fn another_verdict_prediction_or_unit_is_not_the_same_finding() {
             json!("measured"),
             "different\n  drift.largest\n    no longer has a prediction",
         ),
-        ("predicted", json!(5.0), "different\n  drift.largest"),
         ("unit", json!("m"), "different\n  drift.largest"),
         ("relation", json!("at-most"), "different\n  drift.largest"),
     ] {
@@ -123,6 +138,9 @@ fn another_verdict_prediction_or_unit_is_not_the_same_finding() {
         let said = compared(&paths, 0);
         assert!(said.contains(title) && said.contains("2 findings are the same"), "{key}: {said}");
     }
+    changed("predicted", json!(5.0));
+    let said = compared(&paths, 1);
+    assert!(said.contains("now disagrees: measured 1, predicted 5"), "{said}");
     // What disagrees and was not there before, and a rate that is missing.
     let mut all: Value = serde_json::from_str(&text).unwrap();
     all["studies"][0]["findings"][0]["id"] = json!("drift.new");
@@ -135,7 +153,7 @@ fn another_verdict_prediction_or_unit_is_not_the_same_finding() {
         "drift.new\n    disagrees with theory: measured 1, predicted 1",
         "rollout.rate\n    1000000000 1/s, then no number",
         "complete differs: true, then false",
-        "2 findings became worse",
+        "2 findings became worse, a finding of the first run missing in the second",
     ] {
         assert!(said.contains(part), "{part}: {said}");
     }

@@ -29,9 +29,14 @@ fn verify_recomputes_a_report_and_names_what_differs() {
     let mut bytes = fs::read(out.join(&series)).unwrap();
     bytes[40] ^= 1;
     fs::write(out.join(&series), bytes).unwrap();
+    let figure = results["studies"][1]["figures"][0]["file"].as_str().unwrap().to_owned();
+    let drawn = fs::read_to_string(out.join(&figure)).unwrap();
+    fs::write(out.join(&figure), drawn.replacen("stroke", "stroke ", 1)).unwrap();
+    fs::write(out.join("data/mine.csv"), "1").unwrap();
     libration(&["verify", folder])
         .code(1)
-        .stdout(contains("2 differences"))
+        .stdout(contains("3 differences").and(contains("`data/mine.csv`, which the results do")))
+        .stderr(contains(format!("the file `{figure}` differs")))
         .stderr(contains(format!("the finding `{id}` differs: measured {other:?}, recomputed")))
         .stderr(contains(format!("the file `{series}` differs")));
     libration(&["verify", folder, "--repair"]).code(2);

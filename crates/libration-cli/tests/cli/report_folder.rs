@@ -12,7 +12,7 @@ use predicates::str::contains;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::interrupt::{interrupt, wait_until};
+use crate::interrupt::{interrupt, signal, wait_until};
 
 /// Hours of work in parts of a fraction of a second, after a study of a moment.
 const LONG: [&str; 4] = ["spectrum", "drift", "--config", "long.toml"];
@@ -60,11 +60,21 @@ fn start(folder: &TempDir, words: &[&str], last: &str) -> Child {
 }
 
 /// Interrupts a run; gives what it said last.
-fn interrupted(mut child: Child) -> String {
+fn interrupted(child: Child) -> String {
     interrupt(&child);
+    last_words(child, 130)
+}
+
+/// Terminates a run; gives what it said last.
+fn terminated(child: Child) -> String {
+    signal(&child, "TERM");
+    last_words(child, 143)
+}
+
+fn last_words(mut child: Child, code: i32) -> String {
     wait_until("the end", || child.try_wait().unwrap().is_some());
     let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(130), "{output:?}");
+    assert_eq!(output.status.code(), Some(code), "{output:?}");
     String::from_utf8(output.stderr).unwrap()
 }
 
@@ -128,8 +138,9 @@ fn an_interrupted_run_keeps_what_it_finished_beside_the_older_report_and_says_wh
 fn an_interrupted_run_replaces_an_older_one_that_finished_no_more() {
     let folder = folder();
     let out = folder.path().join("out");
-    for _ in 0..2 {
-        let told = interrupted(start(&folder, &LONG, "drift"));
+    // A termination keeps what ended as Ctrl-C does.
+    for end in [interrupted, terminated] {
+        let told = end(start(&folder, &LONG, "drift"));
         assert!(told.contains("`out` holds the studies that ended"), "{told}");
         let results = results(&out);
         assert_eq!(results["complete"], false);

@@ -136,6 +136,10 @@ fn wrong_systems_of_the_laboratory_are_shown_at_the_place() {
         .code(2)
         .stdout("")
         .stderr(contains("unknown name `y`").and(contains("wrong.toml:4:24")).and(contains("^")));
+    let nowhere = written(&folder, "root.toml", &text.replace("-sin(y)", "sqrt(-1 - x^2)"));
+    libration(&["lab", "--system", nowhere.to_str().unwrap()])
+        .code(2)
+        .stderr(contains("acceleration.x is NaN at the start").and(contains("root.toml:4:")));
     let lorenz = example("lorenz.toml");
     let cases: &[(&[&str], &str)] = &[
         (&["lab", "latency", "--system", &lorenz], "libration advise --plant"),
