@@ -28,6 +28,19 @@ pub struct EquationRequest {
 }
 
 impl EquationRequest {
+    /// Why steps of this integrator lose their order on this system; none if they do not.
+    pub fn caveat(&self) -> Option<String> {
+        let AnyMethod::Explicit(method) = self.method else { return None };
+        let is_positional = self.system.equations.dynamics().is_positional();
+        (method.supposes_positional_forces() && !is_positional).then(|| {
+            format!(
+                "a force of `{}` depends on a velocity, which `{}` does not suppose: its errors are those of order 1; `rk4` keeps its order",
+                self.system.name,
+                method.name()
+            )
+        })
+    }
+
     /// Names and units of the columns, from left to right.
     pub fn columns(&self) -> Vec<(String, String)> {
         let named = |name: &str, unit: &str| (name.to_owned(), unit.to_owned());

@@ -52,7 +52,7 @@ pub(super) fn run(
             found.len()
         )));
     };
-    terminal::print(&describe(finding))?;
+    terminal::print(&describe(finding, study.measures_the_machine()))?;
     let mut record = libration_report::Record::new(name, study.question());
     record.find(finding.clone());
     check_findings(&[record])
@@ -71,7 +71,7 @@ fn compute(study: &dyn Study, config: &Config, quiet: bool) -> Result<Vec<Findin
 }
 
 /// The finding with all digits.
-fn describe(finding: &Finding) -> String {
+fn describe(finding: &Finding, is_speed: bool) -> String {
     let Finding {
         id,
         text,
@@ -91,13 +91,17 @@ fn describe(finding: &Finding) -> String {
         Relation::AtLeast => "at least ",
     };
     let mut lines = vec![format!("{id}: {text}"), format!("measured   {measured:?}{unit}")];
-    lines.extend(predicted.map(|x| format!("predicted  {relation}{x:?}{unit}")));
+    let what = if is_speed { "target   " } else { "predicted" };
+    lines.extend(predicted.map(|x| format!("{what}  {relation}{x:?}{unit}")));
     lines.extend(
         tolerance
             .tolerance
             .map(|x| format!("tolerance  {x:?}{unit}: {}", tolerance.tolerance_reason)),
     );
     let verdict = match verdict {
+        // A speed has a target, not a prediction.
+        Verdict::Agrees if is_speed => "reached".to_owned(),
+        Verdict::Disagrees if is_speed => "not reached".to_owned(),
         Verdict::Agrees => "agrees".to_owned(),
         Verdict::Disagrees => "disagrees".to_owned(),
         Verdict::Measured => undecided

@@ -171,11 +171,15 @@ pub(super) fn describe(head: &str, statistics: &Statistics) -> String {
     text
 }
 
+/// Correlation of neighbouring intervals below which they are taken as independent.
+const INDEPENDENT: f64 = 0.1;
+
 /// The rms of the intervals in words.
 pub(super) fn jitter_words(statistics: &Statistics) -> String {
     let rms = statistics.jitter_rms;
     // `--jitter` has independent intervals.
-    let is_independent = statistics.correlation.first().is_none_or(|first| first.abs() < 0.1);
+    let is_independent =
+        statistics.correlation.first().is_none_or(|first| first.abs() < INDEPENDENT);
     match statistics.equal_up_to {
         Some(resolution) => format!(
             "{rms:.3e}: intervals are equal up to the resolution of the time stamps, {}",
@@ -191,7 +195,8 @@ fn meaning(first: f64) -> &'static str {
     match first {
         c if c < -0.35 => "the latenesses of wake-ups are independent; the time does not drift",
         c if c > 0.35 => "the rate varies slowly; neighbouring intervals are similar",
-        _ => "intervals are independent",
+        c if c.abs() < INDEPENDENT => "intervals are independent",
+        _ => "neighbouring intervals are weakly correlated",
     }
 }
 

@@ -44,7 +44,7 @@ pub(crate) fn run(args: &RolloutArgs, quiet: bool) -> Result<(), Failure> {
         })?,
         None => dataset,
     };
-    if let Some(caveat) = dataset.caveat().filter(|_| !quiet) {
+    for caveat in dataset.caveats().iter().filter(|_| !quiet) {
         terminal::say(&format!("note: {caveat}"));
     }
     let job = WriteJob {

@@ -64,6 +64,9 @@ pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
     }
     if let Some(system) = args.system.as_ref().and_then(equation_file::system) {
         let request = equation_file::simulation(args, system?)?;
+        if let Some(caveat) = request.caveat().filter(|_| !quiet) {
+            terminal::say(&format!("note: {caveat}"));
+        }
         return write(args, quiet, format, &|out, watcher| {
             equation_trajectory::write(&request, format, out, watcher)
         });

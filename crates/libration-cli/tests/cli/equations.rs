@@ -288,4 +288,8 @@ fn an_expression_on_the_command_line_is_a_system() {
     let done = libration(&words).success();
     let found: serde_json::Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
     assert_eq!(found["motion"]["order"], 1);
+    let table = ["--integrator", "mclachlan-atela-5", "--dt", "0.01", "--steps", "1"];
+    let words = [&["simulate", "--force", "-10*q0 - 0.1*v0^3"][..], &table].concat();
+    let note = "a force of `force` depends on a velocity";
+    libration(&words).success().stderr(predicate::str::contains(note));
 }

@@ -74,9 +74,20 @@ impl Default for Dataset {
 }
 
 impl Dataset {
-    /// The caveat about the integrator on the system, if there is one.
-    pub fn caveat(&self) -> Option<String> {
-        self.environment.caveat()
+    /// The caveats about the integrator on the system, and about environments that are all the same.
+    pub fn caveats(&self) -> Vec<String> {
+        let is_fixed = !matches!(self.policy, PolicySettings::Random { .. });
+        let repeats = matches!(
+            &self.environment,
+            AnyEnvironmentSettings::Catalogued(settings) if is_fixed && settings.draws_nothing()
+        );
+        let same = (repeats && self.environments > 1).then(|| {
+            format!(
+                "all {} environments are the same, as nothing is drawn: give `start` an interval such as q = [-1.0, 1.0], or use noise or a random policy",
+                self.environments
+            )
+        });
+        self.environment.caveat().into_iter().chain(same).collect()
     }
 
     /// The same data set with `transitions` transitions, rounded up to whole steps of all environments.

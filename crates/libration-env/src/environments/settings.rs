@@ -50,6 +50,17 @@ pub struct Noise {
     pub observation: Jitter,
 }
 
+impl EnvironmentSettings {
+    /// Whether nothing is drawn, so that all environments under a fixed policy are the same.
+    pub fn draws_nothing(&self) -> bool {
+        let Noise { jitter, skew, observation } = self.noise;
+        let Delays { observation: late, action } = self.delays;
+        [jitter, skew, observation].iter().all(|law| law.rms() == 0.0)
+            && self.start.iter().all(|[low, high]| low == high)
+            && [late, action].iter().all(|[least, most]| least == most)
+    }
+}
+
 impl Noise {
     /// No noise.
     pub const NONE: Noise = Noise {

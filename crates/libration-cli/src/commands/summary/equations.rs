@@ -127,6 +127,9 @@ fn append_errors(motion: &EquationMotion, summary: &mut Summary) {
     summary.rest(motion.errors.len() - rows.len());
 }
 
+/// Distance of a reduction from 1 below which the steps have no part in a change of the energy.
+const OWN: f64 = 0.02;
+
 fn append_energy(motion: &EquationMotion, summary: &mut Summary) {
     let Some(energy) = &motion.energy else {
         return summary.row("energy", "the file has none, so its drift is not known");
@@ -136,6 +139,13 @@ fn append_energy(motion: &EquationMotion, summary: &mut Summary) {
         start => format!(", {} of the start", significant(energy.largest / start.abs(), 3)),
     };
     let largest = format!("{} {}", significant(energy.largest, 3), energy.unit);
+    if energy.reduction.is_some_and(|reduction| (reduction - 1.0).abs() < OWN) {
+        let change = largest.trim_end();
+        return summary.row(
+            "energy",
+            &format!("changes by at most {change}{part}, over {} steps, as much as in halved steps: the system itself changes it, or the steps are far too long", energy.steps),
+        );
+    }
     let shown = format!(
         "changes by at most {}{part}, over {} steps; halved steps reduce this by {} ({} predicted) {}",
         largest.trim_end(),
