@@ -203,3 +203,27 @@ fn what_does_not_move_and_what_time_moves_are_told_apart() {
     assert_eq!([convergence, precision], [None, None]);
     assert!(stability.unwrap().contains("depends on time"));
 }
+
+#[test]
+fn where_no_theory_predicts_a_stable_step_it_is_measured_and_named_as_such() {
+    let motor = example("dc_motor.toml");
+    let (page, results) = report(&motor, &["stability"]);
+    assert!(page.contains("velocity Verlet 36.9 ms (measured alone)"));
+    let findings = results["studies"][0]["findings"].as_array().unwrap();
+    let own = |finding: &&Value| finding["id"] == "stability.velocity-verlet.limit";
+    let limit = findings.iter().find(own).unwrap();
+    assert_eq!((&limit["predicted"], &limit["verdict"]), (&Value::Null, &json!("measured")));
+    // The multipliers that `analyze` finds pass the unit circle there.
+    let limit = limit["measured"].as_f64().unwrap();
+    for (factor, is_stable) in [(0.999, true), (1.001, false)] {
+        let dt = format!("{:?}", factor * limit);
+        let words = ["analyze", "--system", &motor, "--integrator", "velocity-verlet", "--json"];
+        let done = libration(&[&words[..], &["--dt", &dt, "--steps", "10"]].concat()).success();
+        let found: Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
+        let radius = found["motion"]["spectral_radius"].as_f64().unwrap();
+        assert_eq!(radius < 1.0, is_stable, "{dt}: {radius}");
+    }
+    // A system that grows by nature says so, in place of limits.
+    let (page, _) = report(&example("magnetic_bearing.toml"), &["stability"]);
+    assert!(page.contains("The system is unstable at its equilibrium: a mode grows"));
+}

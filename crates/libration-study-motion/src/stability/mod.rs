@@ -7,6 +7,7 @@ mod render;
 mod settings;
 mod source_claims;
 mod system;
+mod system_page;
 mod system_tables;
 mod windows;
 

@@ -5,21 +5,17 @@ use std::sync::atomic::AtomicBool;
 use libration::Method;
 use libration::equations::StepProgram;
 use libration_analyze::equation_analysis::spectral_radius;
-use libration_analyze::linear_analysis::{self, LinearAnalysis, LinearRequest, StepAnalysis};
+use libration_analyze::linear_analysis::{self, LinearRequest, StepAnalysis};
 use libration_report::Record;
-use libration_report::figure::{Axis, Dash, Figure, Mark, Panel, Role};
-use libration_report::notation::{list, seconds};
-use libration_report::page::{Highlight, Page};
+use libration_report::notation::seconds;
+use libration_report::page::Page;
 use libration_report::record::{Cell, Finding, RecordError, Series, Table, Tolerance};
 use libration_settings::equations::EquationSystem;
 use libration_settings::linear_loop::linearised_equations;
 use libration_study::{Lab, Study, StudyError};
 
+use super::system_page::{GROWS, KINKS, render};
 use super::system_tables::{equilibrium, modes};
-use crate::method_color::method_color;
-
-/// The name of an empty table that says that the equations have kinks or jumps.
-const KINKS: &str = "kinks";
 
 /// Steps a turn of the table of multipliers.
 const STEPS_A_TURN: f64 = 64.0;
@@ -78,9 +74,17 @@ impl Study for SystemStability<'_> {
         if !self.system.equations.dynamics().accelerations().is_smooth() {
             record.tables.push(Table::new(KINKS, &[]));
         }
-        let methods = &lab.config.integrators;
-        let steps: Vec<OwnStep<'_>> =
-            methods.iter().map(|&method| OwnStep::new(self.system, method, &at, &linear)).collect();
+        let is_unstable = linear.modes.iter().any(|mode| mode.growth_rate > 0.0);
+        if is_unstable {
+            record.tables.push(Table::new(GROWS, &[]));
+        }
+        let own = |&method: &Method| {
+            let theory = linear.steps.iter().find(|step| step.integrator == method.name());
+            let program = StepProgram::new(method, self.system.equations.dynamics());
+            let (system, turn, at) = (self.system, self.turn, &at[..]);
+            OwnStep { system, turn, method, at, program, theory, is_unstable }
+        };
+        let steps: Vec<OwnStep<'_>> = lab.config.integrators.iter().map(own).collect();
         let limits = lab.sweep("largest stable steps", &steps, |step| Ok(step.measured_limit()))?;
         let mut table = Table::new(
             "steps",
@@ -96,7 +100,7 @@ impl Study for SystemStability<'_> {
             table.push(step.find(dt, limit, &mut record));
         }
         record.tables.push(table);
-        let curves = lab.sweep("spectral radii", &steps, |step| Ok(step.curve(self.turn)))?;
+        let curves = lab.sweep("spectral radii", &steps, |step| Ok(step.curve()))?;
         let dts = log_spaced(self.turn);
         let series = Series::new("radius").with("dt", "s", dts);
         let series = steps
@@ -121,6 +125,7 @@ fn log_spaced(turn: f64) -> Vec<f64> {
 /// Steps of a method about the equilibrium.
 struct OwnStep<'a> {
     system: &'a EquationSystem,
+    turn: f64,
     method: Method,
     at: &'a [f64],
     program: StepProgram,
@@ -130,26 +135,14 @@ struct OwnStep<'a> {
     is_unstable: bool,
 }
 
-impl<'a> OwnStep<'a> {
-    fn new(
-        system: &'a EquationSystem,
-        method: Method,
-        at: &'a [f64],
-        linear: &'a LinearAnalysis,
-    ) -> Self {
-        let theory = linear.steps.iter().find(|step| step.integrator == method.name());
-        let is_unstable = linear.modes.iter().any(|mode| mode.growth_rate > 0.0);
-        let program = StepProgram::new(method, system.equations.dynamics());
-        OwnStep { system, method, at, program, theory, is_unstable }
-    }
-
+impl OwnStep<'_> {
     /// The spectral radius of the derivative of a step.
     fn radius(&self, dt: f64) -> f64 {
         spectral_radius(&self.program, self.system, self.at, dt).unwrap_or(f64::NAN)
     }
 
-    fn curve(&self, turn: f64) -> Vec<f64> {
-        log_spaced(turn).into_iter().map(|dt| self.radius(dt)).collect()
+    fn curve(&self) -> Vec<f64> {
+        log_spaced(self.turn).into_iter().map(|dt| self.radius(dt)).collect()
     }
 
     fn predicted_limit(&self) -> Option<f64> {
@@ -166,9 +159,16 @@ impl<'a> OwnStep<'a> {
         Some([limit, if is_slow { 2.0 * (limit - earlier).abs() } else { 0.0 }])
     }
 
-    /// The step about the predicted limit from which on a mode grows by `growth` in each; zero if one does in smaller steps already.
+    /// The first step of the curve with which a mode grows, where no theory predicts the limit; none if there is none.
+    fn first_growing(&self) -> Option<f64> {
+        let is_searched = self.theory.is_none() && !self.is_unstable;
+        let mut steps = log_spaced(self.turn).into_iter().filter(|_| is_searched);
+        steps.find(|&dt| self.radius(dt) > 1.0 + GROWTH)
+    }
+
+    /// The step about the predicted limit, or that of the curve, from which on a mode grows by `growth` in each; zero if one does in smaller steps already.
     fn limit_of_growth(&self, growth: f64) -> Option<f64> {
-        let predicted = self.predicted_limit()?;
+        let predicted = self.predicted_limit().or_else(|| self.first_growing())?;
         let is_stable = |dt: f64| self.radius(dt) <= 1.0 + growth;
         // Beyond the limit a step may be stable again; where growth begins slowly, it counts far beyond.
         let tried = |i: usize| match i.checked_sub(TRIED) {
@@ -205,96 +205,29 @@ impl<'a> OwnStep<'a> {
             }
             None => Finding::measured(id("radius"), text, "1", radius),
         });
+        let text = format!("{title}: largest time step at which no mode grows");
         if let (Some(predicted), Some([limit, uncertain])) = (self.predicted_limit(), limit) {
-            let text = format!("{title}: largest time step at which no mode grows");
             let why = "a growth of 10⁻⁶ a step counts, and a fourth of it gives an earlier limit: twice their distance";
             let tolerance = Tolerance::absolute(uncertain + GROWTH * predicted, why);
             record.find(Finding::predicted(id("limit"), text, "s", predicted, limit, tolerance));
+        } else if let Some([limit, _]) = limit {
+            record.find(Finding::measured(id("limit"), text, "s", limit));
         }
-        let absent = || match (self.is_unstable, self.theory.is_some()) {
-            (true, _) => Cell::absent("the system has a growing mode"),
-            (false, false) => Cell::absent("no theory with states of first order"),
-            (false, true) => Cell::absent("none"),
+        let absent = |otherwise| match self.is_unstable {
+            true => Cell::absent("the system has a growing mode"),
+            false => Cell::absent(otherwise),
         };
-        let cell = |x: Option<f64>| x.map_or_else(absent, Cell::from);
+        let unknown = match self.theory {
+            None => "no theory with states of first order",
+            Some(_) => "none",
+        };
+        let cell = |x: Option<f64>, or| x.map_or_else(|| absent(or), Cell::from);
         vec![
             title.into(),
             predicted.map_or_else(|| Cell::absent("—"), |x| Cell::rounded(x, 8)),
             Cell::rounded(radius, 8),
-            cell(self.predicted_limit()),
-            cell(limit.map(|[limit, _]| limit)),
+            cell(self.predicted_limit(), unknown),
+            cell(limit.map(|[limit, _]| limit), "none"),
         ]
     }
-}
-
-fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
-    page.title = "Stability".into();
-    let limit = |method: Method| {
-        let limit = record.finding(&format!("stability.{}.limit", method.name())).ok()?;
-        Some((method.title(), seconds(limit.measured, 3)))
-    };
-    let limits: Vec<(&str, String)> = Method::ALL.into_iter().filter_map(limit).collect();
-    let words: Vec<String> = limits.iter().map(|(title, dt)| format!("{title} {dt}")).collect();
-    let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    page.answer = match words.as_slice() {
-        [] => "No integrator has a largest stable step at the equilibrium: the system has a growing mode, or its modes grow in all steps."
-            .to_owned(),
-        words => format!("Largest stable steps at the equilibrium: {}.", list(words)),
-    };
-    if let Some((title, dt)) = limits.last() {
-        page.highlights.push(Highlight {
-            value: dt.clone(),
-            text: format!("largest stable step of {title} at the equilibrium"),
-        });
-    }
-    page.paragraph(
-        "Newton’s method searches an equilibrium from the start and from zero; this one is nearer to the start. Inputs are zero, and \
-         derivatives are exact.",
-    );
-    page.table(record.table("equilibrium")?, 6);
-    if record.table(KINKS).is_ok() {
-        page.note(
-            "The equations have kinks or jumps. Modes and stable steps are those of the derivatives at the equilibrium, which say \
-             nothing of motion beyond a kink.",
-        );
-    }
-    page.heading("Modes");
-    page.table(record.table("modes")?, 5);
-    page.heading("Steps");
-    page.paragraph(
-        "Predictions follow from the eigenvalues of the linear equations and the polynomials of a step. Measurements are of the \
-         derivative of the step on the equations themselves, at the equilibrium.",
-    );
-    page.table(record.table("steps")?, 6);
-    page.figure(radii(record)?);
-    let advise = "`libration advise --system FILE --tolerance trajectory=1e-3 --horizon 10`";
-    page.action(match limits.is_empty() {
-        true => {
-            format!("Choose the time step by its error, since stability gives no limit: {advise}.")
-        }
-        false => format!("Choose a time step below the largest stable one by its error: {advise}."),
-    });
-    page.action(
-        "Drag the time step and see the motion change: `libration serve --system FILE --open`.",
-    );
-    Ok(())
-}
-
-fn radii(record: &Record) -> Result<Figure, RecordError> {
-    let series = record.series("radius")?;
-    let dt = series.column("dt")?;
-    let axis = Axis::linear("spectral radius").range(0.0, 2.0);
-    let mut panel = Panel::new(Axis::log("time step Δt").unit("s"), axis)
-        .mark(Mark::horizontal(1.0).role(Role::Neutral).dash(Dash::Solid).width(0.8));
-    for method in Method::ALL {
-        let Ok(radius) = series.column(method.name()) else { continue };
-        let shown: Vec<f64> = radius.iter().map(|&r| if r <= 2.0 { r } else { f64::NAN }).collect();
-        panel = panel.mark(Mark::line(dt, shown).role(method_color(method)).label(method.title()));
-    }
-    Ok(Figure::new("system-stability", "Spectral radius of a step against its length")
-        .caption("Above 1 a mode grows from step to step.")
-        .description(
-            "The spectral radius of a step at the equilibrium against Δt, one line a method.",
-        )
-        .panel(panel))
 }
