@@ -85,7 +85,9 @@ class Plot {
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, width, height);
     context.font = "12px system-ui, sans-serif";
-    this.box = { left: 52, top: 22, right: width - 10, bottom: height - 36 };
+    // The widest label of a tick, with its tick, is whole.
+    const widest = Math.max(0, ...y.ticks().map((tick) => context.measureText(format(tick)).width));
+    this.box = { left: Math.max(52, Math.ceil(widest) + 10), top: 22, right: width - 10, bottom: height - 36 };
     [this.x, this.y] = [x, y];
     this.axes(labels);
   }
