@@ -47,12 +47,14 @@ const drawPhase = (live) => {
 const drawCurve = (live) => {
   const { view } = live;
   const plot = live.plots.curve;
+  // A motion that ends early leaves the rest of the time empty.
+  const time = [0, single(view, "horizon")];
   const caption = live.find("curve-caption");
   if (view.kind === "motion" && view.energy.length) {
     const predicted = single(view, "energy.predicted");
     const bounds = Number.isFinite(predicted) ? [[predicted, -predicted], view.energy] : [view.energy];
-    plot.begin(new Scale(extent([view.time], 0)), new Scale(extent(bounds)), ["t (s)", "ΔE/E₀"]);
-    for (const side of [1, -1]) plot.line(extent([view.time], 0), [side * predicted, side * predicted], "--theory", 1.2, [6, 4]);
+    plot.begin(new Scale(time), new Scale(extent(bounds)), ["t (s)", "ΔE/E₀"]);
+    for (const side of [1, -1]) plot.line(time, [side * predicted, side * predicted], "--theory", 1.2, [6, 4]);
     plot.line(view.time, view.energy, "--accent-0");
     plot.canvas.setAttribute("aria-label", `Relative change of the energy over time, at most ${format(single(view, "energy.largest"))}.`);
     caption.textContent = "Relative change of the energy; dashed the largest change, predicted from shorter steps.";
@@ -64,7 +66,7 @@ const drawCurve = (live) => {
   const range = extent([values.length ? values : view[`x.${name}`]], 0.5);
   const own = extent([view[`x.${name}`]]);
   const span = range[1] - range[0];
-  plot.begin(new Scale(extent([view.time], 0)), new Scale([Math.max(Math.min(own[0], range[0]), range[0] - span), Math.min(Math.max(own[1], range[1]), range[1] + span)]), ["t (s)", name]);
+  plot.begin(new Scale(time), new Scale([Math.max(Math.min(own[0], range[0]), range[0] - span), Math.min(Math.max(own[1], range[1]), range[1] + span)]), ["t (s)", name]);
   plot.line(times, values, "--neutral", 2.5);
   plot.line(view.time, view[`x.${name}`], "--accent-0");
   caption.textContent = ideal ? "The loop as it is; gray with perfect timing." : "The motion in these steps; gray in short steps of order 8.";
@@ -197,10 +199,10 @@ const paintMap = (live) => {
 
 const times = (rate) => (rate < 0 ? `halve every ${short(Math.LN2 / -rate)} s` : `double every ${short(Math.LN2 / rate)} s`);
 
-/** The verdict on a setting, in a sentence or two. */
+/** The verdict on a setting, in a sentence or two, and its mark: `ok`, `bad` or `neutral`. */
 const judge = (view, limits, setting) => {
   const growth = single(view, "growth.predicted");
-  if (Number.isNaN(growth)) return { verdict: "No growth is predicted: the step or the plant is not finite here.", good: false };
+  if (Number.isNaN(growth)) return { verdict: "No growth is predicted: the step or the plant is not finite here.", mark: "bad" };
   return view.kind === "loop" ? judgeLoop(view, limits, setting, growth) : judgeMotion(view, limits, setting, growth);
 };
 
@@ -231,28 +233,30 @@ const judgeLoop = (view, limits, setting, growth) => {
     else more = `${without} is stable up to a latency of ${latencyText(limits, latency)} s.`;
   }
   const marginal = Math.abs(growth) * number("period") < 1e-9;
-  if (marginal) return { verdict: `At the edge: deviations from the ${view.point} neither grow nor decay exponentially.`, good: false };
+  if (marginal) return { verdict: `At the edge: deviations from the ${view.point} neither grow nor decay exponentially.`, mark: "bad" };
   const ideal = single(view, "growth.ideal");
   const perfect = !random && latency === 0 && number("skew") === 0;
   const beside = perfect || Number.isNaN(ideal) || Math.abs(ideal) < 1e-9 ? "." : `; with perfect timing they ${times(ideal)}.`;
   const state = growth < 0 ? "Stable" : "Unstable";
-  return { verdict: `${state}: deviations from the ${view.point} ${times(growth)}${beside}${more}`, good: growth < 0 };
+  return { verdict: `${state}: deviations from the ${view.point} ${times(growth)}${beside}${more}`, mark: growth < 0 ? "ok" : "bad" };
 };
 
 const judgeMotion = (view, limits, setting, growth) => {
   const [exact, dt, limit] = [single(view, "growth.exact"), Number(setting.get("dt")), single(limits, "dt.stable")];
   const grows = growth * dt > 1e-9;
   if (exact * dt > 1e-9) {
-    return { verdict: `Deviations from the ${view.point} grow by nature: they ${times(exact)}; in these steps they ${grows ? times(growth) : "do not grow"}.`, good: grows };
+    // The step is right where it grows as the system does: neither a success nor a fault.
+    const own = grows ? times(growth) : "do not grow";
+    return { verdict: `Unstable by nature: deviations from the ${view.point} ${times(exact)}; in these steps they ${own}.`, mark: grows ? "neutral" : "bad" };
   }
   let share = "";
   if (limit === Infinity) share = " No step up to 100 radians of the fastest mode is unstable.";
   else if (limit > 0 && dt <= limit) share = ` The largest stable step is ${short(limit)} s; this is ${short((100 * dt) / limit)} % of it.`;
   else if (limit > 0) share = ` Steps are stable up to ${short(limit)} s${grows ? "" : ", and again here"}.`;
   else if (limit === 0) share = " No step of this integrator is stable here.";
-  if (grows) return { verdict: `Unstable: deviations from the ${view.point} ${times(growth)}, though those of the exact motion do not grow.${share}`, good: false };
+  if (grows) return { verdict: `Unstable: deviations from the ${view.point} ${times(growth)}, though those of the exact motion do not grow.${share}`, mark: "bad" };
   const away = leaves(view);
-  return { verdict: `Stable: no deviation from the ${view.point} grows exponentially.${away}${share}`, good: !away };
+  return { verdict: `Stable: no deviation from the ${view.point} grows exponentially.${away}${share}`, mark: away ? "bad" : "ok" };
 };
 
 /** A sentence if the motion from the start runs away from the reference; empty else. */

@@ -180,10 +180,10 @@ class Live {
   numbers() {
     // Limits of another setting are not shown.
     const limits = this.limitsOf === settingText(this.setting) ? this.limits : {};
-    const { verdict, good } = judge(this.view, limits, this.setting);
+    const { verdict, mark } = judge(this.view, limits, this.setting);
     const line = this.find("verdict");
     if (line.textContent !== verdict) line.textContent = verdict;
-    line.className = `live-verdict ${good ? "ok" : "bad"}`;
+    line.className = `live-verdict ${mark}`;
     const rows = numberRows(this.view, limits, this.setting);
     this.find("numbers").replaceChildren(
       ...rows.map((row) => make("tr", {}, ...row.map((text, i) => make("td", { className: i ? "num" : "", textContent: text })))),
