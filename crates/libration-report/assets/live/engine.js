@@ -2,6 +2,8 @@
 
 /** The time in ms after which an answer is given up. */
 const PATIENCE = 4000;
+/** The same for the first answer, before which the browser compiles the engine. */
+const FIRST_PATIENCE = 20000;
 
 /** What the worker runs: it answers one request after the other. */
 const workerProgram = () => {
@@ -52,11 +54,10 @@ class Engine {
     own.done(answer);
   }
   /** The answer to a request; one with an `error` if it takes too long. */
-  ask(text) {
+  ask(text, patience = PATIENCE, late = "this setting takes too long for a page; the commands below have no such limit") {
     return new Promise((done) => {
       const number = ++this.count;
-      const late = "this setting takes too long for a page; the commands below have no such limit";
-      const timer = setTimeout(() => this.restart(late), PATIENCE);
+      const timer = setTimeout(() => this.restart(late), patience);
       this.waiting.set(number, { done, timer });
       this.worker.postMessage({ number, text });
     });

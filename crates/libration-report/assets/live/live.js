@@ -26,7 +26,10 @@ class Live {
     const bytes = await loadModule();
     // Maps and limits may take long, and must not keep the figures waiting.
     [this.engine, this.slow] = [new Engine(bytes), new Engine(bytes)];
-    this.methods = (await this.engine.ask("methods\n")).methods.split(" ");
+    const late = `no answer within ${FIRST_PATIENCE / 1000} s; reload the page to try again`;
+    const first = await this.engine.ask("methods\n", FIRST_PATIENCE, late);
+    if (first.error) throw new Error(first.error);
+    this.methods = first.methods.split(" ");
     this.listMethods();
     this.change();
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
