@@ -35,6 +35,15 @@ const make = (tag, properties = {}, ...children) => {
   return element;
 };
 
+/** Why a text is no value of a number, and what is; empty if it is one. */
+const problemOf = (text, key) => {
+  const number = parseNumber(text, key);
+  const isTime = SECONDS.has(key);
+  const expected = isTime ? "seconds such as 0.01 or 10ms" : "a number such as 0.5 or 2e-3";
+  if (!Number.isFinite(number)) return `not a number; expected ${expected}`;
+  return isTime && number < 0 ? `below 0; expected ${expected}` : "";
+};
+
 /** A row with a label, a text and a slider. `changed` receives the number. */
 class NumberRow {
   constructor(id, key, label, scale, changed) {
@@ -42,19 +51,22 @@ class NumberRow {
     this.text = make("input", { type: "text", id: `live-${id}`, inputMode: "decimal", autocomplete: "off" });
     this.slider = make("input", { type: "range", min: 0, max: 1000, step: "any" });
     this.slider.setAttribute("aria-label", label);
-    this.element = make("div", { className: "live-row" }, make("label", { htmlFor: this.text.id, textContent: label }), this.text, this.slider);
+    this.problem = make("span", { className: "live-problem", id: `${this.text.id}-problem` });
+    this.problem.setAttribute("role", "status");
+    this.text.setAttribute("aria-describedby", this.problem.id);
+    this.element = make("div", { className: "live-row" }, make("label", { htmlFor: this.text.id, textContent: label }), this.text, this.problem, this.slider);
     this.slider.addEventListener("input", () => {
       let number = Number(this.scale.value(this.slider.value / 1000).toPrecision(3));
       if (key === "seed") number = Math.round(number);
       this.text.value = String(number);
-      this.text.removeAttribute("aria-invalid");
+      this.judge("");
       changed(number);
     });
     this.text.addEventListener("input", () => {
+      const problem = problemOf(this.text.value, key);
+      this.judge(problem);
+      if (problem) return;
       const number = parseNumber(this.text.value, key);
-      const wrong = !Number.isFinite(number) || (SECONDS.has(key) && number < 0);
-      this.text.setAttribute("aria-invalid", String(wrong));
-      if (wrong) return;
       this.place(number);
       changed(number);
     });
@@ -66,8 +78,13 @@ class NumberRow {
   }
   show(number) {
     if (document.activeElement !== this.text) this.text.value = String(Number(number.toPrecision(6)));
-    this.text.removeAttribute("aria-invalid");
+    this.judge("");
     this.place(number);
+  }
+  /** Marks the text as wrong and says why, or neither. */
+  judge(problem) {
+    this.text.setAttribute("aria-invalid", String(Boolean(problem)));
+    if (this.problem.textContent !== problem) this.problem.textContent = problem;
   }
 }
 
