@@ -89,7 +89,8 @@ const drawCircle = (live) => {
   });
   const radius = Math.max(...own, 0);
   plot.canvas.setAttribute("aria-label", `Eigenvalues in the unit circle; the largest has size ${format(radius)}.`);
-  const beside = Math.abs(radius - 1) < 1e-12 ? "1" : `1 ${radius < 1 ? "−" : "+"} ${format(Math.abs(radius - 1))}`;
+  const span = Number(live.setting.get(view.kind === "loop" ? "period" : "dt"));
+  const beside = Math.abs(radius - 1) < Math.max(1e-12, 1e-9 * span) ? "1" : `1 ${radius < 1 ? "−" : "+"} ${format(Math.abs(radius - 1))}`;
   const [of, exact] = view.kind === "loop" ? ["period", "steps"] : ["step", "flow"];
   live.find("circle-caption").textContent = `Eigenvalues of a ${of}; rings: exact ${exact}. Spectral radius ${beside}.`;
 };
@@ -197,6 +198,9 @@ const paintMap = (live) => {
   plot.canvas.setAttribute("aria-label", `Map of stability over ${labelOf(x)} and ${labelOf(y)}; the point is at ${format(Number(setting.get(x)))}, ${format(Number(setting.get(y)))}.`);
 };
 
+/** A growth rate; one of rounding is 0. */
+const growthOf = (rate) => (Math.abs(rate) < 1e-9 ? 0 : rate);
+
 const times = (rate) => (rate < 0 ? `halve every ${short(Math.LN2 / -rate)} s` : `double every ${short(Math.LN2 / rate)} s`);
 
 /** The verdict on a setting, in a sentence or two, and its mark: `ok`, `bad` or `neutral`. */
@@ -272,9 +276,10 @@ const numberRows = (view, limits, setting) => {
   const get = (name) => format(single(view, name));
   const random = Number(setting.get("jitter")) > 0 || Number(setting.get("loss")) > 0;
   const error = single(view, "growth.error");
-  const measured = get("growth.measured") + (error > 0 ? ` ± ${error.toPrecision(1)}` : "");
+  const growth = (name) => format(growthOf(single(view, name)));
+  const measured = growth("growth.measured") + (growthOf(error) > 0 ? ` ± ${error.toPrecision(1)}` : "");
   const of = view.kind === "loop" && random ? "growth of the rms deviation of many loops; measured with 128 (1/s)" : "growth of small deviations (1/s)";
-  const rows = [[of, get("growth.predicted"), measured]];
+  const rows = [[of, growth("growth.predicted"), measured]];
   if (view.kind === "motion") {
     if (view.energy.length) rows.push(["largest change of the energy", get("energy.predicted"), get("energy.largest")]);
     const limit = single(limits, "dt.stable");
