@@ -107,10 +107,10 @@ pub(super) fn actions(looped: &LoopAdvice, is_too_costly: bool) -> Vec<String> {
 /// What to do about an unstable loop; none if no change of gains or latency stabilises it.
 pub(super) fn change(remedies: &StabilisingChanges, gain_units: [&str; 2]) -> Option<String> {
     let all = remedies.changes(gain_units);
-    let changes = all.join(", or to ");
+    let changes = all.join(", or ");
     let limits = if all.len() > 1 { "these limits" } else { "this limit" };
     (!all.is_empty()).then(|| {
-        format!("Change to {changes}; at {limits} the loop has no margin. Repeat the command with the changed value.")
+        format!("Take {changes}; at {limits} the loop has no margin. Repeat the command with the changed value.")
     })
 }
 
