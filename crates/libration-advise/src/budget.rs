@@ -13,8 +13,8 @@ use super::request::Tolerance;
 use super::stabilising_changes::NEUTRAL;
 use super::stability_window::StabilityWindow;
 use super::subject::Subject;
-use super::summary::share_in_percent;
 use super::timed_loop::TimedLoop;
+use super::used_share::share_in_percent;
 
 /// The budget of one imperfection: the sizes with which the loop is stable without others.
 #[derive(Clone, Debug, Serialize)]

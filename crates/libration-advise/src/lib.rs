@@ -38,6 +38,7 @@ mod summary;
 mod system_by_program;
 mod throughput;
 mod timed_loop;
+mod used_share;
 
 use std::ops::RangeInclusive;
 

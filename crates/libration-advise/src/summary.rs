@@ -12,6 +12,7 @@ use super::loops::{Loop, PlantModel};
 use super::motion::four_digits;
 use super::request::{Measure, Request, Tolerance};
 use super::stability_window::StabilityWindow;
+use super::used_share::share_in_percent;
 
 /// The advised integrator in a sentence.
 pub(super) fn describe_integrator(advice: &Advice, request: &Request) -> String {
@@ -136,16 +137,6 @@ pub(super) fn percent(share: f64) -> String {
     }
 }
 
-/// The used part of a budget, with one decimal; beyond ten times with three digits.
-pub(super) fn share_in_percent(used: f64) -> String {
-    let percent = 100.0 * used;
-    match percent {
-        all if all >= 1e6 => format!("{all:.2e} %"),
-        all if all >= 1e3 => format!("{all:.0} %"),
-        part => format!("{part:.1} %"),
-    }
-}
-
 /// A loop that is stable only in a separate window, in words.
 pub(super) fn describe_window(budget: &Budget, window: StabilityWindow) -> String {
     let (kind, unit, end) = (noun(budget.kind), budget.unit, window.in_words());
@@ -223,21 +214,4 @@ pub(super) fn loop_warnings<M: PlantModel>(
         }
     }
     warnings
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn used_parts_have_no_digits_without_meaning() {
-        for (used, text) in [
-            (0.13049, "13.0 %"),
-            (1.305, "130.5 %"),
-            (25.678, "2568 %"),
-            (1.32034980283e8, "1.32e10 %"),
-        ] {
-            assert_eq!(share_in_percent(used), text);
-        }
-    }
 }

@@ -1,7 +1,8 @@
 //! The answer on a loop around a linear plant, in sentences.
 
 use super::LinearAdvice;
-use crate::summary::{beside_ideal, capitalise, describe_window, noun, percent, share_in_percent};
+use crate::summary::{beside_ideal, capitalise, describe_window, noun, percent};
+use crate::used_share::share_in_percent;
 
 impl LinearAdvice {
     /// The answer in a few sentences. A failure because of missed deadlines comes first.
