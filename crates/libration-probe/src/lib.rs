@@ -21,6 +21,7 @@ mod finding;
 mod finding_kind;
 mod findings;
 mod first_difference;
+mod first_screen;
 mod flow;
 mod gains;
 mod held_action;

@@ -6,6 +6,7 @@ use libration_report::record::{Cell, Table};
 use libration_report::report;
 
 use crate::ProbeReport;
+use crate::first_screen::{actions, numbers, title};
 use crate::integrator_page::{defects, integrator};
 use crate::live_setting::live_settings;
 use crate::mode_plane::mode_plane;
@@ -13,9 +14,10 @@ use crate::summary::{capitalised, error_in_words};
 
 /// The audit as an HTML page.
 pub fn page(audit: &ProbeReport) -> String {
-    let mut page = Page { title: format!("Audit of a step: {}", audit.title), ..Page::default() };
+    let mut page = Page { title: title(audit), ..Page::default() };
     page.answer.clone_from(&audit.answer);
     page.live = live_settings(audit);
+    page.highlights = numbers(audit);
     page.actions = actions(audit);
     findings(&mut page, audit);
     modes(&mut page, audit);
@@ -39,16 +41,6 @@ pub fn page(audit: &ProbeReport) -> String {
         audit.libration_version,
     );
     report::render_page(&page, &sub)
-}
-
-/// The most that the first screen says to do; the table below has all.
-const MOST_ACTIONS: usize = 3;
-
-/// What to do about the findings, faults first.
-fn actions(audit: &ProbeReport) -> Vec<String> {
-    let mut all: Vec<_> = audit.findings.iter().collect();
-    all.sort_by_key(|finding| !finding.is_fault);
-    all.iter().take(MOST_ACTIONS).map(|finding| capitalised(&finding.help)).collect()
 }
 
 fn findings(page: &mut Page, audit: &ProbeReport) {

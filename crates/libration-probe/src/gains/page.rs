@@ -5,12 +5,16 @@ use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 use libration_report::report;
 
-use super::GainReport;
+use super::first_screen::{actions, bars, numbers, title};
+use super::{GainReport, ServoIntegrator};
 
 /// The report as an HTML page.
 pub fn gains_page(report: &GainReport) -> String {
-    let mut page = Page { title: "Gains of servos".into(), ..Page::default() };
+    let mut page = Page { title: title(report).into(), ..Page::default() };
     page.answer.clone_from(&report.answer);
+    page.highlights = numbers(report);
+    page.bars = bars(report);
+    page.actions = actions(report);
     for note in &report.notes {
         page.note(format!("{note}."));
     }
@@ -23,8 +27,9 @@ pub fn gains_page(report: &GainReport) -> String {
     let known = |x: Option<f64>| x.map_or_else(|| Cell::absent("—"), |x| Cell::rounded(x, 4));
     page.heading("How much does each joint allow?");
     page.paragraph(
-        "ω, its limit and the damping ratio are those of the joint alone, with its inertia M and h the length of a substep. The largest gain \
-         of position is that with all couplings and with all other gains as they are.",
+        "ω, its limit and the damping ratio are those of the joint alone: ω² is its stiffness, with that of the gain of position, divided by \
+         its inertia; h is the length of a substep. The largest gain of position is that with all couplings and with all other gains as \
+         they are.",
     );
     let columns =
         ["joint", "inertia", "kp", "kv", "ωh", "largest ωh", "damping ratio", "largest kp"];
@@ -81,7 +86,7 @@ pub fn gains_page(report: &GainReport) -> String {
     let sub = format!(
         "{} · {} · {} of {} s · `libration gains` {}",
         plural(report.joints.len(), "joint"),
-        report.integrator,
+        ServoIntegrator::label(report.integrator),
         plural(report.substeps as usize, "substep"),
         number(report.dt / f64::from(report.substeps), 4),
         env!("CARGO_PKG_VERSION"),

@@ -203,6 +203,7 @@ fn joint_row(servos: &Servos, i: usize, integrator: ServoIntegrator, h: f64) -> 
 impl GainReport {
     fn summary(&self) -> String {
         let h = self.dt / f64::from(self.substeps);
+        let integrator = ServoIntegrator::label(self.integrator);
         let of = if self.substeps == 1 {
             format!("steps of {} s", number(h, 6))
         } else {
@@ -213,12 +214,12 @@ impl GainReport {
                 (0.0, _) => String::new(),
                 (least, f64::INFINITY) => format!(
                     " With {} and this step gains of position hold from {} times the given ones on.",
-                    self.integrator,
+                    integrator,
                     number(least, 5)
                 ),
                 (least, most) => format!(
                     " With {} and this step gains of position hold from {} to {} times the given ones.",
-                    self.integrator,
+                    integrator,
                     number(least, 5),
                     number(most, 5)
                 ),
@@ -229,11 +230,11 @@ impl GainReport {
             );
         }
         let mut text = if self.holds {
-            format!("The gains hold with {} and {of}", self.integrator)
+            format!("The gains hold with {integrator} and {of}")
         } else {
             format!(
                 "The gains do not hold with {} and {of}: a mode grows by a factor {} per step",
-                self.integrator,
+                integrator,
                 number(self.spectral_radius, 5)
             )
         };
@@ -267,8 +268,12 @@ impl GainReport {
                     text += &format!(" No number of substeps up to {MOST_SUBSTEPS} holds them.")
                 }
             }
-            let others: Vec<&str> =
-                self.integrators.iter().filter(|row| row.holds).map(|row| row.name).collect();
+            let others: Vec<String> = self
+                .integrators
+                .iter()
+                .filter(|row| row.holds)
+                .map(|row| ServoIntegrator::label(row.name))
+                .collect();
             if !others.is_empty() {
                 text += &format!(" They hold with {}.", others.join(", "));
             }

@@ -52,6 +52,14 @@ impl ServoIntegrator {
         }
     }
 
+    /// A name for sentences, beside which is that in MuJoCo, by which users know it.
+    pub(super) fn label(name: &str) -> String {
+        match name == ImplicitMethod::DampingImplicit.name() {
+            true => format!("{name} (implicitfast)"),
+            false => name.to_owned(),
+        }
+    }
+
     /// Its name in running text, with that in MuJoCo.
     pub fn title(self) -> String {
         use ImplicitMethod::DampingImplicit;

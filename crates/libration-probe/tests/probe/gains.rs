@@ -118,6 +118,31 @@ fn gains_that_are_too_small_beside_a_negative_stiffness_hold_within_a_window() {
 }
 
 #[test]
+fn the_first_screen_has_the_verdict_the_limits_and_commands_with_other_options() {
+    let servos = r#"{"mass": [0.02, 0.01], "kp": [400, 300], "kv": [2, 1]}"#;
+    let mut held = report(servos, 0.005, 1, "implicitfast");
+    assert!(held.answer.contains("with damping-implicit (implicitfast) and"), "{}", held.answer);
+    held.repeat_command = "libration gains --dt 0.005".into();
+    let page = libration_probe::gains_page(&held);
+    for part in [
+        "<h1>The gains hold</h1>",
+        "largest kp of joint 2; given 300",
+        "kp 300 of 2000",
+        "Keep kp of joint 2 below 2000",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    let mut broken = report(&servos.replace("400", "40000"), 0.005, 1, "implicitfast");
+    broken.repeat_command = "libration gains --dt 0.005 --integrator implicitfast".into();
+    let page = libration_probe::gains_page(&broken);
+    assert!(page.contains("<h1>The gains do not hold</h1>"));
+    let action = page.split_once("Take at least 4 substeps").unwrap().1;
+    assert!(
+        action.contains("--substeps</span> 4") && action.contains("damping-stiffness-implicit")
+    );
+}
+
+#[test]
 fn numbers_of_any_size_have_a_few_digits() {
     let stiff = report(r#"{"mass": [1], "kp": [1e9]}"#, 0.01, 1, "symplectic-euler");
     // 4/h² of 10⁹.

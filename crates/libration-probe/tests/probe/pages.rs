@@ -47,6 +47,23 @@ fn a_finding_says_what_to_change_and_the_page_has_one_notation_of_numbers() {
     assert_eq!(reports[0].0.answer.matches("the longest stable step").count(), 1);
 }
 
+#[test]
+fn the_first_screen_has_the_verdict_the_numbers_and_a_command() {
+    let mut report = Simulator::new(pendulum).audit(&pendulum_subject());
+    report.repeat_command = "libration probe --command ./p --state 0,0 --dt 0.01".into();
+    let page = libration_probe::page(&report);
+    let first = page.split_once("<main").unwrap().1.split_once("<section").unwrap().0;
+    for part in [
+        "has no fault</h1>",
+        "in exact steps of the system",
+        "longest stable step; dt = 0.01 s",
+        "order of convergence; that of symplectic Euler",
+        "--save-plant</span> plant.toml",
+    ] {
+        assert!(first.contains(part), "{part}: {first}");
+    }
+}
+
 /// The words under the title of a page.
 fn sub_line(page: &str) -> &str {
     let found = page.lines().find(|line| line.contains("libration probe") && line.contains("dt ="));

@@ -1,0 +1,168 @@
+//! The first screen of a page about gains: its verdict, its numbers, what is used of each limit, and what to do.
+
+use libration_report::notation::{cut_off, number};
+use libration_report::page::{Bar, Highlight};
+
+use super::{GainReport, JointRow};
+
+/// Joints whose limits are shown as bars, the tightest first.
+const MOST_BARS: usize = 6;
+
+/// The verdict.
+pub(super) fn title(report: &GainReport) -> &'static str {
+    match (report.growth_in_continuous_time, report.holds) {
+        (Some(_), _) => "The motion is unstable in continuous time, whatever the step",
+        (None, true) => "The gains hold",
+        (None, false) => "The gains do not hold",
+    }
+}
+
+/// The key numbers.
+pub(super) fn numbers(report: &GainReport) -> Vec<Highlight> {
+    let h = report.dt / f64::from(report.substeps);
+    let mut shown = vec![Highlight {
+        value: number(report.spectral_radius, 5),
+        text: format!(
+            "largest factor of a mode in {} s{}",
+            number(h, 4),
+            exact_radius(report)
+                .map_or_else(String::new, |exact| format!("; {} in exact steps", number(exact, 5)))
+        ),
+    }];
+    if report.largest_factor.is_finite() && report.largest_factor > 0.0 {
+        shown.push(Highlight {
+            value: number(cut(report.largest_factor), 4),
+            text: "largest common factor of all gains of position".into(),
+        });
+    }
+    if let Some(joint) = limited(report).first() {
+        shown.push(Highlight {
+            value: number(cut(joint.largest_kp), 4),
+            text: format!("largest kp of {}; given {}", joint.name, number(joint.kp, 4)),
+        });
+    }
+    if let Some(fewest) = report.fewest_substeps {
+        shown.push(Highlight {
+            value: fewest.to_string(),
+            text: format!("fewest substeps that hold the gains; given {}", report.substeps),
+        });
+    }
+    shown
+}
+
+/// The largest factor of a mode in an exact substep; none if a mode has no damping ratio.
+fn exact_radius(report: &GainReport) -> Option<f64> {
+    let of_mode = |turn: f64, ratio: Option<f64>| {
+        let ratio = ratio?;
+        // Beyond critical damping the slower of the two decays counts.
+        let slowest = ratio - (ratio * ratio - 1.0).max(0.0).sqrt();
+        Some((-slowest * turn).exp())
+    };
+    let all: Option<Vec<f64>> =
+        report.modes.iter().map(|mode| of_mode(mode.turn, mode.damping_ratio)).collect();
+    all?.into_iter().reduce(f64::max)
+}
+
+/// What is used of the largest gain of each joint.
+pub(super) fn bars(report: &GainReport) -> Vec<Bar> {
+    let bar = |joint: &&JointRow| Bar {
+        name: joint.name.clone(),
+        part: joint.kp / joint.largest_kp,
+        text: format!("kp {} of {}", number(joint.kp, 4), number(cut(joint.largest_kp), 4)),
+    };
+    limited(report).iter().take(MOST_BARS).map(bar).collect()
+}
+
+/// The joints whose gain of position has a limit, the tightest first.
+fn limited(report: &GainReport) -> Vec<&JointRow> {
+    let has_limit = |joint: &&JointRow| joint.largest_kp.is_finite() && joint.largest_kp > 0.0;
+    let mut found: Vec<&JointRow> =
+        report.joints.iter().filter(|joint| joint.kp > 0.0).filter(has_limit).collect();
+    found.sort_by(|a, b| (a.largest_kp / a.kp).total_cmp(&(b.largest_kp / b.kp)));
+    found
+}
+
+/// What to do.
+pub(super) fn actions(report: &GainReport) -> Vec<String> {
+    let command = &report.repeat_command;
+    if report.growth_in_continuous_time.is_some() {
+        return vec![
+            "Change the gains or the stiffnesses: no step makes this motion stable.".into(),
+        ];
+    }
+    let mut all = Vec::new();
+    if !report.holds {
+        if let Some(fewest) = report.fewest_substeps {
+            let changed = with_option(command, "--substeps", &fewest.to_string());
+            all.push(format!("Take at least {fewest} substeps{}", then(changed.as_deref())));
+        }
+        // The first of the table: MuJoCo's Euler, if the gains hold with it.
+        if let Some(row) = report.integrators.iter().find(|row| row.holds) {
+            let changed = with_option(command, "--integrator", row.name);
+            all.push(format!("Step with {}{}", row.title, then(changed.as_deref())));
+        }
+        if report.largest_factor.is_finite() && report.largest_factor > 0.0 {
+            let factor = number(cut(report.largest_factor), 4);
+            all.push(format!(
+                "Multiply all gains of position by at most {factor}, which leaves no margin."
+            ));
+        }
+        return all;
+    }
+    if let Some(joint) = limited(report).first() {
+        let most = number(cut(joint.largest_kp), 4);
+        all.push(format!("Keep kp of {} below {most}, with all others as they are.", joint.name));
+    }
+    if is_command(command) {
+        all.push(format!("Repeat the report after each change of a gain: `{command}`"));
+    }
+    all
+}
+
+fn then(command: Option<&str>) -> String {
+    command.map_or_else(|| ".".into(), |command| format!(": `{command}`"))
+}
+
+fn is_command(text: &str) -> bool {
+    text.starts_with("libration ") && !text.contains(['`', '\n'])
+}
+
+/// A command with the value of an option, in place of the given one; none if it is no command of a terminal.
+fn with_option(command: &str, option: &str, value: &str) -> Option<String> {
+    if !is_command(command) {
+        return None;
+    }
+    let mut words = command.split(' ');
+    let mut kept = Vec::new();
+    while let Some(word) = words.next() {
+        match word.strip_prefix(option) {
+            // The value is a number or a name, without spaces.
+            Some("") => drop(words.next()),
+            Some(rest) if rest.starts_with('=') => {}
+            _ => kept.push(word),
+        }
+    }
+    kept.extend([option, value]);
+    Some(kept.join(" "))
+}
+
+/// A limit with four digits, not beyond itself.
+fn cut(limit: f64) -> f64 {
+    cut_off(limit, 4)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_option;
+
+    #[test]
+    fn an_option_takes_the_place_of_the_given_one() {
+        let with = |command: &str| with_option(command, "--substeps", "4");
+        for command in
+            ["libration gains --substeps 2 --dt 1", "libration gains --substeps=2 --dt 1"]
+        {
+            assert_eq!(with(command).as_deref(), Some("libration gains --dt 1 --substeps 4"));
+        }
+        assert_eq!(with("libration.gains(model)"), None);
+    }
+}
