@@ -146,6 +146,13 @@ fn keys_move_a_slider_and_texts_take_units() {
         page.press("x");
         let invalid = page.eval(&format!("{row}.text.getAttribute('aria-invalid')"));
         assert_eq!((invalid.as_str(), entry(page, "dt")), (Some("true"), 0.02));
+        let problem = page.eval(&format!("{row}.problem.textContent"));
+        assert!(problem.as_str().unwrap().contains("expected seconds such as"), "{problem}");
+        // The border has the colour of errors.
+        let has_color = format!(
+            "getComputedStyle({row}.text).borderTopColor === getComputedStyle({row}.problem).color"
+        );
+        assert_eq!(page.eval(&has_color), true);
     });
 }
 
@@ -187,6 +194,44 @@ fn equations_that_a_reader_types_move_and_wrong_ones_are_named() {
         write(page, &format!("{base}x\nstart.x=3"));
         says(page, "");
         begins(page, 3.0);
+    });
+}
+
+#[test]
+fn growth_by_nature_is_neither_good_nor_bad_and_labels_and_times_are_whole() {
+    visit(WIDTHS[0], |page| {
+        begin(page);
+        let unstable = "system=bearing\ncoordinates=x\nacceleration.x=1e4*x-x^3*1e9\nstart.x=1e-5";
+        let field = part("equations");
+        page.eval(&format!(
+            "{field}.value = {}, {field}.dispatchEvent(new Event('input'))",
+            json!(unstable)
+        ));
+        assert!(page.comes_true(&format!("{SECTION}.live.view?.['x.x']?.[0] === 1e-5")));
+        assert!(verdict(page).starts_with("Unstable by nature"), "{}", verdict(page));
+        let class = page.eval(&format!("{}.className", part("verdict")));
+        assert_eq!(class, "live-verdict neutral");
+        let curve = format!("{SECTION}.live.plots.curve");
+        let begins = page.number(&format!("{curve}.x.range[0]"));
+        let ends = page.number(&format!("{curve}.x.range[1] / {SECTION}.live.view.horizon[0]"));
+        assert_eq!((begins, ends), (0.0, 1.0));
+        let widest = page.number(&format!(
+            "Math.max(...{curve}.y.ticks().map((x) => {curve}.context.measureText((x || 0).toExponential(2)).width))"
+        ));
+        assert!(page.number(&format!("{curve}.box.left")) >= widest, "{widest}");
+    });
+}
+
+#[test]
+fn an_engine_that_does_not_answer_is_named() {
+    visit(WIDTHS[0], |page| {
+        begin(page);
+        let message = page.eval(&format!(
+            "(async () => {{ const live = {SECTION}.live; const {{ prototype }} = live.engine.constructor; const {{ ask }} = prototype;
+               prototype.ask = async () => ({{ error: 'no answer' }});
+               try {{ await live.begin(); return ''; }} catch (error) {{ return error.message; }} finally {{ prototype.ask = ask; }} }})()"
+        ));
+        assert_eq!(message, "no answer");
     });
 }
 
