@@ -180,6 +180,7 @@ mod tests {
         second.find(finding);
         second.seconds = 12.345;
         Results {
+            command: "libration lab".to_owned(),
             schema: libration_lab::results::SCHEMA,
             machine: Machine::detect(),
             config: STUDIES.config(),
