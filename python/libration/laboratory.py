@@ -52,6 +52,8 @@ class Finding:
     """``agrees``, ``disagrees`` or ``measured``."""
     undecided: str | None
     """Reason for a missing verdict, if a verdict was expected."""
+    command: str
+    """Command that recomputes this finding alone."""
 
     @property
     def agrees(self) -> bool:

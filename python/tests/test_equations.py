@@ -1,5 +1,6 @@
 """Systems by equations."""
 
+import dataclasses
 import json
 import pickle
 from pathlib import Path
@@ -145,7 +146,9 @@ def test_the_laboratory_finds_the_same_in_a_file_and_in_a_system_of_the_same_equ
         libration.run_lab(system=system, studies=["precision"], effort="quick", progress=False)
         for system in (file, own)
     ]
-    assert found[0].findings and found[0].findings == found[1].findings
+    # A system that was made in Python has no file for the commands.
+    first, second = ([dataclasses.replace(f, command="") for f in results.findings] for results in found)
+    assert first and first == second
     assert "libration lab --system FILE --set mu=" in found[1].report.read_text()
 
 
