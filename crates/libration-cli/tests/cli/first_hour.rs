@@ -75,5 +75,5 @@ fn the_case_of_an_error_budget_runs_and_prints_what_the_page_says() {
 
 #[test]
 fn the_case_of_rates_of_a_policy_runs_and_prints_what_the_page_says() {
-    assert_eq!(run_page("case-policy-rates.md"), 6);
+    assert_eq!(run_page("case-policy-rates.md"), 3);
 }
