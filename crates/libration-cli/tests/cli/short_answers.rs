@@ -11,7 +11,7 @@ use tempfile::TempDir;
 const SCREEN: [usize; 2] = [24, 100];
 
 /// Requests with the part of the answer that warns, or decides.
-const FORMS: [(&str, &str); 21] = [
+const FORMS: [(&str, &str); 23] = [
     (
         "advise --system pendulum --feedback 10,2 --period 20ms --latency 12ms --horizon 1",
         "The loop is stable",
@@ -88,6 +88,15 @@ const FORMS: [(&str, &str); 21] = [
     (
         "analyze --system examples/systems/cart_pole.toml --integrator rk4 --dt 0.01 --steps 1000",
         "only the growth of the plant at dt = 0.01 s: rk4 (up to 0.7009 s)",
+    ),
+    // The rounding of parameters decides here, and growth as small is one where none is rounded.
+    (
+        "analyze --system damped-oscillator --integrator explicit-euler --dt 0.02",
+        "at the limit of stability",
+    ),
+    (
+        "analyze --system oscillator --integrator explicit-euler --dt 1e-9",
+        "motions grow by 5e-16 % per step",
     ),
 ];
 

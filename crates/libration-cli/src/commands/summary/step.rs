@@ -5,7 +5,7 @@ use libration_analyze::{Analysis, Request, Stepping};
 use super::super::digits::{UNKNOWN, limit, short, significant};
 use super::super::repeat_command::{SYSTEM, of_subcommand, with_option};
 use super::Summary;
-use super::step_loop::{ROUNDING, append_loop, changes, verdict};
+use super::step_loop::{append_loop, changes, verdict};
 
 /// Largest number of windows of stable steps.
 const MOST: usize = 3;
@@ -46,14 +46,21 @@ fn verdict_of_step(analysis: &Analysis) -> String {
         .map(|(name, value)| format!("{name} = {}", short(*value)))
         .collect();
     let system = format!("{} ({})", about.system, parameters.join(", "));
+    // What rounded parameters change in the growth of exact steps.
+    let rounding = 0.5 * f64::EPSILON * analysis.flow_spectral_radius_minus_one.abs();
+    if about.linear && excess != 0.0 && excess.abs() <= rounding {
+        return format!(
+            "{step} is at the limit of stability on {system}: motions neither grow nor decay beyond the rounding of its parameters."
+        );
+    }
     match (analysis.bounded, about.linear) {
-        (Some(true), _) if excess < -ROUNDING => {
+        (Some(true), _) if excess < 0.0 => {
             format!("{step} is stable on {}: motions {}.", system, changes(excess))
         }
         (Some(true), _) => {
             format!("{step} is stable on {}: every motion stays bounded.", system)
         }
-        (Some(false), _) if excess <= ROUNDING => {
+        (Some(false), _) if excess == 0.0 => {
             format!("Motions of {step} on {} are unbounded, without exponential growth.", system)
         }
         (Some(false), _) => {

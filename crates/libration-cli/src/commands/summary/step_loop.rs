@@ -9,9 +9,6 @@ use super::Summary;
 /// Largest number of later windows of stable latencies.
 const MOST: usize = 3;
 
-/// Changes below the unit roundoff, which come from parameters that are rounded to `f64`.
-pub(super) const ROUNDING: f64 = f64::EPSILON / 2.0;
-
 /// How motions and second moments change.
 pub(super) fn verdict(analysis: &LoopAnalysis) -> Option<String> {
     let excess = analysis.closed_loop_spectral_radius_minus_one?;
@@ -20,7 +17,7 @@ pub(super) fn verdict(analysis: &LoopAnalysis) -> Option<String> {
     let squares = moments.map(|growth| format!(", and their second moments {}", changes(growth)));
     let worst = moments.map_or(excess, |growth| excess.max(growth));
     let is_known = analysis.growth.is_none() || moments.is_some();
-    let verdict = match (worst > ROUNDING, worst < -ROUNDING) {
+    let verdict = match (worst > 0.0, worst < 0.0) {
         (true, _) => "unstable",
         _ if !is_known => "stable without jitter and losses, and with them it is not known",
         (_, true) => "stable",
@@ -32,7 +29,7 @@ pub(super) fn verdict(analysis: &LoopAnalysis) -> Option<String> {
 /// A relative change per step, in words.
 pub(super) fn changes(change: f64) -> String {
     let percent = significant(100.0 * change.abs(), 4);
-    match (change > ROUNDING, change < -ROUNDING) {
+    match (change > 0.0, change < 0.0) {
         (true, _) => format!("grow by {percent} % per step"),
         (_, true) => format!("decay by {percent} % per step"),
         _ => "neither grow nor decay".to_owned(),
