@@ -81,10 +81,10 @@ fn actions(advice: &LinearAdvice) -> Vec<String> {
             actions
                 .push("Use the redesigned controller below, which is ready to paste.".to_owned());
         }
-        None if advice.is_costly() && advice.schedule.is_empty() => actions.push(format!(
-            "Design the controller of least cost under this timing: `{} --redesign`.",
-            advice.repeat_command
-        )),
+        None if advice.is_costly() && advice.schedule.is_empty() => actions.push(
+            "Add `--redesign`, with weights of a cost, for the controller of least cost under this timing."
+                .to_owned(),
+        ),
         _ => {}
     }
     let holds = advice.deadline_misses.as_ref().is_none_or(DeadlineMisses::holds);

@@ -128,11 +128,8 @@ impl<const D: usize> Step<D> {
             true => None,
             false => simulated_drift(&mut simulator.clone(), model, request.steps, stop)?,
         };
-        // The first step of some integrators has an evaluation at the start, which others take over.
         simulator.run(1, &mut ()).ok();
-        let first = simulator.evaluations();
-        simulator.run(1, &mut ()).ok();
-        Ok(Step { linear, evaluations: simulator.evaluations() - first, drift })
+        Ok(Step { linear, evaluations: simulator.evaluations(), drift })
     }
 }
 
