@@ -121,8 +121,23 @@ def rows():
     env = gymnasium.make_vec("libration/CartPole-v1", MANY)
     theirs = gymnasium.make_vec("CartPole-v1", MANY, vectorization_mode="vector_entry_point")
     yield f"CartPole: step of {MANY} over Gymnasium's CartPoleVectorEnv", 1.5, *compared(steps(env, choices), steps(theirs, choices))
+    if envpool is not None:
+        pool = envpool.make_gymnasium("CartPole-v1", num_envs=MANY, num_threads=1, seed=0)
+        pool.reset()
+        narrow = choices.astype(np.int32)
+        yield f"CartPole: step of {MANY} over EnvPool", 20, *compared(steps(env, choices), lambda: pool.step(narrow))
     ours, theirs = (gymnasium.make(name).unwrapped for name in ("libration/CartPole-v1", "CartPole-v1"))
-    yield "CartPole: step of one over Gymnasium's CartPoleEnv", 2.2, *compared(episodes(ours, choices), episodes(theirs, choices))
+    yield "CartPole: step of one over Gymnasium's CartPoleEnv", 3, *compared(episodes(ours, choices), episodes(theirs, choices))
+    ours, theirs = (gymnasium.make(name).unwrapped for name in ("libration/Pendulum-v1", "Pendulum-v1"))
+    torque = np.zeros(1, np.float32)
+    yield "Pendulum: step of one over Gymnasium's PendulumEnv", 3, *compared(steps(ours, torque), steps(theirs, torque))
+
+    # A range of one number: the same steps, by a program in place of a compiled environment.
+    for name in ("PendulumSwingUp", "Oscillator"):
+        preset = gymnasium.make_vec(f"libration/{name}-v0", MANY)
+        (omega2,) = set(preset.get_attr("omega2"))
+        program = gymnasium.make_vec(f"libration/{name}-v0", MANY, omega2=libration.Uniform(omega2, omega2))
+        yield f"{name}: step of {MANY} by expressions over compiled", 0.3, *compared(steps(program, zeros), steps(preset, zeros))
 
     one, zero = gymnasium.make_vec("libration/PendulumSwingUp-v0", 1), np.zeros((1, 1), np.float32)
     step, count = steps(one, zero), 20_000

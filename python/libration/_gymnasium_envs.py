@@ -248,10 +248,11 @@ class Env(gymnasium.Env):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        options, self._action = options_of(options), None
-        super().reset(seed=seed)
-        if "reset_mask" in options:
+        if options is not None and "reset_mask" in options_of(options):
             raise ValueError("options has 'reset_mask', but it belongs to vector environments")
+        super().reset(seed=seed)
+        if self._action is not None:
+            self._action = None
         observations, infos = self._all.reset(seed=None if seed is None else [seed], options=options)
         return observations[0], _single(infos)
 

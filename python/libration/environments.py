@@ -300,10 +300,12 @@ class Environments(_native.Batch):
         self, seeds: list[int | None], options: dict[str, Any] | None
     ) -> tuple[np.ndarray, dict[str, Any]]:
         options = options_of(options)
-        refuse_options(options)
-        mask = self._mask(options["reset_mask"]) if "reset_mask" in options else None
-        which = np.arange(self.num_envs) if mask is None else np.flatnonzero(mask)
-        given = start_of(options, self._state_names(), self.num_envs, which, self._settings["dtype"])
+        mask = which = given = None
+        if options:
+            refuse_options(options)
+            mask = self._mask(options["reset_mask"]) if "reset_mask" in options else None
+            which = np.arange(self.num_envs) if mask is None else np.flatnonzero(mask)
+            given = start_of(options, self._state_names(), self.num_envs, which, self._settings["dtype"])
         if self._seeder is None:
             self._seeder = np.random.default_rng()
             fresh = self._seeder.integers(2**63, size=self.num_envs, dtype=np.uint64).tolist()
@@ -314,10 +316,9 @@ class Environments(_native.Batch):
             ]
             mask = None
         observations = self._reset(seeds, mask)
-        if given is not None and "state" in options:
-            observations = self._set_states(given.tolist(), which.tolist())
-        elif given is not None:
-            observations = self._start_within(given.T.tolist(), which.tolist())
+        if given is not None and which is not None:
+            ours, rows = (self._set_states, given) if "state" in options else (self._start_within, given.T)
+            observations = ours(rows.tolist(), which.tolist())
         infos = self._parameter_infos(mask) if self._settings["parameter_infos"] else {}
         return observations, infos
 

@@ -28,6 +28,11 @@ pub(crate) fn with_actions<T: Number, R>(
         if let Some(actions) = contiguous_actions::<T>(given, shape) {
             return work(finite(actions, shape[1])?);
         }
+        // What action spaces of Gymnasium sample.
+        if let Some(actions) = contiguous_actions::<f32>(given, shape) {
+            let actions: Vec<T> = actions.iter().map(|&x| T::from_f64(x.into())).collect();
+            return work(finite(&actions, shape[1])?);
+        }
         let made = helper(given.py(), &ACTIONS, "actions")?.call1((given, shape, T::NUMPY))?;
         let actions = contiguous_actions::<T>(&made, shape).ok_or_else(no_array)?;
         return work(finite(actions, shape[1])?);

@@ -174,7 +174,8 @@ pub(crate) fn bytes_of<'a>(array: &'a Bound<'_, Array<bool, 1>>) -> &'a mut [u8]
     unsafe { from_raw_parts_mut(array.data().cast(), array.len()) }
 }
 
-/// Returns the data of an array of actions, `[n, width]`, or `[n]` if there is one each, if it is contiguous and aligned.
+/// Returns the data of an array of actions, `[n, width]`, or `[n]` if there is one each or one environment, if it is contiguous and
+/// aligned.
 pub(crate) fn contiguous_actions<'a, T: Number>(
     actions: &'a Bound<'_, PyAny>,
     [len, width]: [usize; 2],
@@ -182,7 +183,7 @@ pub(crate) fn contiguous_actions<'a, T: Number>(
     // A class of its own may mean something else by its numbers, as a masked array does.
     let array = actions.cast_exact::<PyArray<T, IxDyn>>().ok()?;
     let fits = match *array.shape() {
-        [n] => n == len && width == 1,
+        [n] => (n == len && width == 1) || (len == 1 && n == width),
         [n, each] => n == len && each == width,
         _ => false,
     };

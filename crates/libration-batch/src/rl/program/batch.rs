@@ -28,6 +28,8 @@ use crate::rl::{EnvironmentError, StepBuffers};
 pub struct ProgramEnvironments<T: Float> {
     pub(super) definition: Arc<ProgramEnvironment>,
     programs: Programs,
+    /// See [`Programs::shortest_steps`].
+    shortest_steps: u64,
     /// The rows of each thread so far.
     works: Vec<BlockStep<T>>,
     pub(super) episodes: Episodes<T>,
@@ -63,8 +65,10 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
         let numbers = rows.saturating_add(drawn).saturating_mul(LANES);
         let numbers = numbers.saturating_add(blocks.saturating_mul(history.len()));
         InsufficientMemory::check(numbers as u128 * size_of::<T>() as u128)?;
+        let programs = Programs::new(&definition);
         let mut all = ProgramEnvironments {
-            programs: Programs::new(&definition),
+            shortest_steps: programs.shortest_steps(definition.substeps),
+            programs,
             works: Vec::new(),
             states: vec![[T::zero(); LANES]; rows],
             numbers: vec![[T::zero(); LANES]; drawn],
@@ -190,6 +194,7 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
     ) -> EpisodeEnds<T> {
         let len = self.len();
         let steps = to.reward.nrows() as u64;
+        let each = self.shortest_steps.saturating_add(shortest_steps(policy.operations()));
         let ProgramEnvironments { definition, programs, works, episodes, .. } = self;
         let ProgramEnvironments { states, numbers, history, past, .. } = self;
         let (coordinates, observations) = (definition.coordinates(), definition.observations());
@@ -204,8 +209,6 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
         let acts = acts.prepare(blocks, [*step, 1], steps, policy.words());
 
         let work = (len as u64).saturating_mul(steps.max(1));
-        let each = programs.shortest_steps(definition.substeps);
-        let each = each.saturating_add(shortest_steps(policy.operations()));
         let threads = episodes.execution.threads_for(work.saturating_mul(each));
         let size = len.div_ceil(threads).next_multiple_of(LANES).max(LANES);
         let mut rest = (&mut blocks[..], &mut states[..], &mut past[..], [times, looks, acts]);

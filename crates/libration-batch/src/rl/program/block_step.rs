@@ -190,7 +190,9 @@ impl<T: BatchFloat> BlockStep<T> {
         let substeps = self.substeps();
         let drawn = &block.numbers[self.definition.parameters.len()..];
         self.limits.apply(&self.actions, drawn, &mut self.commands, self.instructions);
-        self.other.copy_from_slice(block.states);
+        if self.verdict.reads_first(self.other.len()) {
+            self.other.copy_from_slice(block.states);
+        }
         if self.history.delays_actions() {
             self.history.act(block.past, now, &self.commands);
         }

@@ -161,9 +161,12 @@ impl<T: BatchFloat> Horizon<'_, T> {
         let substeps = u64::from(work.definition.substeps);
         let autoreset = work.definition.autoreset;
         let stood_ended = stood.map_or([0; LANES], |stood| stood.ended);
-        // What stands ends no episode.
-        let ends_now = |l: usize| if stood_ended[l] == 0 { work.overs[l] | cuts[l] } else { 0 };
-        let ending: [u8; LANES] = core::array::from_fn(ends_now);
+        let mut ending = [0; LANES];
+        for (l, ending) in ending.iter_mut().enumerate() {
+            // What stands ends no episode.
+            let stands = u8::from(stood_ended[l] != 0);
+            *ending = (work.overs[l] | cuts[l]) & stands.wrapping_sub(1);
+        }
         if ending != [0; LANES] {
             // Those that continue will see the same again.
             core::mem::swap(&mut work.seen, &mut work.last);
@@ -178,7 +181,8 @@ impl<T: BatchFloat> Horizon<'_, T> {
             // Lanes that are no environments are never at an end.
             block.episodes.rest(l, step + 1);
         }
-        let touched = core::array::from_fn(|l| ending[l] | stood_ended[l]);
+        let mut touched = stood_ended;
+        touched.iter_mut().zip(&ending).for_each(|(touched, ending)| *touched |= ending);
         for l in marked(&touched).take_while(|&l| l < site.count) {
             let next = block.episodes.next(l);
             if let Some(stood) = stood.filter(|stood| stood.ended[l] != 0) {

@@ -58,9 +58,12 @@ impl<T: Copy> EpisodeEnds<T> {
 
     /// The ends of all threads, by step and environment.
     pub(super) fn in_order(threads: Vec<Self>, width: usize) -> Self {
-        let (ends, observations): (Vec<_>, Vec<_>) =
-            threads.into_iter().map(|ends| (ends.ends, ends.observations)).unzip();
-        let (ends, observations) = (ends.concat(), observations.concat());
+        let mut threads = threads.into_iter();
+        let EpisodeEnds { mut ends, mut observations } = threads.next().unwrap_or_default();
+        for others in threads {
+            ends.extend(others.ends);
+            observations.extend(others.observations);
+        }
         if ends.is_sorted_by_key(|end| (end.step, end.environment)) {
             return EpisodeEnds { ends, observations };
         }

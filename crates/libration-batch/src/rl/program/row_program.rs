@@ -3,7 +3,7 @@
 use core::ops::Range;
 use std::sync::Arc;
 
-use libration_equations::Program;
+use libration_equations::{Operation, Program};
 
 use crate::ensemble::InstructionSet;
 use crate::machine::{Block, BlockProgram, MachineFloat};
@@ -17,6 +17,8 @@ pub(super) struct RowProgram {
     rows: Arc<[usize]>,
     first_output: usize,
     inputs: usize,
+    /// The inputs that the outputs are, if nothing is computed.
+    copied: Option<Arc<[usize]>>,
 }
 
 impl RowProgram {
@@ -29,9 +31,14 @@ impl RowProgram {
         let first_output = rows.len();
         let end = first_output + program.outputs().len();
         let targets: Vec<usize> = (first_output..end).collect();
+        let copied = program.outputs().iter().map(|&id| match program.values()[id] {
+            Operation::Input(input) => Some(input),
+            _ => None,
+        });
+        let copied = copied.collect();
         let row_of = |input: usize| rows.iter().position(|&known| known == input);
         let program = BlockProgram::new(program, row_of, &targets, end);
-        RowProgram { program: Arc::new(program), rows: rows.into(), first_output, inputs }
+        RowProgram { program: Arc::new(program), rows: rows.into(), first_output, inputs, copied }
     }
 
     /// See [`BlockProgram::shortest_steps`].
@@ -52,6 +59,11 @@ impl RowProgram {
     pub(super) fn reads_last(&self) -> bool {
         self.rows.last() == Some(&(self.inputs - 1))
     }
+
+    /// Whether the program reads one of its first inputs, so many.
+    pub(super) fn reads_first(&self, count: usize) -> bool {
+        self.rows.first().is_some_and(|&first| first < count)
+    }
 }
 
 /// Rows that a program runs on.
@@ -68,6 +80,11 @@ impl<T: MachineFloat> ProgramRows<T> {
         self.program.reads_last()
     }
 
+    /// See [`RowProgram::reads_first`].
+    pub(super) fn reads_first(&self, count: usize) -> bool {
+        self.program.reads_first(count)
+    }
+
     /// Runs the program and writes the lanes of its outputs, as many as there are.
     pub(super) fn run<'a>(
         &mut self,
@@ -77,6 +94,12 @@ impl<T: MachineFloat> ProgramRows<T> {
     ) where
         T: 'a,
     {
+        if let Some(copied) = &self.program.copied {
+            for (to, &i) in to.iter_mut().zip(&**copied) {
+                to[..self.lanes].copy_from_slice(&input(i)[..self.lanes]);
+            }
+            return;
+        }
         for lanes in self.strips() {
             self.load(&lanes, &input);
             self.finish(&lanes, to, instructions);
