@@ -41,7 +41,10 @@ pub(crate) fn interpreter() -> Result<PathBuf, String> {
     command::run(command::program(base).args(["-m", "venv", "--clear"]).arg(&folder))
         .map_err(|error| format!("{error}\n{NO_VENV}"))?;
     let pip = ["-m", "pip", "install", "--quiet", "--no-input", "--disable-pip-version-check"];
-    command::run(command::program(&python).args(pip).arg("--requirement").arg(&list))
+    // Most modules are never imported.
+    let mut install = command::program(&python);
+    install.args(pip).args(["--no-compile", "--requirement"]).arg(&list);
+    command::run(&mut install)
         .map_err(|error| format!("{error}\n{NO_PACKAGES}"))?;
     // Written last: an environment without it is unfinished.
     fs::write(&stamp, &requirements)
