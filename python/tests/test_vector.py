@@ -219,9 +219,10 @@ def test_every_integrator_is_one(integrator):
     assert np.isfinite(env.step(np.zeros(2))[0]).all()
 
 
-def test_actions_are_taken_from_whatever_holds_them():
+@pytest.mark.parametrize("dtype", ["float32", "float64"])
+def test_actions_are_taken_from_whatever_holds_them(dtype):
     def stepped(actions):
-        env = made("Oscillator", 3)
+        env = made("Oscillator", 3, dtype=dtype)
         env.reset(seed=1)
         return env.step(actions)[0]
 
@@ -241,6 +242,9 @@ def test_actions_are_taken_from_whatever_holds_them():
     locked = np.array([1, -2, 3], np.float32)
     locked.flags.writeable = False
     np.testing.assert_array_equal(stepped(locked), wanted)
+    for narrow in [np.array([1, -np.inf, 3], np.float32), np.array([[1], [np.nan], [3]], np.float32)]:
+        with pytest.raises(ValueError, match=r"actions\[1\] is (-inf|NaN), but it must be finite"):
+            stepped(narrow)
 
 
 @pytest.mark.parametrize("mode", AUTORESETS)
