@@ -1,4 +1,6 @@
 //! Means over many trajectories, with standard errors.
+//!
+//! It uses nothing of the crate: the tests of `tests/study_loops` compile it alone, in place of the whole crate once more.
 
 /// Standard errors within which a number among many must lie.
 pub(super) const ERRORS: f64 = 4.0;

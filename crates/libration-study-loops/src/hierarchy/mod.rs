@@ -2,6 +2,7 @@
 
 mod claims;
 mod cost;
+mod crossing;
 mod disturbed_run;
 mod figures;
 mod imperfection;

@@ -3,12 +3,10 @@
 use libration_report::notation::{count, number};
 use libration_report::record::{Cell, Finding, Record, Table, Tolerance};
 
+use super::crossing::{FAR, crossing};
 use super::disturbed_run::Effect;
 use super::imperfection::{Kind, Profile};
 use super::prediction;
-
-/// A distance at which trajectories are apart, in units of the orbit.
-const FAR: f64 = 0.1;
 
 /// The table, of which each imperfection in each size is a row.
 pub(super) fn table(horizon: u64) -> Table {
@@ -91,31 +89,4 @@ pub(super) fn row(
         (None, _) => ["none known"; 2].map(Cell::absent),
     };
     words.into_iter().chain(all).chain(margins).collect()
-}
-
-/// Where the distance first exceeds [`FAR`], between two looks in proportion.
-fn crossing(steps: &[u64], distance: &[f64]) -> Option<f64> {
-    let beyond = distance.iter().position(|&d| d >= FAR)?;
-    let (n, d) = (steps[beyond] as f64, distance[beyond]);
-    let Some(before) = beyond.checked_sub(1) else { return Some(n) };
-    let (m, c) = (steps[before] as f64, distance[before]);
-    if c <= 0.0 {
-        return Some(n);
-    }
-    let share = (FAR / c).ln() / (d / c).ln();
-    Some(m * (n / m).powf(share))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::crossing;
-
-    #[test]
-    fn a_power_law_crosses_where_it_says() {
-        let steps = [1, 10, 100, 1000];
-        let distance = steps.map(|n| 0.004 * (n as f64).sqrt());
-        assert!((crossing(&steps, &distance).unwrap() / 625.0 - 1.0).abs() < 1e-12);
-        assert_eq!(crossing(&steps, &[0.0; 4]), None);
-        assert_eq!(crossing(&steps, &[0.2; 4]), Some(1.0));
-    }
 }

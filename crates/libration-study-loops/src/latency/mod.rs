@@ -7,6 +7,7 @@ mod late_force;
 mod latency_windows;
 mod loop_simulation;
 mod map;
+mod mean_growth;
 mod random_latency;
 mod render;
 mod single_precision;

@@ -1,4 +1,6 @@
 //! Edges between stable and unstable latencies, as lines of a map.
+//!
+//! It uses nothing of the crate: the tests of `tests/study_loops` compile it alone, in place of the whole crate once more.
 
 use libration::analysis::LatencyWindows;
 
