@@ -5,15 +5,12 @@ use serde::Serialize;
 
 use crate::BlackBoxError;
 use crate::prober::Prober;
+use crate::settled_order::settled_order;
 
 /// Steps of the subject over which errors add up.
 const STEPS: usize = 4;
 /// Halvings of the step, at least and at most: more while the order has not settled.
 const HALVINGS: [usize; 2] = [6, 10];
-/// Roundings, relative to the scales, at which a difference says nothing. Errors of a thousand steps add up.
-const ROUNDING: f64 = 1e-13;
-/// Largest distance of the last two estimates from an integer, and that of a single one.
-const SETTLED: [f64; 2] = [0.15, 0.05];
 
 /// The order by which results of the same duration converge.
 #[derive(Clone, Debug, Serialize)]
@@ -62,22 +59,7 @@ impl Convergence {
     }
 
     fn of(differences: Vec<f64>) -> Self {
-        let significant = differences.iter().take_while(|d| **d > ROUNDING).count();
-        let estimates: Vec<f64> =
-            differences[..significant].windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
-        // Of runs that diverge nothing is known.
-        let is_exact = !differences.is_empty() && differences.iter().all(|d| *d <= ROUNDING);
-        // The shortest steps are nearest to the limit, until rounding is.
-        let near = |x: f64, order: f64, most: f64| (x - order).abs() < most && order >= 1.0;
-        let order = match estimates[..] {
-            [.., before, last] => {
-                let order = last.round();
-                let is_settled = near(before, order, SETTLED[0]) && near(last, order, SETTLED[0]);
-                is_settled.then_some(order as u32)
-            }
-            [only] => near(only, only.round(), SETTLED[1]).then_some(only.round() as u32),
-            [] => None,
-        };
+        let (order, estimates, is_exact) = settled_order(&differences);
         Convergence { order, estimates, is_exact, differences }
     }
 }
@@ -111,24 +93,4 @@ pub(crate) fn displaced(prober: &Prober<'_>, part: f64) -> Vec<f64> {
     };
     let values = subject.state.iter().zip(&subject.state_scale).enumerate();
     values.map(|(i, (x, scale))| x + part * scale * shift(i)).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_order_is_that_of_the_shortest_steps_that_rounding_leaves() {
-        let of = |p: i32, floor: f64| {
-            let differences = (0..6).map(|k| 1e-2 * 2.0_f64.powi(-p * k) + floor).collect();
-            Convergence::of(differences).order
-        };
-        assert_eq!((of(1, 0.0), of(2, 1e-14), of(4, 2e-14)), (Some(1), Some(2), Some(4)));
-        assert_eq!(Convergence::of(vec![1e-3, 4e-4, 3e-4, 1e-5, 9e-6, 1e-6]).order, None);
-        // An order that longer steps seem to have is none.
-        assert_eq!(Convergence::of(vec![1e-1, 2.5e-2, 6.2e-3, 2e-3, 8e-4]).order, None);
-        assert_eq!(Convergence::of(vec![1e-9, 6.2e-11, 1e-14]).order, Some(4));
-        assert!(Convergence::of(vec![0.0; 6]).is_exact);
-        assert!(!Convergence::of(vec![f64::NAN; 6]).is_exact);
-    }
 }

@@ -3,19 +3,14 @@
 use serde::Serialize;
 
 use crate::BlackBoxError;
+use crate::decay::{GONE, decay, is_gone};
 use crate::impulse::{MOST_CALLS, distance, moved};
 use crate::prober::Prober;
 
 /// Calls until the influence must be gone.
 const PATIENCE: usize = 4096;
-/// Distances in units of the scales that change no bit of a number of ordinary size.
-const GONE: f64 = 1e-20;
-/// Largest root mean square of the residuals of a decay in the logarithm, far below that of noise, which is about 1.
-const RESIDUAL: f64 = 0.3;
 /// Largest factor by which a slow decay may be off its prediction over all calls.
 const FADED: f64 = 3.0;
-/// Least decay of distances that are no single exponential, from their first to their last quarter.
-const DECAY: f64 = 1.0 / 3.0;
 
 /// The influence of earlier calls that fades as that of a filter does.
 #[derive(Clone, Debug, Serialize)]
@@ -52,10 +47,6 @@ impl Settling {
     }
 }
 
-fn is_gone(distance: f64) -> bool {
-    distance < GONE
-}
-
 /// Calls with the subject's state and action until the results of four in a row are the same: whether they are in the end, and how far
 /// the last two are apart, in parts of the first two.
 fn settle(prober: &mut Prober<'_>) -> Result<(bool, f64), BlackBoxError> {
@@ -86,49 +77,5 @@ fn disturb(prober: &mut Prober<'_>, x: &[f64], u: &[f64]) -> Result<Option<f64>,
         results.push(prober.call_one(&subject.state, &subject.action, subject.dt)?);
     }
     let apart = |pair: &[Vec<f64>]| distance(&pair[0], &pair[1], &subject.state_scale);
-    Ok(decay(&results.windows(2).map(apart).collect::<Vec<_>>()))
-}
-
-/// The factor by which distances fall; none if they vary as noise does, or end at once.
-fn decay(distances: &[f64]) -> Option<f64> {
-    // A few are other delays.
-    let falling: Vec<f64> = distances
-        .iter()
-        .skip(MOST_CALLS / 8)
-        .take_while(|d| !is_gone(**d))
-        .map(|d| d.ln())
-        .collect();
-    let count = falling.len();
-    if count < MOST_CALLS / 8 {
-        return None;
-    }
-    let middle = (count as f64 - 1.0) / 2.0;
-    let mean = falling.iter().sum::<f64>() / count as f64;
-    let moment = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
-        falling.iter().enumerate().map(|(k, y)| f(k as f64 - middle, y - mean)).sum()
-    };
-    let slope = moment(&|k, y| k * y) / moment(&|k, _| k * k);
-    let residual = (moment(&|k, y| (y - slope * k).powi(2)) / count as f64).sqrt();
-    let largest = |part: &[f64]| part.iter().copied().fold(f64::MIN, f64::max);
-    let quarter = count / 4;
-    let fall = largest(&falling[count - quarter..]) - largest(&falling[..quarter]);
-    let is_steady = residual < RESIDUAL && slope * (count as f64) < -residual;
-    (is_steady || fall < DECAY.ln()).then(|| slope.exp())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_decay_has_its_factor_and_noise_has_none() {
-        let decaying: Vec<f64> = (0..63).map(|k| 0.3 * 0.98_f64.powi(k)).collect();
-        assert!((decay(&decaying).unwrap() - 0.98).abs() < 1e-12);
-        let hash =
-            |k: u64| (k.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 11) as f64 / (1_u64 << 53) as f64;
-        let noise: Vec<f64> = (1..64).map(hash).collect();
-        assert_eq!(decay(&noise), None);
-        assert_eq!(decay(&vec![0.5; 63]), None);
-        assert_eq!(decay(&vec![0.0; 63]), None);
-    }
+    Ok(decay(&results.windows(2).map(apart).collect::<Vec<_>>(), MOST_CALLS / 8))
 }

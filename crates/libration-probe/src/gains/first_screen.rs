@@ -3,6 +3,7 @@
 use libration_report::notation::{cut_off, number};
 use libration_report::page::{Bar, Highlight};
 
+use super::command_option::{is_command, with_option};
 use super::{GainReport, JointRow};
 
 /// Joints whose limits are shown as bars, the tightest first.
@@ -123,46 +124,7 @@ fn then(command: Option<&str>) -> String {
     command.map_or_else(|| ".".into(), |command| format!(": `{command}`"))
 }
 
-fn is_command(text: &str) -> bool {
-    text.starts_with("libration ") && !text.contains(['`', '\n'])
-}
-
-/// A command with the value of an option, in place of the given one; none if it is no command of a terminal.
-fn with_option(command: &str, option: &str, value: &str) -> Option<String> {
-    if !is_command(command) {
-        return None;
-    }
-    let mut words = command.split(' ');
-    let mut kept = Vec::new();
-    while let Some(word) = words.next() {
-        match word.strip_prefix(option) {
-            // The value is a number or a name, without spaces.
-            Some("") => drop(words.next()),
-            Some(rest) if rest.starts_with('=') => {}
-            _ => kept.push(word),
-        }
-    }
-    kept.extend([option, value]);
-    Some(kept.join(" "))
-}
-
 /// A limit with four digits, not beyond itself.
 fn cut(limit: f64) -> f64 {
     cut_off(limit, 4)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::with_option;
-
-    #[test]
-    fn an_option_takes_the_place_of_the_given_one() {
-        let with = |command: &str| with_option(command, "--substeps", "4");
-        for command in
-            ["libration gains --substeps 2 --dt 1", "libration gains --substeps=2 --dt 1"]
-        {
-            assert_eq!(with(command).as_deref(), Some("libration gains --dt 1 --substeps 4"));
-        }
-        assert_eq!(with("libration.gains(model)"), None);
-    }
 }

@@ -1,5 +1,6 @@
 //! Gains of servos: whether they hold at a time step, by which margin, and with which integrator.
 
+mod command_option;
 mod first_screen;
 mod page;
 mod report;

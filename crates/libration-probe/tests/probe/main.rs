@@ -2,9 +2,26 @@
 
 #![allow(clippy::unwrap_used)]
 
+use libration_probe::Rates;
+
+#[path = "../../src/gains/command_option.rs"]
+mod command_option;
+#[path = "../../src/decay.rs"]
+mod decay;
 mod faults;
+mod finding_kinds;
+mod first_difference;
 mod gains;
+mod jacobians;
 mod memory;
+#[path = "../../src/noise_free_matrix.rs"]
+mod noise_free_matrix;
 mod pages;
+#[path = "../../src/rate_ranges.rs"]
+mod rate_ranges;
+#[path = "../../src/settled_order.rs"]
+mod settled_order;
+#[path = "../../src/shorter_step.rs"]
+mod shorter_step;
 mod simulators;
 mod theory;
