@@ -4,8 +4,9 @@ use libration_core::random::{Address, Purpose, gaussian_lanes};
 use libration_linear::MissingCommand;
 
 use super::length_part::LengthPart;
+use super::map::Map;
 use super::plan::{Parts, Plan};
-use super::row::{LANES, Map, Row};
+use super::row::{LANES, Row};
 use libration_batch::ensemble::Loop;
 
 /// Where commands come from.

@@ -7,7 +7,8 @@ use libration_linear::{LinearLoop, Matrix, PartMotion};
 use super::blocks::{beside, folded};
 use super::error::LinearLoopsError;
 use super::length_polynomials::{LengthPolynomials, interpolated};
-use super::row::{LANES, Map, Row};
+use super::map::Map;
+use super::row::{LANES, Row};
 
 /// A part of a period as maps whose factors depend on the length of the period.
 #[derive(Clone, Debug)]

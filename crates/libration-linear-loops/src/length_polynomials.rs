@@ -1,4 +1,6 @@
 //! Functions of the length of a period as polynomials.
+//!
+//! It uses rows alone: the tests of `tests/linear_loops` compile it with them, in place of the whole crate once more.
 
 use core::ops::Range;
 

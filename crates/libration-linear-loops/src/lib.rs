@@ -8,12 +8,11 @@ mod error;
 mod kernel;
 mod length_part;
 mod length_polynomials;
+mod map;
 mod motion;
 mod plan;
 mod program_motion;
 mod row;
-#[cfg(test)]
-mod tests;
 
 use libration_linear::{LinearLoop, LoopTiming};
 

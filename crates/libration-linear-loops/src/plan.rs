@@ -11,8 +11,8 @@ use libration_linear::{
 use super::LinearLoopsError;
 use super::blocks::{above, beside, folded};
 use super::length_part::LengthPart;
+use super::map::Map;
 use super::program_motion::ProgramParts;
-use super::row::Map;
 
 /// A loop with a timing, as maps on the rows of a tile.
 #[derive(Clone, Debug)]

@@ -1,12 +1,13 @@
+//! Loops around random plants.
+
+use libration_batch::ensemble::{Execution, InstructionSet};
 use libration_core::control::{Jitter, Latency};
 use libration_core::random::{Address, Purpose};
 use libration_linear::{
     DiscreteController, LinearLoop, LinearPlant, LoopTiming, Matrix, MissingCommand, Signal,
     Simulation,
 };
-
-use super::*;
-use libration_batch::ensemble::InstructionSet;
+use libration_linear_loops::{LinearLoops, LinearLoopsError};
 
 /// Uniform numbers, each with a number of its own.
 fn draw(setting: u64, number: u64, [low, high]: [f64; 2]) -> f64 {
