@@ -107,7 +107,7 @@ def peer_rate(peer, x, v, seconds):
 def own_rates(program, counts, effort):
     """Rates of Libration by implementation, float and number of particles."""
     command = [program, "bench", "--implementation", "fused,threads", "--effort", effort, "--json"]
-    command += ["--count", ",".join(map(str, counts)), "--float", "f32,f64"]
+    command += ["--num-trajectories", ",".join(map(str, counts)), "--dtype", "f32,f64"]
     answer = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
     return {
         (rate["implementation"], rate["float"], rate["count"]): rate["steps_per_second"]
@@ -136,7 +136,7 @@ def check(program):
     """The peers do the same work: their bits are those of Libration."""
     command = [program, "simulate", "--system", "oscillator", "--set", f"omega2={OMEGA2}"]
     command += ["--integrator", "symplectic-euler", "--dt", str(DT), "--steps", "1000"]
-    command += ["--every", "1000", "--q", "1", "--v", "0", "--format", "json"]
+    command += ["--save-every", "1000", "--q", "1", "--v", "0", "--format", "json"]
     answer = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
     wanted = [answer["rows"][-1][answer["columns"].index(name)] for name in ("q0", "v0")]
     for name, peer in PEERS.items():

@@ -44,8 +44,7 @@ pub(crate) fn interpreter() -> Result<PathBuf, String> {
     // Most modules are never imported.
     let mut install = command::program(&python);
     install.args(pip).args(["--no-compile", "--requirement"]).arg(&list);
-    command::run(&mut install)
-        .map_err(|error| format!("{error}\n{NO_PACKAGES}"))?;
+    command::run(&mut install).map_err(|error| format!("{error}\n{NO_PACKAGES}"))?;
     // Written last: an environment without it is unfinished.
     fs::write(&stamp, &requirements)
         .map_err(|error| format!("{} cannot be written: {error}", stamp.display()))?;

@@ -125,7 +125,7 @@ impl Request {
             None => {
                 let every = self.steps_of(dt);
                 let steps = self.steps(integrator, dt);
-                format!("libration simulate {steps} --every {every} --float {float}")
+                format!("libration simulate {steps} --save-every {every} --dtype {float}")
             }
         }
     }

@@ -52,7 +52,7 @@ pub enum TrajectoryError {
     #[error(transparent)]
     LinearLoops(#[from] LinearLoopsError),
     /// There is not enough memory.
-    #[error("{0} (--count, --every, --float)")]
+    #[error("{0} (--num-trajectories, --save-every, --dtype)")]
     Memory(InsufficientMemory),
     /// The result could not be written or kept.
     #[error(transparent)]

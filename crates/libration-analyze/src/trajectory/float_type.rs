@@ -31,6 +31,16 @@ impl FloatType {
         }
     }
 
+    /// The name in NumPy.
+    pub const fn dtype(self) -> &'static str {
+        match self {
+            FloatType::F64 => "float64",
+            FloatType::F32 => "float32",
+            FloatType::F16 => "float16",
+            FloatType::Bf16 => "bfloat16",
+        }
+    }
+
     /// The largest finite number.
     pub fn largest(self) -> f64 {
         match self {
@@ -41,9 +51,9 @@ impl FloatType {
         }
     }
 
-    /// The float type with this name, if it exists.
+    /// The float type with this name, or this name in NumPy, if it exists.
     pub fn from_name(name: &str) -> Option<FloatType> {
-        FloatType::ALL.into_iter().find(|f| f.name() == name)
+        FloatType::ALL.into_iter().find(|f| [f.name(), f.dtype()].contains(&name))
     }
 }
 

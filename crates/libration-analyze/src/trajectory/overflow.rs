@@ -150,7 +150,7 @@ fn linear_cause(
 fn range_cause(float: FloatType, step: &str) -> String {
     let way_out = match float {
         FloatType::F64 => "choose a start nearer to the origin",
-        _ => "choose a wider --float, or a start nearer to the origin",
+        _ => "choose a wider --dtype, or a start nearer to the origin",
     };
     let largest = float.largest();
     let largest = if largest < 1e6 { format!("{largest}") } else { format!("{largest:.3e}") };

@@ -194,7 +194,10 @@ fn wrong_requests_are_refused_before_any_work() {
             Request { v: vec![1.0, 2.0], ..good.clone() },
             ["`v`", "1,2", "as many numbers as `q`: 1"],
         ),
-        (Request { steps: 1 << 50, ..good.clone() }, ["GB of memory are needed", "--every", ""]),
+        (
+            Request { steps: 1 << 50, ..good.clone() },
+            ["GB of memory are needed", "--save-every", ""],
+        ),
     ];
     for (request, parts) in cases {
         let error = simulate(&request).unwrap_err().to_string();

@@ -20,7 +20,7 @@ pub(crate) struct BenchArgs {
     pub(crate) implementation: Vec<Implementation>,
     /// Numbers of trajectories for --implementation [default: 1000,100000,10000000]
     #[arg(
-        long,
+        long = "num-trajectories",
         value_name = "N",
         value_delimiter = ',',
         value_parser = count,
@@ -31,7 +31,7 @@ pub(crate) struct BenchArgs {
     pub(crate) count: Vec<usize>,
     /// Float types for --implementation [default: f32,f64]
     #[arg(
-        long,
+        long = "dtype",
         value_name = "TYPE",
         value_delimiter = ',',
         value_parser = floats(),
@@ -73,7 +73,7 @@ const EXAMPLES: &str = "\
 Examples:
   libration bench                                  speed of simulations and hardware limits
   libration bench --effort standard --json > machine.json
-  libration bench --implementation fused,threads --count 1e3,1e5,1e7 --float f32
+  libration bench --implementation fused,threads --num-trajectories 1e3,1e5,1e7 --dtype f32
   libration bench --rollouts --effort standard     rollouts relative to the memory bandwidth
   libration bench --storage --folder /data         data sets relative to the disk
 
@@ -88,7 +88,8 @@ fn implementations() -> impl TypedValueParser<Value = Implementation> {
 }
 
 fn floats() -> impl TypedValueParser<Value = BenchFloat> {
-    PossibleValuesParser::new(BenchFloat::ALL.map(BenchFloat::name))
+    let value = |float: BenchFloat| PossibleValue::new(float.name()).alias(float.dtype());
+    PossibleValuesParser::new(BenchFloat::ALL.map(value))
         .try_map(|name| BenchFloat::from_name(&name).ok_or("unknown float type"))
 }
 

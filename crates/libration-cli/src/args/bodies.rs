@@ -29,7 +29,7 @@ pub(crate) struct BodiesArgs {
     #[arg(long, value_name = "N", value_parser = trajectory_steps, allow_hyphen_values = true)]
     pub(crate) steps: u64,
     /// Take a sample every N steps [default: at most 1000 samples; of 64 bodies and more, at most a tenth of the time]
-    #[arg(long, value_name = "N", value_parser = every, allow_hyphen_values = true)]
+    #[arg(long = "save-every", value_name = "N", value_parser = every, allow_hyphen_values = true)]
     pub(crate) every: Option<u64>,
     /// Number of bodies of plummer
     #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]

@@ -189,7 +189,7 @@ impl SimulateArgs {
 }
 
 impl SimulateArgs {
-    /// The ensemble of `--count`; none without it.
+    /// The ensemble of `--num-trajectories`; none without it.
     pub(crate) fn ensemble(&self) -> Result<Option<EnsembleOptions>, Failure> {
         let Some(count) = self.count else { return Ok(None) };
         let instructions = simd::instruction_set(self.simd)?;

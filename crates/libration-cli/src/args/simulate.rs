@@ -26,7 +26,7 @@ pub(crate) struct SimulateArgs {
     pub(crate) step: Option<StepArgs>,
     #[command(flatten)]
     pub(crate) linear: LinearSimulationArgs,
-    /// Number of steps (of a loop around a plant: of periods), up to 2^53; --every limits the number of rows
+    /// Number of steps (of a loop around a plant: of periods), up to 2^53; --save-every limits the number of rows
     #[arg(long, value_name = "N", value_parser = trajectory_steps, allow_hyphen_values = true)]
     pub(crate) steps: u64,
     /// Let the length of the steps follow the forces: --dt is the first; see `docs/adaptive.md`
@@ -38,19 +38,19 @@ pub(crate) struct SimulateArgs {
     )]
     pub(crate) adaptive: Option<StepControl>,
     /// Float type of the state, the parameters and every operation
-    #[arg(long, value_name = "TYPE", value_parser = float_types(), default_value = "f64")]
+    #[arg(long = "dtype", value_name = "TYPE", value_parser = float_types(), default_value = "f64")]
     pub(crate) float: FloatType,
     /// Write every N-th step, the start and the last step
     #[arg(
-        long,
+        long = "save-every",
         value_name = "N",
         value_parser = every,
         allow_hyphen_values = true,
         default_value = "1"
     )]
     pub(crate) every: u64,
-    /// Number of trajectories; adds a column `trajectory`; requires --float f64 or f32
-    #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
+    /// Number of trajectories; adds a column `trajectory`; requires --dtype f64 or f32
+    #[arg(long = "num-trajectories", value_name = "N", value_parser = count, allow_hyphen_values = true)]
     pub(crate) count: Option<usize>,
     /// Scale the initial states linearly, from 1 - S (first trajectory) to 1 + S (last)
     #[arg(
@@ -95,11 +95,12 @@ const EXAMPLES: &str = "\
 Examples:
   libration simulate --system oscillator --set omega2=10 --integrator rk4 --dt 0.01 --steps 1000
   libration simulate --system kepler --q 0.4,0 --v 0,2 --integrator leapfrog --dt 0.01 \\
-      --steps 1e6 --every 1e3 --output orbit.parquet
+      --steps 1e6 --save-every 1e3 --output orbit.parquet
   libration simulate --system pendulum --integrator velocity-verlet --dt 0.01 --steps 1e4 \\
-      --every 1e4 --count 1e5 --spread 0.5 --float f32 --output swings.npy
+      --save-every 1e4 --num-trajectories 1e5 --spread 0.5 --dtype f32 --output swings.npy
   libration simulate --system oscillator --integrator velocity-verlet --dt 0.01 --steps 2e3 \\
-      --feedback 10,2 --latency 0.015 --jitter gaussian:0.1 --count 100 --seed 7 --output loop.csv
+      --feedback 10,2 --latency 0.015 --jitter gaussian:0.1 --num-trajectories 100 --seed 7 \\
+      --output loop.csv
   libration simulate --plant drive.toml --lqr 1,100,0,1/0.1 --period 0.001 --latency 0.0008 \\
       --reference \"load angle=1\" --steps 500 --output step.csv
 
@@ -109,14 +110,14 @@ Examples:
   libration simulate --system cart_pole.toml --lqr 1,10,0,1/0.1 --period 0.02 --latency 0.03 \\
       --steps 200 --output balance.csv
 
-The columns are step, t, q0, …, v0, …, energy; with --count the first column is trajectory.
+The columns are step, t, q0, …, v0, …, energy; with --num-trajectories the first column is trajectory.
 With --plant, --config, --lqr or --gain a row belongs to the beginning of a period. Its columns are step, t, the states,
 `measured NAME` (what the controller reads), `input NAME` (what acts), and the cost so far.
-If the state overflows, the rows end and a note says so. With --count, --feedback, --jitter, --skew
+If the state overflows, the rows end and a note says so. With --num-trajectories, --feedback, --jitter, --skew
 or --time-stamps the rows continue, and the note states the number of overflows.
 With --jitter, --skew or --time-stamps, t is the true time: the sum of the actual step lengths.
 Until the first command arrives, the command is 0.
-The bits of a trajectory are independent of --count, --simd and --threads.
+The bits of a trajectory are independent of --num-trajectories, --simd and --threads.
 The output file appears only when it is complete.";
 
 /// Parses a stride; also as `1e3`.
@@ -132,7 +133,8 @@ fn controls() -> impl TypedValueParser<Value = StepControl> {
 }
 
 fn float_types() -> impl TypedValueParser<Value = FloatType> {
-    PossibleValuesParser::new(FloatType::ALL.map(FloatType::name))
+    let value = |float: FloatType| PossibleValue::new(float.name()).alias(float.dtype());
+    PossibleValuesParser::new(FloatType::ALL.map(value))
         .try_map(|name| FloatType::from_name(&name).ok_or("unknown float type"))
 }
 

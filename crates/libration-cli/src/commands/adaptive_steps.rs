@@ -19,7 +19,7 @@ pub(super) fn request(
     };
     if args.float != FloatType::F64 {
         let float = args.float.name();
-        return Err(Failure::usage(format!("--float {float}: --adaptive has f64 only")));
+        return Err(Failure::usage(format!("--dtype {float}: --adaptive has f64 only")));
     }
     let method: Method = match step.integrator.any_method() {
         Some(AnyMethod::Explicit(method)) => method,

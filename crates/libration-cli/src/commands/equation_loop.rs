@@ -29,7 +29,7 @@ fn of_file(
         ("--q", options.q.is_some()),
         ("--v", options.v.is_some()),
         ("--time-stamps", args.time_stamps.is_some()),
-        ("--float", args.float != FloatType::F64),
+        ("--dtype", args.float != FloatType::F64),
         ("--feedback and --skew", {
             let Timing { feedback, skew, .. } = args.timing.timing();
             feedback.is_some() || skew.is_some()

@@ -284,7 +284,7 @@ pub(super) fn failure(error: TrajectoryError) -> Failure {
         TrajectoryError::Value { name, value, allowed } => {
             Failure::usage(format!("--{name} is {value}; expected {allowed}"))
         }
-        TrajectoryError::Parameter { .. } => Failure::usage(format!("{error} (--float)")),
+        TrajectoryError::Parameter { .. } => Failure::usage(format!("{error} (--dtype)")),
         TrajectoryError::Bodies(_)
         | TrajectoryError::Catalog(_)
         | TrajectoryError::Simulation(_)

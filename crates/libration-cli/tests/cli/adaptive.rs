@@ -58,8 +58,8 @@ fn wrong_adaptive_steps_are_usage_errors() {
     };
     let base = "simulate --system kepler --integrator leapfrog --dt 0.1 --steps 9 --adaptive";
     fails(&format!("{base} exact"), "integrating");
-    fails(&format!("{base} naive --float f32"), "f64 only");
-    fails(&format!("{base} naive --count 3"), "cannot be used with");
+    fails(&format!("{base} naive --dtype f32"), "f64 only");
+    fails(&format!("{base} naive --num-trajectories 3"), "cannot be used with");
     fails(
         "simulate --system pendulum --integrator trapezoid --dt 0.1 --steps 9 --adaptive naive",
         "requires an explicit integrator",

@@ -5,7 +5,8 @@ use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
 use serde_json::Value;
 
-const SIMULATE: &str = "simulate --system pendulum --integrator rk4 --dt 0.1 --steps 3 --count 70";
+const SIMULATE: &str =
+    "simulate --system pendulum --integrator rk4 --dt 0.1 --steps 3 --num-trajectories 70";
 
 fn libration(words: &str) -> Command {
     let mut command = Command::cargo_bin("libration").unwrap();
@@ -15,8 +16,7 @@ fn libration(words: &str) -> Command {
 
 #[test]
 fn named_implementations_are_timed_alone_and_each_once() {
-    let words =
-        "--quiet bench --implementation fused,in-place --count 1e3,10,1000 --float f32,f32 --json";
+    let words = "--quiet bench --implementation fused,in-place --num-trajectories 1e3,10,1000 --dtype f32,f32 --json";
     let run = libration(words).assert().success().stderr(is_empty());
     let answer: Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
     assert_eq!(answer["schema"], "libration.bench/1");
@@ -28,7 +28,8 @@ fn named_implementations_are_timed_alone_and_each_once() {
         .collect();
     assert_eq!(timed, [("fused", 1000), ("fused", 10), ("in-place", 1000), ("in-place", 10)]);
     assert!(rates.iter().all(|r| r["steps_per_second"].as_f64().unwrap() > 0.0));
-    let mut text = libration("--quiet bench --implementation scalar --count 10 --float f64");
+    let mut text =
+        libration("--quiet bench --implementation scalar --num-trajectories 10 --dtype f64");
     text.assert().success().stdout(contains("10⁹ steps/s").and(contains("scalar")));
 }
 
@@ -59,10 +60,13 @@ fn rollouts_are_timed_in_both_layouts_beside_fills_of_as_much_memory() {
 fn what_cannot_be_timed_is_refused_before_any_work() {
     for (words, told) in [
         ("bench --implementation fussed", "fused"),
-        ("bench --implementation fused --count 0", "at least 1"),
-        ("bench --implementation fused --float f16", "f32"),
-        ("bench --count 10", "--implementation"),
-        ("bench --implementation in-place --count 1e15 --float f64", "GB of memory are needed"),
+        ("bench --implementation fused --num-trajectories 0", "at least 1"),
+        ("bench --implementation fused --dtype f16", "f32"),
+        ("bench --num-trajectories 10", "--implementation"),
+        (
+            "bench --implementation in-place --num-trajectories 1e15 --dtype f64",
+            "GB of memory are needed",
+        ),
         ("bench --simd sse9", "avx512"),
         ("bench --rollouts --implementation fused", "--implementation"),
         ("bench --rollouts --case 4096", "e.g. 4096x1024"),
@@ -84,7 +88,7 @@ fn the_environment_names_an_instruction_set_where_no_flag_does() {
     let flag = format!("{SIMULATE} --simd baseline");
     libration(&flag).env("LIBRATION_SIMD", "sse9").assert().success();
     // A single trajectory uses none.
-    let lone = SIMULATE.replace(" --count 70", "");
+    let lone = SIMULATE.replace(" --num-trajectories 70", "");
     libration(&lone).env("LIBRATION_SIMD", "sse9").assert().success();
     libration("lab spectrum").env("LIBRATION_SIMD", "sse9").assert().code(2);
 }

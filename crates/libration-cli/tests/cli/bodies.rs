@@ -87,7 +87,7 @@ fn rows_have_each_body_of_each_sample() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("orbit.csv");
     let words = format!(
-        "bodies pythagorean --integrator leapfrog --dt 0.001 --steps 100 --every 25 --output {}",
+        "bodies pythagorean --integrator leapfrog --dt 0.001 --steps 100 --save-every 25 --output {}",
         file.display()
     );
     libration(&words).success();
@@ -109,7 +109,7 @@ fn a_collision_fails_the_run_and_keeps_its_rows() {
     };
     fs::write(&bodies, body("left", 0.0) + &body("right", 1.0)).unwrap();
     let words = format!(
-        "bodies {} --integrator leapfrog --dt 0.01 --steps 1e3 --every 10 --output {}",
+        "bodies {} --integrator leapfrog --dt 0.01 --steps 1e3 --save-every 10 --output {}",
         bodies.display(),
         rows.display()
     );

@@ -44,7 +44,7 @@ fn a_clock_that_was_measured_can_be_replayed_and_advised_with() {
         "0.01",
         "--steps",
         "199",
-        "--every",
+        "--save-every",
         "199",
         "--time-stamps",
         path,

@@ -55,7 +55,7 @@ fn published_methods_are_listed_with_sources_and_run() {
     libration(&format!("analyze {step} --verbose"))
         .success()
         .stdout(contains("order 6 for forces of positions, symmetric"));
-    libration(&format!("simulate {step} --steps 9 --count 3")).success();
+    libration(&format!("simulate {step} --steps 9 --num-trajectories 3")).success();
     // Messages do not list all of them, but find the nearest.
     libration("analyze --system oscillator --integrator blanes-moan-srkn --dt 0.1")
         .failure()

@@ -51,13 +51,21 @@ fn a_pendulum_by_equations_has_the_trajectory_of_the_catalogue() {
     let path = written(&folder, "mine.toml", text);
     for float in ["f64", "f32", "f16", "bf16"] {
         let rows = |system: &[&str]| {
-            let step =
-                ["--integrator", "yoshida4", "--dt", "0.01", "--steps", "100", "--every", "50"];
+            let step = [
+                "--integrator",
+                "yoshida4",
+                "--dt",
+                "0.01",
+                "--steps",
+                "100",
+                "--save-every",
+                "50",
+            ];
             let words: Vec<&str> = ["simulate"]
                 .iter()
                 .chain(system)
                 .chain(&step)
-                .chain(&["--float", float])
+                .chain(&["--dtype", float])
                 .copied()
                 .collect();
             let run = libration(&words).success();
@@ -106,8 +114,8 @@ fn wrong_files_and_options_name_the_place_and_what_is_allowed() {
     let step = ["--integrator", "rk4", "--dt", "0.01", "--steps", "10"];
     for (words, part) in [
         (
-            vec!["simulate", "--system", &cart_pole, "--count", "10", "--float", "f16"],
-            "--float is f16",
+            vec!["simulate", "--system", &cart_pole, "--num-trajectories", "10", "--dtype", "f16"],
+            "--dtype is f16",
         ),
         (vec!["simulate", "--system", &cart_pole, "--set", "pol=1"], "did you mean `pole`?"),
         (
@@ -154,7 +162,7 @@ fn trajectories_of_an_ensemble_by_equations_are_single_ones_from_scaled_starts()
         let done = libration(&words).success();
         String::from_utf8_lossy(&done.get_output().stdout).lines().map(str::to_owned).collect()
     };
-    let all = rows("all.toml", 1.0, 0.5, &["--count", "3", "--spread", "0.5"]);
+    let all = rows("all.toml", 1.0, 0.5, &["--num-trajectories", "3", "--spread", "0.5"]);
     assert_eq!(all[0], "trajectory,step,t,x,x',s,energy");
     for (n, scale) in [(0, 0.5), (1, 1.0), (2, 1.5)] {
         let alone = rows("one.toml", scale, 0.5 * scale, &[]);

@@ -119,7 +119,7 @@ fn every_command_that_is_interrupted_says_so_by_its_exit_code() {
         "rollout --out out --config pipe",
         "measure-jitter --from pipe",
         "measure-jitter --rate 100 --seconds 60",
-        "simulate --system pendulum --integrator rk4 --dt 0.01 --steps 1e9 --every 1e9",
+        "simulate --system pendulum --integrator rk4 --dt 0.01 --steps 1e9 --save-every 1e9",
     ] {
         let mut child = start(folder.path(), words, Stdio::null());
         // Long enough to have begun; a process that still starts is interrupted as well.

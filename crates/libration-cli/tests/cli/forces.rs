@@ -58,7 +58,8 @@ fn the_continuous_margin_of_a_free_mass_is_that_of_the_double_integrator() {
 #[test]
 fn trajectories_of_forces_are_those_of_accelerations() {
     let last = |system: &str| {
-        let words = "simulate --integrator rk4 --dt 0.002 --steps 100 --every 100 --format json";
+        let words =
+            "simulate --integrator rk4 --dt 0.002 --steps 100 --save-every 100 --format json";
         let told = advise::libration(
             &format!("{words} {}", system.replace("--q 0", "--q 1"))
                 .split_whitespace()

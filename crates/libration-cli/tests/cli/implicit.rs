@@ -32,8 +32,10 @@ fn implicit_integrators_are_listed_simulated_and_analysed() {
         for system in ["pendulum", &file.to_string()] {
             let step = format!("--system {system} --integrator {name} --dt 0.01");
             libration(&format!("analyze {step} --steps 50")).success().stdout(contains(name));
-            libration(&format!("simulate {step} --steps 50 --every 50")).success();
-            let many = format!("simulate {step} --steps 50 --every 50 --count 2 --float f32");
+            libration(&format!("simulate {step} --steps 50 --save-every 50")).success();
+            let many = format!(
+                "simulate {step} --steps 50 --save-every 50 --num-trajectories 2 --dtype f32"
+            );
             libration(&many).success();
         }
     }
@@ -43,7 +45,7 @@ fn implicit_integrators_are_listed_simulated_and_analysed() {
 
 #[test]
 fn an_unstable_step_names_the_limit_of_an_implicit_integrator() {
-    libration("simulate --system oscillator --set omega2=1 --integrator stable-pd --dt 2 --steps 5000 --every 5000")
+    libration("simulate --system oscillator --set omega2=1 --integrator stable-pd --dt 2 --steps 5000 --save-every 5000")
         .success()
         .stderr(contains("ωΔt = 2 exceeds stable-pd's limit 1.15; choose --dt below 1.15"));
 }

@@ -53,9 +53,13 @@ fn a_step_of_an_input_in_open_loop_is_the_step_response() {
 #[test]
 fn the_rows_of_a_loop_do_not_depend_on_the_number_of_loops_and_threads() {
     let options = "--lqr 10,1,1/0.1,1 --period 0.05 --latency 0.03 --output-latency 0.01,0,0.07 \
-                   --jitter gaussian:0.1 --loss 0.1 --noise --seed 3 --x0 1,0,0 --steps 50 --every 10";
+                   --jitter gaussian:0.1 --loss 0.1 --noise --seed 3 --x0 1,0,0 --steps 50 --save-every 10";
     let one = csv(options);
-    for more in ["--count 40", "--count 40 --threads 2", "--count 3 --simd baseline"] {
+    for more in [
+        "--num-trajectories 40",
+        "--num-trajectories 40 --threads 2",
+        "--num-trajectories 3 --simd baseline",
+    ] {
         let all = csv(&format!("{options} {more}"));
         let first: Vec<&str> = all.iter().filter_map(|row| row.strip_prefix("0,")).collect();
         assert_eq!(first, one[1..], "{more}");

@@ -46,8 +46,11 @@ fn a_limit_of_memory_ends_a_run_with_a_message_and_never_with_an_abort() {
         for (name, flags) in [
             ("x.parquet", "--steps 3e5"),
             ("x.npy", "--steps 3e5"),
-            ("y.npy", "--steps 2 --every 2 --count 2e4 --threads 2"),
-            ("z.npy", "--steps 2 --every 2 --count 1e4 --threads 2 --feedback 10,2 --latency 0.02"),
+            ("y.npy", "--steps 2 --save-every 2 --num-trajectories 2e4 --threads 2"),
+            (
+                "z.npy",
+                "--steps 2 --save-every 2 --num-trajectories 1e4 --threads 2 --feedback 10,2 --latency 0.02",
+            ),
         ] {
             code(folder, megabytes, &format!("{simulate} {flags} --output {name}"));
         }
@@ -70,7 +73,7 @@ fn what_does_not_fit_under_a_limit_says_how_much_is_needed_and_what_lowers_it() 
         "simulate --system oscillator --integrator leapfrog --dt 0.01 --steps 2e7 --output x.parquet",
     );
     assert!(table.contains("0.892 GB of memory are needed, of which 0."), "{table}");
-    assert!(table.contains("(--count, --every, --float)"), "{table}");
+    assert!(table.contains("(--num-trajectories, --save-every, --dtype)"), "{table}");
     let chunks = said("rollout --config set.toml --out data");
     assert!(chunks.contains("GB of memory are needed, of which 0."), "{chunks}");
     assert!(chunks.contains("(chunk.steps is 1024, chunk.environments 4096)"), "{chunks}");

@@ -18,7 +18,7 @@ const SIMULATE: [&str; 11] = [
     "0.01",
     "--steps",
     "10",
-    "--every",
+    "--save-every",
     "10",
 ];
 

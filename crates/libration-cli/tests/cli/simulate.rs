@@ -39,7 +39,7 @@ pub(crate) fn stdout(folder: &TempDir, words: &str) -> String {
 #[test]
 fn rows_are_csv_on_stdout() {
     let folder = folder();
-    let text = stdout(&folder, &format!("{REPORT} --every 300"));
+    let text = stdout(&folder, &format!("{REPORT} --save-every 300"));
     let lines: Vec<_> = text.lines().collect();
     assert_eq!(lines[0], "step,t,q0,v0,energy");
     assert_eq!(lines[1], "0,0.0,1.0,0.0,5.0");
@@ -65,7 +65,7 @@ fn negative_and_many_coordinates() {
 #[test]
 fn formats_agree() {
     let folder = folder();
-    let words = format!("{REPORT} --every 100");
+    let words = format!("{REPORT} --save-every 100");
     let csv = stdout(&folder, &words);
     let text = stdout(&folder, &format!("{words} --format json"));
     let json: Value = serde_json::from_str(&text).unwrap();
@@ -134,23 +134,23 @@ fn wrong_input_is_named_with_what_is_allowed() {
         ("--dt 0", &["--dt", "0", "greater than 0"]),
         ("--dt -1", &["--dt", "-1", "greater than 0"]),
         ("--dt nan", &["--dt", "nan", "finite"]),
-        ("--dt 1e-9 --float f16", &["--dt", "1e-9", "f16"]),
-        ("--dt 1e39 --float f32", &["--dt", "1e39", "f32"]),
-        ("--float f128", &["--float", "f128", "f64, f32, f16, bf16"]),
+        ("--dt 1e-9 --dtype f16", &["--dt", "1e-9", "f16"]),
+        ("--dt 1e39 --dtype f32", &["--dt", "1e39", "f32"]),
+        ("--dtype f128", &["--dtype", "f128", "f64, f32, f16, bf16"]),
         ("--steps 0", &["--steps", "0", "1 to"]),
         ("--steps 1.5", &["--steps", "1.5"]),
-        ("--steps 1e15 --format npy", &["GB of memory are needed", "--every"]),
-        ("--steps 1e15 --format parquet", &["GB of memory are needed", "--every"]),
-        ("--every 0", &["--every", "0", "at least 1"]),
-        ("--every -3", &["--every", "-3", "at least 1"]),
+        ("--steps 1e15 --format npy", &["GB of memory are needed", "--save-every"]),
+        ("--steps 1e15 --format parquet", &["GB of memory are needed", "--save-every"]),
+        ("--save-every 0", &["--save-every", "0", "at least 1"]),
+        ("--save-every -3", &["--save-every", "-3", "at least 1"]),
         ("--format xml", &["--format", "xml", "csv, json, npy, parquet"]),
         ("--integrator rk5", &["--integrator", "rk5", "rk4"]),
         ("--system osscillator", &["--system", "osscillator", "oscillator"]),
         ("--set k=-1", &["k", "-1", "at least 0"]),
-        ("--set omega2=1e9 --float f16", &["omega2", "f16", "--float"]),
+        ("--set omega2=1e9 --dtype f16", &["omega2", "f16", "--dtype"]),
         ("--q 1,2", &["--q", "1,2", "--v"]),
         ("--q 1,x", &["--q", "x", "commas"]),
-        ("--q 1e6 --v 0 --float f16", &["--q", "1000000", "f16"]),
+        ("--q 1e6 --v 0 --dtype f16", &["--q", "1000000", "f16"]),
         ("--output taken", &["taken", "--output"]),
         ("--output a.xyz", &["a.xyz", "--output", ".parquet", "--format"]),
         ("--format json --output y.csv", &["json", "y.csv", "contradict"]),
@@ -188,7 +188,7 @@ fn a_wrong_request_leaves_the_old_file() {
     let folder = folder();
     let path = folder.path().join("x.csv");
     fs::write(&path, "precious").unwrap();
-    let words = format!("{} --output x.csv", REPORT.replace("--q 1", "--q 1e6 --float f16"));
+    let words = format!("{} --output x.csv", REPORT.replace("--q 1", "--q 1e6 --dtype f16"));
     libration(&folder, &words).assert().code(2);
     assert_eq!(fs::read_to_string(&path).unwrap(), "precious");
     assert_eq!(names(&folder), ["x.csv"]);
@@ -228,7 +228,10 @@ fn numpy_reads_what_was_written() {
     };
     let folder = folder();
     for (float, dtype) in [("f64", "f8"), ("f32", "f4"), ("f16", "f2"), ("bf16", "f4")] {
-        let words = format!("{REPORT} --float {float}");
+        let words = format!("{REPORT} --dtype {float}");
+        let long =
+            words.replace("--dtype f", "--dtype float").replace("--dtype bf", "--dtype bfloat");
+        assert_eq!(stdout(&folder, &long), stdout(&folder, &words));
         libration(&folder, &format!("{words} --output x.npy")).assert().success();
         libration(&folder, &format!("{words} --output x.csv")).assert().success();
         let script = format!(
@@ -258,8 +261,8 @@ fn numpy_reads_what_was_written() {
 #[test]
 fn many_trajectories_have_the_same_bits_on_every_instruction_set_and_number_of_threads() {
     let folder = folder();
-    let words = "simulate --system kepler --integrator suzuki4 --dt 0.01 --steps 20 --every 20 \
-                 --count 500 --spread 0.1 --float f32";
+    let words = "simulate --system kepler --integrator suzuki4 --dt 0.01 --steps 20 --save-every 20 \
+                 --num-trajectories 500 --spread 0.1 --dtype f32";
     let here = stdout(&folder, words);
     assert!(here.starts_with("trajectory,step,t,q0,q1,v0,v1,energy\n0,0,0.0,"), "{here:.80}");
     assert_eq!(here.lines().count(), 1 + 2 * 500);
@@ -271,13 +274,19 @@ fn many_trajectories_have_the_same_bits_on_every_instruction_set_and_number_of_t
 #[test]
 fn flags_of_many_trajectories_without_a_count_are_refused() {
     let folder = folder();
-    for more in ["--spread 0.1", "--simd baseline", "--threads 2", "--count 0", "--count 1e30"] {
+    for more in [
+        "--spread 0.1",
+        "--simd baseline",
+        "--threads 2",
+        "--num-trajectories 0",
+        "--num-trajectories 1e30",
+    ] {
         libration(&folder, &format!("{REPORT} {more}"))
             .assert()
             .code(2)
-            .stderr(contains("--count"));
+            .stderr(contains("--num-trajectories"));
     }
-    libration(&folder, &format!("{REPORT} --count 2 --simd mmx")).assert().code(2);
-    let f16 = format!("{REPORT} --count 2 --float f16");
-    libration(&folder, &f16).assert().code(2).stderr(contains("--float is f16"));
+    libration(&folder, &format!("{REPORT} --num-trajectories 2 --simd mmx")).assert().code(2);
+    let f16 = format!("{REPORT} --num-trajectories 2 --dtype f16");
+    libration(&folder, &f16).assert().code(2).stderr(contains("--dtype is f16"));
 }

@@ -141,7 +141,7 @@ fn a_simulated_loop_that_overflows_says_that_it_is_unstable_and_up_to_which_late
         let told = libration(&words).success();
         String::from_utf8(told.get_output().stderr.clone()).unwrap()
     };
-    let steps = "--steps 1e5 --every 1e5";
+    let steps = "--steps 1e5 --save-every 1e5";
     let late = format!("--integrator exact --dt 0.1 --feedback 10,2 {steps}");
     let told = reason(&format!("{late} --latency 10steps"));
     assert!(told.contains("the closed loop is unstable: its spectral radius is 1."), "{told}");
@@ -154,12 +154,13 @@ fn a_simulated_loop_that_overflows_says_that_it_is_unstable_and_up_to_which_late
     assert!(named <= critical && named > 0.99 * critical, "{named} {critical}");
     // Where only a window of latencies is stable: by numpy.linalg.eigvals of the loop with d whole steps of delay, its spectral
     // radius is below 1 for d = 7 to 92.
-    let window = reason("--integrator exact --dt 0.01 --feedback=-3,-0.2 --steps 1e6 --every 1e6");
+    let window =
+        reason("--integrator exact --dt 0.01 --feedback=-3,-0.2 --steps 1e6 --save-every 1e6");
     assert!(window.contains("its spectral radius is 1 + 0.000924"), "{window}");
     assert!(window.contains("stable with a --latency from 7steps to 92steps"), "{window}");
     // Clocks that are slow by more than 0.6325/0.6 − 1.
     let slow = reason(&format!(
-        "--integrator velocity-verlet --dt 0.6 --skew gaussian:0.1 --count 100 {steps} --output /dev/null"
+        "--integrator velocity-verlet --dt 0.6 --skew gaussian:0.1 --num-trajectories 100 {steps} --output /dev/null"
     ));
     assert!(slow.contains("at the steps of the slowest clocks, ωΔt = "), "{slow}");
     // Further than a command can brake.

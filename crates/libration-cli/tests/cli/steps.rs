@@ -18,7 +18,7 @@ fn a_run_may_have_more_steps_than_anybody_waits_for() {
     let folder = folder();
     // It overflows long before.
     let words = "simulate --system oscillator --integrator explicit-euler --dt 0.1 --format json \
-                 --steps 9007199254740992 --every 1e14";
+                 --steps 9007199254740992 --save-every 1e14";
     let json: Value = serde_json::from_str(&stdout(&folder, words)).unwrap();
     assert_eq!(json["steps"], 1_u64 << 53);
     assert_eq!(json["rows"].as_array().unwrap().len(), 2);
@@ -46,7 +46,7 @@ fn on_a_terminal(folder: &TempDir, words: &str) -> (Option<i32>, String) {
 #[test]
 fn a_terminal_shows_how_many_steps_are_taken_and_the_time_left() {
     let folder = folder();
-    let words = "simulate --system kepler --integrator rk4 --dt 1e-3 --steps 1e5 --every 1e6 \
+    let words = "simulate --system kepler --integrator rk4 --dt 1e-3 --steps 1e5 --save-every 1e6 \
                  --output x.csv";
     // More than a second of work, of which a bar is drawn every 0.2 s.
     let (code, shown) = on_a_terminal(&folder, &words.replace("1e5", "3e7"));
@@ -62,7 +62,7 @@ fn a_terminal_shows_how_many_steps_are_taken_and_the_time_left() {
 
 #[test]
 fn rows_of_csv_and_json_are_streamed_however_many_there_are() {
-    for (format, count) in [("csv", ""), ("json", ""), ("csv", "--count 100")] {
+    for (format, count) in [("csv", ""), ("json", ""), ("csv", "--num-trajectories 100")] {
         let words = format!(
             "simulate --system oscillator --integrator rk4 --dt 0.01 --steps 1e15 {count} --format {format}"
         );

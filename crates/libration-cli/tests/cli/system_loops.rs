@@ -26,7 +26,7 @@ fn a_tilted_cart_pole_with_latency_moves_as_in_an_independent_program() {
     let file = file.to_str().unwrap();
     let looped = ["--gain=-3,-40,-4,-10", "--period", "0.02", "--latency", "0.03"];
     let found =
-        rows(&[&["--system", file, "--steps", "100", "--every", "50"], &looped[..]].concat());
+        rows(&[&["--system", file, "--steps", "100", "--save-every", "50"], &looped[..]].concat());
     // Thirty lines of Python with SciPy's DOP853 from event to event, with a relative tolerance of 1e-13: states, then the command.
     let wanted = [
         [1.6031911492939075, -0.2627798147870174, -0.33699044005005063, 0.417830794357215],
@@ -45,7 +45,7 @@ fn a_tilted_cart_pole_with_latency_moves_as_in_an_independent_program() {
     assert!((found[1][10] - commands[0]).abs() < 1e-8 && (found[2][10] - commands[1]).abs() < 1e-8);
     let finer = ["--integrator", "rk4", "--dt", "0.001"];
     let words =
-        [&["--system", file, "--steps", "100", "--every", "50"], &looped[..], &finer].concat();
+        [&["--system", file, "--steps", "100", "--save-every", "50"], &looped[..], &finer].concat();
     assert!(off(&rows(&words)) < 3e-11, "{:?}", rows(&words));
 }
 
@@ -75,7 +75,7 @@ fn a_linear_system_by_its_equations_moves_as_its_plant_with_every_imperfection()
         "angle=0.1",
         "--steps",
         "80",
-        "--every",
+        "--save-every",
         "40",
         "--seed",
         "5",
@@ -87,7 +87,7 @@ fn a_linear_system_by_its_equations_moves_as_its_plant_with_every_imperfection()
     for (a, b) in exact.iter().flatten().zip(found.iter().flatten()) {
         assert!((a - b).abs() < 1e-10 * a.abs().max(1.0), "{exact:?}\n{found:?}");
     }
-    let many = ["--count", "20", "--threads", "2"];
+    let many = ["--num-trajectories", "20", "--threads", "2"];
     let all = rows(&[&["--system", file], &looped[..], &steps, &many].concat());
     // Without a spread all start alike, and the first of many is the single one.
     let first = all.iter().filter(|row| row[0] == 0.0);
@@ -105,7 +105,7 @@ fn loops_that_cannot_be_are_refused_by_name() {
     refused(&[&lqr[..], &["--q", "1"]].concat(), "--q cannot be combined");
     let twice = [&lqr[..], &["--set", "pole=1", "--set", "pole=2"]].concat();
     refused(&twice, "--set pole=2: the parameter is given twice");
-    refused(&[&lqr[..], &["--float", "f32"]].concat(), "--float cannot be combined");
+    refused(&[&lqr[..], &["--dtype", "f32"]].concat(), "--dtype cannot be combined");
     refused(&[&lqr[..], &["--skew", "uniform:0.1"]].concat(), "--skew");
     refused(&[&lqr[..], &["--integrator", "exact", "--dt", "0.01"]].concat(), "--plant FILE");
     refused(&[&lqr[..], &["--integrator", "rk4", "--dt", "1e-12"]].concat(), "1e-12");

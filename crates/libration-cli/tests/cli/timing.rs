@@ -118,7 +118,7 @@ fn rows(words: &str) -> Vec<Vec<f64>> {
 #[test]
 fn a_simulated_loop_falls_below_its_critical_latency_and_grows_above() {
     let words = "--system oscillator --set omega2=10 --integrator velocity-verlet --dt 0.01 --steps 20000 \
-                 --every 20000 --q 1 --v 0 --feedback 10,2";
+                 --save-every 20000 --q 1 --v 0 --feedback 10,2";
     let size = |latency: &str| {
         let last = rows(&format!("{words} --latency {latency}")).pop().unwrap();
         assert_eq!(last[1], 200.0);
@@ -130,7 +130,7 @@ fn a_simulated_loop_falls_below_its_critical_latency_and_grows_above() {
 
 #[test]
 fn exact_steps_are_simulated_by_name_and_only_of_linear_systems() {
-    let exact = "--integrator exact --steps 100 --every 100";
+    let exact = "--integrator exact --steps 100 --save-every 100";
     let free = rows(&format!("--system oscillator --set omega2=10 --dt 0.3 {exact}"));
     let turned = (10.0_f64.sqrt() * 30.0).cos();
     assert!((free[1][2] - turned).abs() < 1e-13, "{} {turned}", free[1][2]);
@@ -138,7 +138,7 @@ fn exact_steps_are_simulated_by_name_and_only_of_linear_systems() {
     let late = |steps: f64| {
         rows(&format!(
             "--system oscillator --set omega2=10 --dt 0.01 --feedback 10,2 --integrator exact \
-             --latency {steps}steps --steps 40000 --every 39990"
+             --latency {steps}steps --steps 40000 --save-every 39990"
         ))
     };
     let size = |row: &[f64]| 10.0 * row[2] * row[2] + row[3] * row[3];
@@ -151,16 +151,16 @@ fn exact_steps_are_simulated_by_name_and_only_of_linear_systems() {
 
 #[test]
 fn simulated_noise_follows_from_its_seed_and_time_is_that_of_a_perfect_clock() {
-    let words = "--system pendulum --integrator leapfrog --dt 0.01 --steps 1000 --every 500 \
-                 --jitter gaussian:0.1 --skew uniform:0.01 --float f32";
-    let first = rows(&format!("{words} --count 3 --seed 7"));
-    assert_eq!(first, rows(&format!("{words} --count 3 --seed 7 --threads 2")));
+    let words = "--system pendulum --integrator leapfrog --dt 0.01 --steps 1000 --save-every 500 \
+                 --jitter gaussian:0.1 --skew uniform:0.01 --dtype f32";
+    let first = rows(&format!("{words} --num-trajectories 3 --seed 7"));
+    assert_eq!(first, rows(&format!("{words} --num-trajectories 3 --seed 7 --threads 2")));
     // The same trajectory in a larger ensemble, and without a number when it is alone.
-    let more = rows(&format!("{words} --count 100 --seed 7"));
+    let more = rows(&format!("{words} --num-trajectories 100 --seed 7"));
     assert_eq!(first[..3], more[..3]);
     let alone = rows(&format!("{words} --seed 7"));
     assert_eq!(alone[2][1..], first.iter().rfind(|row| row[0] == 0.0).unwrap()[2..]);
-    let other = rows(&format!("{words} --count 3 --seed 8"));
+    let other = rows(&format!("{words} --num-trajectories 3 --seed 8"));
     assert_ne!(first[8], other[8]);
     // A clock of its own for each: 10 s, but for 1 % of skew (no more than √3 times that) and 0.3 % of jitter.
     let times: Vec<f64> = first[6..].iter().map(|row| row[2]).collect();
@@ -174,7 +174,7 @@ fn what_cannot_be_simulated_of_a_loop_is_refused_in_words() {
     for (more, told) in [
         ("--system oscillator --feedback 1,1 --latency 1e9steps", "at most 4096 steps"),
         ("--system oscillator --latency 1steps", "--feedback"),
-        ("--system oscillator --jitter gaussian:0.1 --float f16", "f64 or f32"),
+        ("--system oscillator --jitter gaussian:0.1 --dtype f16", "f64 or f32"),
         ("--system oscillator --q 1,0,0 --v 0,0,0 --skew uniform:0.1", "at most 2"),
         ("--system driven-oscillator --feedback 1,1", "without a time coordinate"),
         ("--system oscillator --seed -1", "--seed"),

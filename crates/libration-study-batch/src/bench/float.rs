@@ -32,9 +32,17 @@ impl BenchFloat {
         }
     }
 
-    /// The float of that name, if there is one.
+    /// Name in NumPy.
+    pub fn dtype(self) -> &'static str {
+        match self {
+            BenchFloat::F32 => "float32",
+            BenchFloat::F64 => "float64",
+        }
+    }
+
+    /// The float of that name, or of that name in NumPy, if there is one.
     pub fn from_name(name: &str) -> Option<BenchFloat> {
-        BenchFloat::ALL.into_iter().find(|float| float.name() == name)
+        BenchFloat::ALL.into_iter().find(|float| [float.name(), float.dtype()].contains(&name))
     }
 
     /// Bytes that one takes.

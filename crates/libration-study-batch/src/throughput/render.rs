@@ -125,7 +125,7 @@ fn answer(record: &Record, page: &mut Page) {
 fn actions(record: &Record, page: &mut Page) {
     let value = |id: &str| record.finding(id).ok().map(|f| f.measured);
     page.action(
-        "Measure the rate of your number of trajectories: `libration bench --implementation fused --count 1e4`.",
+        "Measure the rate of your number of trajectories: `libration bench --implementation fused --num-trajectories 1e4`.",
     );
     if value("throughput.fused-over-in-place.f32.1e5").is_some_and(|gain| gain > 1.0) {
         page.action(

@@ -49,7 +49,7 @@ fn a_start_is_read_or_comes_from_the_catalogue() {
 #[test]
 fn the_other_flags_are_read() {
     let (probe, setting) =
-        probe("oscillator", "--set k=4 --set m=2 --steps 1e6 --float bf16").unwrap();
+        probe("oscillator", "--set k=4 --set m=2 --steps 1e6 --dtype bf16").unwrap();
     assert_eq!(setting.system.parameters(), [("omega2", 2.0)]);
     let step = probe.args.step.unwrap();
     assert_eq!((step.integrator, step.dt), (Stepping::Method(libration::Method::Rk4), 0.01));
@@ -82,7 +82,7 @@ fn wrong_input_is_named_with_what_is_allowed() {
         ("oscillator", "--steps -5", &["--steps", "`--steps` is -5", "must be 1 to"]),
         ("oscillator", "--steps 1.5", &["'1.5'", "--steps", "not a whole number"]),
         ("oscillator", "--steps 1e300", &["--steps", "must be 1 to 9007199254740992"]),
-        ("oscillator", "--float f31", &["'f31'", "--float", "f32", "bf16"]),
+        ("oscillator", "--dtype f31", &["'f31'", "--dtype", "f32", "bf16"]),
     ];
     for (system, flags, parts) in cases {
         let message = probe(system, flags).map(|_| ()).unwrap_err();

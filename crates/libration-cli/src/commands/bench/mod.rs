@@ -79,7 +79,7 @@ fn wanted(args: &BenchArgs) -> Result<Vec<Wanted>, Failure> {
             for &count in counts {
                 let one = Wanted { implementation, float, count };
                 one.check().map_err(|error| {
-                    Failure::usage(format!("{count} trajectories (--count): {error}"))
+                    Failure::usage(format!("{count} trajectories (--num-trajectories): {error}"))
                 })?;
                 if !wanted.contains(&one) {
                     wanted.push(one);
