@@ -55,6 +55,20 @@ def choices(given: Any, num_envs: int, levels: list[float], dtype: str) -> np.nd
     return np.array(levels, dtype).take(array.astype(np.int64, copy=False))
 
 
+def real_numbers(given: Any) -> np.ndarray:
+    """Return actions as an array.
+
+    Raises
+    ------
+    TypeError
+        If they are not real numbers.
+    """
+    array = _array(given)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"actions have dtype {array.dtype}, but they must be real numbers")
+    return array
+
+
 def numbers_of(given: Any) -> np.ndarray:
     """Return a copy of actions that the engine has taken."""
     return np.array(_array(given), dtype=float)
@@ -71,7 +85,10 @@ def _array(given: Any) -> np.ndarray:
     if isinstance(given, np.ma.MaskedArray):
         raise TypeError("actions are a masked array, but all values must be present; help: use filled()")
     if isinstance(given, np.ndarray) or not hasattr(given, "__dlpack__"):
-        return np.asarray(given)
+        try:
+            return np.asarray(given)
+        except ValueError:
+            raise ValueError(f"actions are {given!r}, but they must have rows of one length") from None
     try:
         return np.from_dlpack(given)
     except RuntimeError as error:

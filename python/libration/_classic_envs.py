@@ -279,8 +279,8 @@ class ClassicEnv(ClassicAttributes, Env):
         return {**self.__dict__, "_picture": None}
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
-        if not options and self._starts == "libration":
-            return super().reset(seed=seed, options=options)
+        if options is None and self._starts == "libration":
+            return super().reset(seed=seed)
         options = options_of(options)
         if self._starts == "libration":
             return super().reset(seed=seed, options=start_ranges(self._classic, options, self._all._settings["dtype"]))

@@ -72,8 +72,13 @@ def rows_of(
         for key in names:
             if key not in value:
                 raise ValueError(f"{name} has no {key!r}, but it must have {', '.join(names)}")
-        value = np.stack(np.broadcast_arrays(*(np.asarray(value[key]) for key in names)), axis=-1)
-    array = np.asarray(value)
+        columns = [_array(f"{name}[{key!r}]", value[key]) for key in names]
+        try:
+            value = np.stack(np.broadcast_arrays(*columns), axis=-1)
+        except ValueError:
+            shapes = ", ".join(f"{key} {column.shape}" for key, column in zip(names, columns))
+            raise ValueError(f"{name} has shapes {shapes}, but each must be a number or ({rows},)") from None
+    array = _array(name, value)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} has dtype {array.dtype}, but it must have real numbers")
     if array.shape not in ((len(names),), (rows, len(names))):
@@ -86,6 +91,15 @@ def rows_of(
         n, i = np.argwhere(~finite)[0]
         raise ValueError(f"{name} has {chosen[n, i]} for {names[i]}, but it must be finite in {np.dtype(dtype).name}")
     return chosen
+
+
+def _array(name: str, value: Any) -> NDArray[Any]:
+    if isinstance(value, np.ma.MaskedArray):
+        raise TypeError(f"{name} is a masked array, but all values must be present; help: use filled()")
+    try:
+        return np.asarray(value)
+    except ValueError:
+        raise ValueError(f"{name} is {value!r}, but it must have rows of one length") from None
 
 
 def episode_numbers(settings: Mapping[str, Any], inputs: Sequence[str], drawn: NDArray[Any]) -> dict[str, NDArray[Any]]:

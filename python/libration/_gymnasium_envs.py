@@ -93,13 +93,14 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
         seed: int | list[int | None] | None = None,
         options: dict[str, Any] | None = None,
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        seeds = self._seeds(seed)
+        # A refused reset changes nothing.
+        results = self._begin(self._seeds(seed), options)
         if isinstance(seed, (int, np.integer)):
             gymnasium.vector.VectorEnv.reset(self, seed=int(seed))
         elif seed is not None:
             # Gymnasium's word for a seed that no number tells.
             self._np_random_seed = -1
-        return self._begin(seeds, options)
+        return results
 
     def _checked_render_mode(self, render_mode: str | None) -> str | None:
         return _render_mode(self._arguments[0], render_mode)
@@ -250,10 +251,11 @@ class Env(gymnasium.Env):
     ) -> tuple[np.ndarray, dict[str, Any]]:
         if options is not None and "reset_mask" in options_of(options):
             raise ValueError("options has 'reset_mask', but it belongs to vector environments")
+        # A refused reset changes nothing.
+        observations, infos = self._all.reset(seed=None if seed is None else [seed], options=options)
         super().reset(seed=seed)
         if self._action is not None:
             self._action = None
-        observations, infos = self._all.reset(seed=None if seed is None else [seed], options=options)
         return observations[0], _single(infos)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:

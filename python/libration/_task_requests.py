@@ -59,6 +59,8 @@ def task_request(system: EquationSystem, keywords: Table) -> TaskRequest:
         raise TypeError("inner_period is required with inner: the time in s between samples of the controller")
     if task["actions"] is not None:
         task["actions"] = _levels(task["actions"], keywords["dtype"])
+        if not task["actions"]:
+            raise ValueError("actions is [], but it must be at least two commands in ascending order")
     levels = tuple(_levels(_chosen(task, own, "actions", ()), keywords["dtype"]))
     chunk, length, used, controller_text = keywords["chunk"], 1, 1, None
     if chunk is not None:

@@ -13,6 +13,7 @@ from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
 from ._arrays import actions as read
+from ._arrays import choices
 from ._environment_keywords import CustomTaskKeywords, Unpack
 from ._episode_numbers import largest
 from ._gymnasium_envs import VectorEnv
@@ -99,6 +100,8 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
     ) -> tuple[NDArray[Any], dict[str, Any]]:
         with self._turn:
             observations, infos = self.inner.reset(seed=seed, options=options)
+            if seed is not None:
+                self._np_random, self._np_random_seed = self.inner._np_random, self.inner._np_random_seed
             mask = (options or {}).get("reset_mask")
             self._ended[slice(None) if mask is None else mask] = False
             return observations, infos
@@ -119,9 +122,11 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
         # Terminations of the engine hold even if the task fails.
         self._ended = lost | truncated
         shape = (self.num_envs, len(self.inner.preset.actions))
-        taken = read(actions, shape, rewards.dtype.name).reshape(shape)
+        levels, dtype = self.inner._settings["levels"], rewards.dtype.name
+        taken = (choices(actions, self.num_envs, levels, dtype) if levels else read(actions, shape, dtype)).reshape(shape)
+        most = self._most.astype(dtype)
         try:
-            paid = self.task(before, np.clip(taken, -self._most, self._most), self.states)
+            paid = self.task(before, np.clip(taken, -most, most), self.states)
             given, over = paid if isinstance(paid, tuple) else (paid, np.zeros(self.num_envs, bool))
             rewards = self._row("rewards", given, "fiu").astype(observations.dtype)
             terminated = (self._row("ends of episodes", over, "b") & ~began) | lost

@@ -389,14 +389,10 @@ class Environments(_native.Batch):
         if isinstance(seed, (int, np.integer)) and not isinstance(seed, bool):
             seeds: list[int | None] = [int(seed) + n for n in range(self.num_envs)]
         else:
-            try:
-                if isinstance(seed, (str, bytes, bytearray)):
-                    raise TypeError
-                seeds = list(seed)
-            except TypeError:
-                raise TypeError(
-                    f"seed must be an integer, a list or None, not {type(seed).__name__}"
-                ) from None
+            # Sets and dictionaries have no order, and strings are no seeds.
+            if not isinstance(seed, (list, tuple, range, np.ndarray)) or isinstance(seed, np.ma.MaskedArray) or np.ndim(seed) == 0:
+                raise TypeError(f"seed must be an integer, a list or None, not {type(seed).__name__}")
+            seeds = list(seed)
         if len(seeds) != self.num_envs:
             raise ValueError(
                 f"there are {len(seeds)} seeds, but there must be one for each of "
@@ -408,7 +404,7 @@ class Environments(_native.Batch):
         return seeds
 
     def _mask(self, mask: Any, name: str = "options['reset_mask']") -> np.ndarray:
-        if not isinstance(mask, np.ndarray):
+        if not isinstance(mask, np.ndarray) or isinstance(mask, np.ma.MaskedArray):
             raise TypeError(f"{name} must be a NumPy array, not {type(mask).__name__}")
         if mask.shape != (self.num_envs,):
             raise ValueError(

@@ -6,12 +6,13 @@ from typing import Any
 
 import gymnasium
 import numpy as np
-from gymnasium.error import ResetNeeded
+from gymnasium.error import ClosedEnvironmentError, ResetNeeded
 from gymnasium.spaces import Box
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
+from ._arrays import real_numbers
 from ._environment_keywords import LoopKeywords, Unpack
 from ._episode_states import options_of
 from ._settings import count, nearest, number
@@ -99,6 +100,7 @@ class LinearVectorEnv(gymnasium.vector.VectorEnv):
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float64], dict[str, Any]]:
         """Begin an episode in all environments; ``seed`` is a number. There are no ``options``."""
+        self._expect_open()
         if isinstance(seed, list):
             raise TypeError("seed is a list; expected a number: environment n draws from stream n of one seed")
         for name in options_of(options):
@@ -106,6 +108,10 @@ class LinearVectorEnv(gymnasium.vector.VectorEnv):
         super().reset(seed=seed)
         observations = self._begin()
         return observations, {}
+
+    def _expect_open(self) -> None:
+        if self.closed:
+            raise ClosedEnvironmentError("the environments are closed; expected open ones")
 
     def _begin(self) -> NDArray[np.float64]:
         start = self.np_random.uniform(-self._start, self._start, (self.num_envs, len(self._start)))
@@ -118,12 +124,13 @@ class LinearVectorEnv(gymnasium.vector.VectorEnv):
     def step(
         self, actions: ArrayLike
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
+        self._expect_open()
         if self._cost is None:
             raise ResetNeeded("step was called before reset; expected reset first")
         nothing = np.zeros(self.num_envs, dtype=bool)
         if self._ended:
             return self._begin(), np.zeros(self.num_envs), nothing, nothing.copy(), {}
-        commands = np.asarray(actions, dtype=np.float64)
+        commands = real_numbers(actions).astype(np.float64)
         if commands.shape != self.action_space.shape:
             raise ValueError(f"actions have shape {commands.shape}; expected {self.action_space.shape}")
         commands = np.ascontiguousarray(np.clip(commands, -self._most, self._most))

@@ -140,3 +140,19 @@ def test_a_copy_of_a_task_s_environments_is_another():
     for mine, theirs in zip(own.step(np.ones(3))[:4], third.step(np.ones(3))[:4]):
         np.testing.assert_array_equal(mine, theirs)
     np.testing.assert_array_equal(own.states, twin.states)
+
+
+def test_a_task_sees_the_commands_of_discrete_actions():
+    arm, seen = libration.System(acceleration={"q": "u - 3*q"}, inputs=["u"]), []
+
+    def paid(before, commands, after):
+        seen.append(commands[:, 0].tolist())
+        return -(commands[:, 0] ** 2)
+
+    own = CustomTaskVectorEnv(arm, 3, task=paid, dt=0.02, actions=[-5.0, 0.0, 5.0])
+    built_in = libration.VectorEnv(arm, 3, dt=0.02, reward="-u^2", actions=[-5.0, 0.0, 5.0])
+    for env in (own, built_in):
+        env.reset(seed=7)
+    actions = np.array([0, 1, 2])
+    np.testing.assert_array_equal(own.step(actions)[1], built_in.step(actions)[1])
+    assert seen == [[-5.0, 0.0, 5.0]] and own.np_random_seed == 7

@@ -4,6 +4,7 @@ import copy
 
 import numpy as np
 import pytest
+from gymnasium.error import ClosedEnvironmentError
 
 import libration
 from libration import Environments, System, VectorEnv
@@ -19,7 +20,7 @@ def test_a_latency_of_many_steps_is_shown_in_few_digits(given):
         Environments("Pendulum", 2, action_delay=1e300, **given)
 
 
-@pytest.mark.parametrize("options", [5, 0, [], "ab", [("state", 1)]])
+@pytest.mark.parametrize("options", [5, 0, [], "ab", [("state", 1)], np.array([]), np.array([1, 2])])
 @pytest.mark.parametrize(
     "make",
     [
@@ -107,3 +108,56 @@ def test_a_single_environment_keeps_no_action_of_the_caller():
     env.reset(seed=0)
     env.step(memoryview(np.ones(1, np.float32)))
     assert copy.deepcopy(env).state.tolist() == env.state.tolist()
+
+
+@pytest.mark.parametrize("refused", [{"seed": 7, "options": {"stat": 1}}, {"seed": 7, "options": {"state": [1.0]}}, {"seed": -7}])
+def test_a_refused_reset_changes_no_seed_and_no_start(refused):
+    for make in [lambda: CartPoleEnv(starts="gymnasium"), lambda: CartPoleVectorEnv(2, starts="gymnasium"), lambda: VectorEnv("Pendulum", 2)]:
+        env, other = make(), make()
+        for one in (env, other):
+            one.reset(seed=5)
+        with pytest.raises(ValueError):
+            env.reset(**refused)
+        assert env.np_random_seed == 5
+        np.testing.assert_array_equal(env.reset()[0], other.reset()[0])
+
+
+@pytest.mark.parametrize("make", [lambda: VectorEnv("Pendulum", 2), lambda: CartPoleVectorEnv(2, starts="gymnasium")])
+def test_masked_arrays_are_no_masks_no_states_and_no_seeds(make):
+    env = make()
+    width = env.reset(seed=0)[0].shape[1] if isinstance(env, CartPoleVectorEnv) else 2
+    with pytest.raises(TypeError, match=r"options\['reset_mask'\] must be a NumPy array, not MaskedArray"):
+        env.reset(options={"reset_mask": np.ma.array([True, True], mask=[False, True])})
+    with pytest.raises(TypeError, match=r"options\['state'\] is a masked array, but all values must be present"):
+        env.reset(options={"state": np.ma.array(np.zeros(width), mask=np.arange(width) == 1)})
+    for seed in [{1: 2, 3: 4}, {1, 2}, iter([1, 2]), "12", np.ma.array([1, 2])]:
+        with pytest.raises(TypeError, match="seed must be an integer, a list or None, not"):
+            env.reset(seed=seed)
+
+
+def test_rows_of_different_lengths_are_an_error_with_the_name():
+    env = VectorEnv("Pendulum", 2)
+    env.reset(seed=0)
+    with pytest.raises(ValueError, match=r"options\['state'\] is \[\[1, 2\], \[3\]\], but it must have rows of one length"):
+        env.reset(options={"state": [[1, 2], [3]]})
+    with pytest.raises(ValueError, match=r"options\['state'\] has shapes position \(2,\), velocity \(3,\), but each must be a number or \(2,\)"):
+        env.reset(options={"state": {"position": [1, 2], "velocity": [1, 2, 3]}})
+    with pytest.raises(ValueError, match=r"actions are \[\[1\], \[1, 2\]\], but they must have rows of one length"):
+        env.step([[1], [1, 2]])
+
+
+def test_no_commands_are_an_error():
+    with pytest.raises(ValueError, match=r"^actions is \[\], but it must be at least two commands in ascending order$"):
+        VectorEnv(ARM, 2, dt=0.02, reward="-q^2", actions=[])
+
+
+def test_loops_around_a_plant_are_closed_and_take_real_numbers():
+    env = libration.LinearVectorEnv(libration.LinearPlant.mechanical(1.0, 0.1, 10.0, 1.0), 2, period=0.01)
+    env.reset(seed=0)
+    for actions, message in [(np.ones((2, 1)) * 1j, "complex128"), ([["a"], ["b"]], "<U1"), (np.ma.array(np.ones((2, 1)), mask=True), "masked")]:
+        with pytest.raises(TypeError, match=message):
+            env.step(actions)
+    env.close()
+    for call in (env.reset, lambda: env.step(np.ones((2, 1)))):
+        with pytest.raises(ClosedEnvironmentError):
+            call()

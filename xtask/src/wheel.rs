@@ -166,6 +166,7 @@ mod tests {
                 "test_classic_control.py",
                 "test_copies.py",
                 "test_custom.py",
+                "test_environment_errors.py",
                 "test_environment_pages.py",
                 "test_first_hour.py",
                 "test_gymnasium_vector_suite.py",
