@@ -28,9 +28,15 @@ def actions(given: Any, shape: Sequence[int], dtype: str) -> np.ndarray:
         raise ValueError(
             f"actions have shape {array.shape}, but it must be {' or '.join(map(str, allowed))}"
         )
-    # Values too large for the dtype become infinite; the engine rejects them.
     with np.errstate(over="ignore"):
-        return array.reshape(shape if shape[1] > 1 else array.shape).astype(dtype, order="C")
+        converted = array.reshape(shape if shape[1] > 1 else array.shape).astype(dtype, order="C")
+    beyond = np.isfinite(array).reshape(converted.shape) & ~np.isfinite(converted)
+    if beyond.any():
+        place = tuple(int(i) for i in np.argwhere(beyond.reshape(shape))[0])
+        index = ", ".join(map(str, place[: 1 if shape[1] == 1 else 2]))
+        raise ValueError(f"actions[{index}] is {array.reshape(shape)[place]}, but it must be finite in {dtype}")
+    # The engine refuses what is not finite itself.
+    return converted
 
 
 def choices(given: Any, num_envs: int, levels: list[float], dtype: str) -> np.ndarray:

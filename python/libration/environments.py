@@ -524,7 +524,10 @@ def _name_of(dtype: Any) -> str:
     # NumPy takes None for float64.
     if dtype is None:
         raise TypeError("dtype must be float32 or float64, not None")
-    return np.dtype(dtype).name
+    try:
+        return np.dtype(dtype).name
+    except TypeError:
+        raise TypeError(f"dtype must be float32 or float64, not {dtype!r}") from None
 
 
 def _again(cls: Any, made_of: Any, state: Any, seeder: Any, extras: dict[str, Any]) -> Any:

@@ -161,3 +161,12 @@ def test_loops_around_a_plant_are_closed_and_take_real_numbers():
     for call in (env.reset, lambda: env.step(np.ones((2, 1)))):
         with pytest.raises(ClosedEnvironmentError):
             call()
+
+
+def test_an_action_beyond_the_float_type_is_shown_as_it_was_given():
+    env = VectorEnv("Pendulum", 2)
+    env.reset(seed=0)
+    with pytest.raises(ValueError, match=r"^actions\[1\] is 1e\+39, but it must be finite in float32$"):
+        env.step([0.0, 1e39])
+    with pytest.raises(TypeError, match="^dtype must be float32 or float64, not 'foo'$"):
+        VectorEnv("Pendulum", 2, dtype="foo")

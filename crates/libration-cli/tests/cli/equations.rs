@@ -51,22 +51,13 @@ fn a_pendulum_by_equations_has_the_trajectory_of_the_catalogue() {
     let path = written(&folder, "mine.toml", text);
     for float in ["f64", "f32", "f16", "bf16"] {
         let rows = |system: &[&str]| {
-            let step = [
-                "--integrator",
-                "yoshida4",
-                "--dt",
-                "0.01",
-                "--steps",
-                "100",
-                "--save-every",
-                "50",
-            ];
+            let step = "--integrator yoshida4 --dt 0.01 --steps 100 --save-every 50";
             let words: Vec<&str> = ["simulate"]
                 .iter()
                 .chain(system)
-                .chain(&step)
                 .chain(&["--dtype", float])
                 .copied()
+                .chain(step.split(' '))
                 .collect();
             let run = libration(&words).success();
             let text = String::from_utf8(run.get_output().stdout.clone()).unwrap();
