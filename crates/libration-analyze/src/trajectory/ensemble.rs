@@ -138,7 +138,7 @@ scalar_only!(f16 bf16);
 /// The error of an ensemble or a loop in a float type without native arithmetic.
 fn no_vectors<S: Number>() -> TrajectoryError {
     TrajectoryError::Value {
-        name: "dtype",
+        name: "float",
         value: S::NAME.to_owned(),
         allowed: "f64 or f32 for ensembles and loops".to_owned(),
     }

@@ -15,7 +15,7 @@ pub enum TrajectoryError {
     /// A value of the request is invalid.
     #[error("`{name}` is {value}, but it must be {allowed}")]
     Value {
-        /// The field of the request and the name of its flag.
+        /// The field of the request.
         name: &'static str,
         /// The given value.
         value: String,

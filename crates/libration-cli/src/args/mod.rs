@@ -55,7 +55,7 @@ pub(crate) use probe::ProbeArgs;
 pub(crate) use quoted::quoted;
 pub(crate) use rollout::{JoinArgs, RolloutArgs, VerifyArgs};
 pub(crate) use serve::ServeArgs;
-pub(crate) use simulate::SimulateArgs;
+pub(crate) use simulate::{SimulateArgs, option_of};
 pub(crate) use system::{StepArgs, SystemArgs};
 pub(crate) use timing::CostArgs;
 pub(crate) use topic::{ClockName, TimeUnitName, TopicArgs};

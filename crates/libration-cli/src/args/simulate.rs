@@ -120,6 +120,16 @@ Until the first command arrives, the command is 0.
 The bits of a trajectory are independent of --num-trajectories, --simd and --threads.
 The output file appears only when it is complete.";
 
+/// The option that sets a field of a request.
+pub(crate) fn option_of(field: &str) -> &str {
+    match field {
+        "count" => "num-trajectories",
+        "every" => "save-every",
+        "float" => "dtype",
+        same => same,
+    }
+}
+
 /// Parses a stride; also as `1e3`.
 pub(super) fn every(text: &str) -> Result<u64, String> {
     let stride = whole_number(text).and_then(|n| u64::try_from(n).ok()).filter(|&n| n >= 1);

@@ -20,7 +20,7 @@ use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::{Document, Fault};
 
 use super::{adaptive_steps, config_file, equation_file, equation_loop, time_stamps};
-use crate::args::SimulateArgs;
+use crate::args::{SimulateArgs, option_of};
 use crate::error::Failure;
 use crate::output_file::OutputFile;
 use crate::{interrupt, progress, terminal};
@@ -282,7 +282,7 @@ pub(super) fn failure(error: TrajectoryError) -> Failure {
     match error {
         TrajectoryError::Ensemble(error) => Failure::ensemble(&error),
         TrajectoryError::Value { name, value, allowed } => {
-            Failure::usage(format!("--{name} is {value}; expected {allowed}"))
+            Failure::usage(format!("--{} is {value}; expected {allowed}", option_of(name)))
         }
         TrajectoryError::Parameter { .. } => Failure::usage(format!("{error} (--dtype)")),
         TrajectoryError::Bodies(_)
