@@ -389,7 +389,7 @@ class Environments(_native.Batch):
         if isinstance(seed, (int, np.integer)) and not isinstance(seed, bool):
             seeds: list[int | None] = [int(seed) + n for n in range(self.num_envs)]
         else:
-            # Sets and dictionaries have no order, and strings are no seeds.
+            # Sets have no order, and dictionaries and strings are no seeds.
             if not isinstance(seed, (list, tuple, range, np.ndarray)) or isinstance(seed, np.ma.MaskedArray) or np.ndim(seed) == 0:
                 raise TypeError(f"seed must be an integer, a list or None, not {type(seed).__name__}")
             seeds = list(seed)

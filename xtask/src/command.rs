@@ -13,7 +13,7 @@ use crate::{Outcome, processor_time, workspace};
 pub(crate) fn program(path: impl AsRef<OsStr>) -> Command {
     let mut command = Command::new(path);
     command.current_dir(workspace::root()).stdin(Stdio::null());
-    // Modules are compiled by whoever imports them first, not once more by each process.
+    // The first process that imports a module compiles it for all others.
     command.env_remove("PYTHONDONTWRITEBYTECODE");
     command
 }
