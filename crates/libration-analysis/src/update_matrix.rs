@@ -98,8 +98,13 @@ impl<S: Scalar, const D: usize> UpdateMatrix<S, D> {
     }
 
     /// The matrix with every entry on another number type.
-    pub fn map<T>(&self, f: impl Fn(S) -> T + Copy) -> UpdateMatrix<T, D> {
-        UpdateMatrix { dq: self.dq.map(|c| c.map(f)), dv: self.dv.map(|c| c.map(f)) }
+    pub fn map<T: Scalar>(&self, f: impl Fn(S) -> T) -> UpdateMatrix<T, D> {
+        let zero = State { q: [T::zero(); D], v: [T::zero(); D] };
+        let mut image = UpdateMatrix { dq: [zero; D], dv: [zero; D] };
+        for i in 0..D {
+            (image.dq[i], image.dv[i]) = (self.dq[i].map(&f), self.dv[i].map(&f));
+        }
+        image
     }
 
     /// Sum of the diagonal.

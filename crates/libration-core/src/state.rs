@@ -2,7 +2,7 @@
 
 use core::ops::Add;
 
-use crate::array::each;
+use crate::array::{self, each};
 use crate::{Scalar, System};
 
 /// Position `q` and velocity `v` of a system with `D` degrees of freedom.
@@ -62,8 +62,8 @@ impl<S: Scalar, const D: usize> State<S, D> {
 
     /// The same point on another number type.
     #[inline(always)]
-    pub fn map<T>(self, f: impl Fn(S) -> T) -> State<T, D> {
-        State { q: self.q.map(&f), v: self.v.map(&f) }
+    pub fn map<T: Scalar>(self, f: impl Fn(S) -> T) -> State<T, D> {
+        State { q: array::map(self.q, &f), v: array::map(self.v, &f) }
     }
 
     /// The coordinates `q₀ … q_{D−1}, v₀ … v_{D−1}`.

@@ -53,19 +53,19 @@ impl Regression {
         if let Some(gain) = gain {
             coefficients[COMMAND] = gain;
         }
-        let residuals: Vec<f64> = (0..count)
-            .map(|i| {
-                let fit: f64 = row(i).iter().zip(&coefficients).map(|(x, c)| x * c).sum();
-                (whitened.responses[i] - fit) * weights[i].sqrt()
-            })
-            .collect();
-        Regression {
-            sum_of_squares: residuals.iter().map(|residual| residual * residual).sum(),
-            log_scales: whitened.scales.iter().map(|scale| scale.ln()).sum(),
-            coefficients,
-            residuals,
-            solved,
+        let mut residuals = Vec::with_capacity(count);
+        let (mut sum_of_squares, mut log_scales) = (0.0, 0.0);
+        for (i, weight) in weights.iter().enumerate() {
+            let mut fit = 0.0;
+            for (x, c) in row(i).iter().zip(&coefficients) {
+                fit += x * c;
+            }
+            let residual = (whitened.responses[i] - fit) * weight.sqrt();
+            sum_of_squares += residual * residual;
+            log_scales += whitened.scales[i].ln();
+            residuals.push(residual);
         }
+        Regression { sum_of_squares, log_scales, coefficients, residuals, solved }
     }
 
     /// The variance `σ²` of greatest likelihood.

@@ -52,6 +52,10 @@ struct Filter<'a> {
     /// States × states.
     covariance: Vec<f64>,
     scratch: Vec<f64>,
+    /// Width.
+    innovations: Vec<f64>,
+    /// States.
+    gains: Vec<f64>,
     has_covariance: bool,
 }
 
@@ -133,6 +137,8 @@ impl<'a> Filter<'a> {
             means,
             covariance,
             scratch: vec![0.0; states * width.max(states)],
+            innovations: vec![0.0; width],
+            gains: vec![0.0; states],
             has_covariance: is_coloured || noise.moves_plant(),
         }
     }
@@ -204,33 +210,44 @@ impl<'a> Filter<'a> {
         }
     }
 
-    /// Takes a response, and leaves the innovations.
+    /// Takes a response, and leaves the innovations. Sums are plain loops: most of an identification is spent in them.
     fn measure(&mut self, command: f64, response: f64, whitened: &mut Whitened) {
         let (n, width, states) = (self.plant.states(), self.width, self.states);
         let c = |i: usize| if i < n { self.plant.c[i] } else { 1.0 };
-        let output = |means: &[f64], column: usize| -> f64 {
-            (0..states).map(|i| c(i) * means[i * width + column]).sum()
-        };
         // Of regressors the coloured state is that of the filter with its sign turned: all columns but the last are `C m`.
-        let mut innovations: Vec<f64> =
-            (0..width).map(|column| output(&self.means, column)).collect();
+        let innovations = &mut self.innovations[..];
+        innovations.fill(0.0);
+        for i in 0..states {
+            let means = &self.means[i * width..(i + 1) * width];
+            innovations.iter_mut().zip(means).for_each(|(sum, mean)| *sum += c(i) * mean);
+        }
         innovations[COMMAND] += self.plant.d * command;
         innovations[LOAD] += self.plant.d;
         innovations[width - 1] = response - innovations[width - 1];
         let mut scale = self.noise.white;
         if self.has_covariance {
-            let gains: Vec<f64> = (0..states)
-                .map(|i| (0..states).map(|j| self.covariance[i * states + j] * c(j)).sum())
-                .collect();
-            scale += (0..states).map(|i| c(i) * gains[i]).sum::<f64>();
-            let (response, regressors) = innovations.split_last().unwrap_or((&0.0, &[]));
+            let mut variance = 0.0;
             for i in 0..states {
-                let gain = gains[i] / scale;
+                let row = &self.covariance[i * states..(i + 1) * states];
+                let mut gain = 0.0;
+                for (j, entry) in row.iter().enumerate() {
+                    gain += entry * c(j);
+                }
+                self.gains[i] = gain;
+                variance += c(i) * gain;
+            }
+            scale += variance;
+            for i in 0..states {
+                let gain = self.gains[i] / scale;
                 let means = &mut self.means[i * width..(i + 1) * width];
-                means.iter_mut().zip(regressors).for_each(|(mean, error)| *mean -= gain * error);
-                means[width - 1] += gain * response;
+                for (mean, error) in means.iter_mut().zip(&innovations[..width - 1]) {
+                    *mean -= gain * error;
+                }
+                means[width - 1] += gain * innovations[width - 1];
                 let row = &mut self.covariance[i * states..(i + 1) * states];
-                row.iter_mut().zip(&gains).for_each(|(entry, other)| *entry -= gain * other);
+                for (entry, other) in row.iter_mut().zip(&self.gains) {
+                    *entry -= gain * other;
+                }
             }
         }
         whitened.regressors.extend_from_slice(&innovations[..width - 1]);

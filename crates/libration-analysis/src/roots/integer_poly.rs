@@ -22,7 +22,9 @@ impl IntegerPoly {
         while coefficients.last().is_some_and(|c| c.sign() == Sign::NoSign) {
             coefficients.pop();
         }
-        let content = coefficients.iter().fold(BigInt::ZERO, |g, c| g.gcd(c));
+        // The first two already have nearly all of it; the remainders of the others are then small, and most are zero.
+        let reduced = |g: &BigInt, c: &BigInt| if g == &BigInt::ZERO { c.clone() } else { c % g };
+        let content = coefficients.iter().fold(BigInt::ZERO, |g, c| g.gcd(&reduced(&g, c)));
         for c in &mut coefficients {
             *c = &*c / &content;
         }

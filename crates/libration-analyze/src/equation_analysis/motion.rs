@@ -83,8 +83,8 @@ pub struct EnergyChange {
 /// The most steps over which errors are estimated.
 const ERROR_STEPS: u64 = 1000;
 
-/// Operations of all steps of a motion: some seconds.
-const MOST_OPERATIONS: u64 = 1 << 31;
+/// Operations of all steps of a motion: less than a second.
+const MOST_OPERATIONS: u64 = 1 << 29;
 
 /// Steps between two checks of the stop flag.
 const CHUNK: u64 = 1 << 12;

@@ -1,9 +1,8 @@
 //! The steps of a block of trajectories: the scalar step in a loop over lanes.
 
-use core::array::from_fn;
 use core::marker::PhantomData;
 
-use libration_core::array::each;
+use libration_core::array::{each, rows};
 use libration_core::{Float, Integrator, Scalar, State, System};
 use pulp::{Simd, WithSimd};
 
@@ -84,7 +83,7 @@ where
         for b in 0..count {
             let systems = systems.lanes::<W>(first + b * W, W);
             let dt = dt.lanes::<W>(first + b * W, W);
-            let block = (from_fn(|i| q[i][b]), from_fn(|i| v[i][b]));
+            let block = (rows(|i| q[i][b]), rows(|i| v[i][b]));
             let (next_q, next_v) =
                 advanced::<T, M, A, C, Sys, D, W>(method, &systems, &dt, block, steps);
             for i in 0..D {

@@ -4,7 +4,8 @@ use core::array::from_fn;
 use core::mem::take;
 
 use bytemuck::Pod;
-use libration_core::State;
+use libration_core::array::rows;
+use libration_core::{Scalar, State};
 
 use super::assign::padded;
 use super::{Buffer, EnsembleError, InsufficientMemory, Lanes, Pages};
@@ -118,8 +119,11 @@ impl<'a, T: Copy, const D: usize> Share<'a, T, D> {
 
     /// All of them in arrays of a fixed size; lanes beyond the last trajectory repeat it.
     #[inline(always)]
-    pub(super) fn load<const W: usize>(&self) -> ([[T; W]; D], [[T; W]; D]) {
-        (from_fn(|i| padded(self.q[i])), from_fn(|i| padded(self.v[i])))
+    pub(super) fn load<const W: usize>(&self) -> ([[T; W]; D], [[T; W]; D])
+    where
+        T: Scalar,
+    {
+        (rows(|i| padded(self.q[i])), rows(|i| padded(self.v[i])))
     }
 
     /// Takes back what [`Share::load`] gave.

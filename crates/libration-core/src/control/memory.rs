@@ -3,7 +3,7 @@
 use core::fmt::Debug;
 
 use crate::Scalar;
-use crate::array::each;
+use crate::array::{each, rows};
 
 /// Numbers that a clock, a delay or a controller keeps of every trajectory: part of the state of a loop.
 ///
@@ -43,7 +43,7 @@ impl<T: Scalar + Send + Sync, const N: usize> Memory<T> for [T; N] {
 
     #[inline(always)]
     fn load<const W: usize>(row: &impl Fn(usize) -> [T; W]) -> [[T; W]; N] {
-        core::array::from_fn(row)
+        rows(row)
     }
 
     #[inline(always)]
@@ -54,7 +54,7 @@ impl<T: Scalar + Send + Sync, const N: usize> Memory<T> for [T; N] {
     }
 
     fn single_lane(self) -> [[T; 1]; N] {
-        self.map(|value| [value])
+        rows(|i| [self[i]])
     }
 
     #[inline(always)]

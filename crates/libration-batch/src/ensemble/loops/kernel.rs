@@ -1,9 +1,9 @@
 //! The steps of a block of loops: one scalar step in a loop over lanes.
 
-use core::array::from_fn;
 use core::ops::Range;
 
 use bytemuck::Pod;
+use libration_core::array::rows;
 use libration_core::control::delay::Event;
 use libration_core::control::{Clock, Controller, Delay, Disturbance, Memory};
 use libration_core::random::EPOCH;
@@ -78,7 +78,7 @@ where
         let (mut q, mut v) = (Lines(q), Lines(v));
         let mut held = Lines([[zero; W]; D]);
         if K::ACTS {
-            held = Lines(from_fn(|i| memory.get(layout.held + i, zero)));
+            held = Lines(rows(|i| memory.get(layout.held + i, zero)));
         }
         let mut pushed = Lines([[zero; W]; D]);
         let mut clocks = C::Memory::load(&|i| memory.get(layout.clock + i, zero));
@@ -102,7 +102,7 @@ where
         macro_rules! look_where {
             ($place:expr, $l:ident, $looks:expr) => {{
                 let place = layout.ring + $place * D;
-                let mut commands: [[T; W]; D] = from_fn(|i| memory.get(place + i, zero));
+                let mut commands: [[T; W]; D] = rows(|i| memory.get(place + i, zero));
                 for $l in 0..W {
                     let state = State { q: at(&q.0, $l), v: at(&v.0, $l) };
                     let mut own = K::Memory::lane(&controllers, $l);
@@ -118,7 +118,7 @@ where
         macro_rules! act {
             ($place:expr) => {{
                 let place = layout.ring + $place * D;
-                held.0 = from_fn(|i| memory.get(place + i, zero));
+                held.0 = rows(|i| memory.get(place + i, zero));
             }};
         }
         // All that acts on a lane besides the system's own forces.
