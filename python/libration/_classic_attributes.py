@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ._attributes import copied, keywords_of
 from ._classic_systems import CLASSIC, ClassicSystem
 from ._environment_keywords import BatchKeywords, ClassicKeywords
+from ._gymnasium_envs import checked_render_mode
 from ._settings import shown
 from .environments import Environments
 
@@ -288,16 +289,13 @@ class ClassicAttributes:
                 table[name] = value.tolist() if is_each else [value] * num_envs
         return [{name: values[n] for name, values in table.items()} for n in range(num_envs)]
 
-    def _checked_render_mode(self, render_mode: str | None) -> str | None:
-        raise NotImplementedError
-
     def __setattr__(self, name: str, value: Any) -> None:
         if not name.startswith("_") and self._is_made:
             own = getattr(type(self), name, None)
             if not (isinstance(own, property) and own.fset is not None):
                 self._refuse(name, value)
             if name == "render_mode":
-                value = self._checked_render_mode(value)
+                value = checked_render_mode(value)
         super().__setattr__(name, value)
 
     def _refuse(self, name: str, value: Any) -> None:

@@ -19,8 +19,8 @@ from ._classic_starts import drawn_start, start_bounds, start_ranges
 from ._classic_systems import CLASSIC, ClassicSystem, system_of
 from ._environment_keywords import BatchKeywords, ClassicKeywords
 from ._episode_states import options_of
-from ._gymnasium_envs import Env, RoundedBatch, VectorEnv
-from ._settings import OPTIONS, ends, nearest
+from ._gymnasium_envs import Env, RoundedBatch, VectorEnv, checked_render_mode
+from ._settings import OPTIONS, ends, least, nearest, shown
 from ._spec_keywords import keyword_value
 from .environments import Environments
 
@@ -36,6 +36,9 @@ def _with_defaults(classic: ClassicSystem, starts: Any, given: dict[str, Any]) -
         if key not in OPTIONS and key not in parameters:
             known = {*BatchKeywords.__optional_keys__, *ClassicKeywords.__optional_keys__, *parameters}
             raise TypeError(f"unexpected keyword argument {key!r}: {nearest(key, known)}")
+    for key in classic.positive:
+        if key in given and not least(given[key]) > 0:
+            raise ValueError(f"{key} is {shown(given[key])}, but it must be greater than 0")
     if starts not in STARTS:
         raise ValueError(f"starts is {starts!r}: {nearest(str(starts), STARTS)}")
     if starts == "gymnasium" and given.get("start") is not None:
@@ -120,9 +123,9 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
         given.setdefault("max_episode_steps", self._classic.max_episode_steps)
         super().__init__(system_of(name), num_envs, **_with_defaults(self._classic, starts, given))
         self._given = copied({"num_envs": num_envs, "starts": starts, "render_mode": render_mode, **given})
-        self.render_mode = self._checked_render_mode(render_mode)
+        self.render_mode = checked_render_mode(render_mode)
         self._picture: _Picture | None = None
-        self.metadata = {**self.metadata, "render_modes": ["rgb_array"], "render_fps": _FPS[self._classic.name]}
+        self.metadata = {**self.metadata, "render_modes": ["rgb_array"], "render_fps": _frames(self._classic, self._settings["dt"])}
         self.single_observation_space = _seen(self._classic, self._settings, given, self.single_observation_space)
         self.single_action_space = _action_space(self._classic, given, self.single_action_space)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
@@ -130,9 +133,6 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
         self._generators: list[np.random.Generator | None] = [None] * self.num_envs
         self._ended = np.zeros(self.num_envs, bool)
         self._finish()
-
-    def _checked_render_mode(self, render_mode: str | None) -> str | None:
-        return _render_mode(render_mode)
 
     def _batch(self) -> VectorEnv:
         return self
@@ -254,15 +254,12 @@ class ClassicEnv(ClassicAttributes, Env):
     def __init__(self, name: str, /, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
         self._classic, self._starts = _classic(name), starts
         super().__init__(system_of(name), **_with_defaults(self._classic, starts, given))
-        self.render_mode = self._checked_render_mode(render_mode)
+        self.render_mode = checked_render_mode(render_mode)
         self._picture: _Picture | None = None
-        self.metadata = {"render_modes": ["rgb_array"], "render_fps": _FPS[self._classic.name]}
+        self.metadata = {"render_modes": ["rgb_array"], "render_fps": _frames(self._classic, self._all._settings["dt"])}
         self.observation_space = _seen(self._classic, self._all._settings, given, self.observation_space)
         self.action_space = _action_space(self._classic, given, self.action_space)
         self._finish()
-
-    def _checked_render_mode(self, render_mode: str | None) -> str | None:
-        return _render_mode(render_mode)
 
     def _batch(self) -> Environments:
         return self._all
@@ -316,10 +313,10 @@ class ClassicEnv(ClassicAttributes, Env):
         super().close()
 
 
-def _render_mode(render_mode: str | None) -> str | None:
-    if render_mode not in (None, "rgb_array"):
-        raise ValueError(f"render_mode is {render_mode!r}, but it must be 'rgb_array' or None")
-    return render_mode
+_FPS: Mapping[str, int] = {"CartPole": 50, "Pendulum": 30, "MountainCar": 30, "MountainCarContinuous": 30, "Acrobot": 15}
+"""Frames per second of Gymnasium's environments."""
 
 
-_FPS = {"CartPole": 50, "Pendulum": 30, "MountainCar": 30, "MountainCarContinuous": 30, "Acrobot": 15}
+def _frames(classic: ClassicSystem, dt: float) -> int:
+    """Return the frames per second of pictures: those of Gymnasium, in proportion where a step takes another time."""
+    return max(1, round(_FPS[classic.name] * classic.dt / dt))

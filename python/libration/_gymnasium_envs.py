@@ -20,6 +20,7 @@ from ._spaces import single_spaces
 from ._spec_keywords import JSON_SPEC
 from .environments import Environments
 from .equations import EquationSystem
+from .linear import LinearPlant
 from .systems import System, with_commands
 
 _ATTRIBUTES = ("action_space", "metadata", "observation_space", "render_mode", "spec", "state")
@@ -27,21 +28,29 @@ _ATTRIBUTES = ("action_space", "metadata", "observation_space", "render_mode", "
 METADATA: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 30}
 
 
-def _metadata(name: str | EquationSystem, settings: Any) -> dict[str, Any]:
-    """Return what is known of an environment, with pictures in real time; a system by equations has none."""
-    if isinstance(name, EquationSystem):
-        return {"render_modes": []}
+def _metadata(settings: Any) -> dict[str, Any]:
+    """Return what is known of an environment, with pictures in real time."""
     # A system that waits for its answers takes their time as well.
     step = settings["dt"] * settings["substeps"] + settings.get("mean_wait", 0.0)
     return {"render_modes": [*METADATA["render_modes"]], "render_fps": max(1, round(1.0 / step))}
 
 
-def _render_mode(name: str | EquationSystem, render_mode: str | None) -> str | None:
+def checked_render_mode(render_mode: str | None) -> str | None:
     if render_mode not in (None, "rgb_array"):
         raise ValueError(f"render_mode is {render_mode!r}, but it must be 'rgb_array' or None")
-    if render_mode is not None and isinstance(name, EquationSystem):
-        raise ValueError(f"render_mode is {render_mode!r}, but it must be None: a system by equations has no picture")
     return render_mode
+
+
+def _pictures(envs: Environments) -> tuple[np.ndarray, ...]:
+    """Return a picture of each environment: of a preset its bodies, of another system its states."""
+    from ._render import picture, state_picture
+
+    if envs._seeder is None:
+        raise ResetNeeded("render was called before reset; expected reset first")
+    preset, states = envs.preset, envs.states.astype(float)
+    if isinstance(preset, Preset):
+        return tuple(picture(preset, *state) for state in states)
+    return tuple(state_picture(envs._state_names(), state) for state in states)
 
 
 class VectorEnv(Environments, gymnasium.vector.VectorEnv):
@@ -66,21 +75,21 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
 
     # A system by equations has parameters of any name.
     @overload
-    def __init__(self, name: EquationSystem | System, num_envs: int = 1, *, render_mode: str | None = None, **given: Any) -> None: ...
+    def __init__(self, name: EquationSystem | System | LinearPlant, num_envs: int = 1, *, render_mode: str | None = None, **given: Any) -> None: ...
 
     def __init__(
         self,
-        name: str | EquationSystem | System,
+        name: str | EquationSystem | System | LinearPlant,
         num_envs: int = 1,
         *,
         render_mode: str | None = None,
         **given: Any,
     ) -> None:
         subject: str | EquationSystem = with_commands(name)
-        self.render_mode = _render_mode(subject, render_mode)
+        self.render_mode = checked_render_mode(render_mode)
         super().__init__(subject, num_envs, **given)
         self.metadata = {
-            **_metadata(subject, self._settings),
+            **_metadata(self._settings),
             "autoreset_mode": AutoresetMode(self._settings["autoreset"]),
         }
         spaces = single_spaces(self.preset, self._settings)
@@ -102,19 +111,12 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
             self._np_random_seed = -1
         return results
 
-    def _checked_render_mode(self, render_mode: str | None) -> str | None:
-        return _render_mode(self._arguments[0], render_mode)
-
     def render(self) -> tuple[np.ndarray, ...] | None:
         """Return one picture per environment, ``(300, 300, 3)`` of ``uint8``, if ``render_mode`` is ``"rgb_array"``."""
         if self.render_mode is None:
             gymnasium.logger.warn("render was called, but render_mode is None: nothing is drawn")
             return None
-        from ._render import picture
-
-        preset = self.preset
-        assert isinstance(preset, Preset), "a system by equations has no render mode"
-        return tuple(picture(preset, *state) for state in self.states.astype(float))
+        return _pictures(self)
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """Return the result of ``render``, or the value of an attribute, of each environment, as ``SyncVectorEnv`` does.
@@ -187,7 +189,7 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
             raise refused(name, values, keywords_of(self))
         if any(value != each[0] for value in each):
             raise ValueError(f"{name} is {values!r}, but it must be the same for all environments")
-        self.render_mode = self._checked_render_mode(each[0])
+        self.render_mode = checked_render_mode(each[0])
 
     def close_extras(self, **kwargs: Any) -> None:
         self._close()
@@ -234,16 +236,16 @@ class Env(gymnasium.Env):
     """The last one of the episode, for pictures."""
 
     def __init__(
-        self, name: str | EquationSystem | System, *, render_mode: str | None = None, **given: Any
+        self, name: str | EquationSystem | System | LinearPlant, *, render_mode: str | None = None, **given: Any
     ) -> None:
         for unknown in ("num_envs", "autoreset_mode", "copy", "buffers", "max_episode_steps"):
             if unknown in given:
                 raise TypeError(f"unexpected keyword argument {unknown!r}: it belongs to vector environments")
         subject: str | EquationSystem = with_commands(name)
-        self.render_mode = _render_mode(subject, render_mode)
+        self.render_mode = checked_render_mode(render_mode)
         self._all = self._batch_class(subject, max_episode_steps=np.inf, autoreset_mode="Disabled", **given)
         self._tells: bool = self._all._settings["parameter_infos"]
-        self.metadata = _metadata(subject, self._all._settings)
+        self.metadata = _metadata(self._all._settings)
         self.observation_space, self.action_space = single_spaces(self._all.preset, self._all._settings)
 
     def reset(
@@ -266,18 +268,11 @@ class Env(gymnasium.Env):
             results[4]["parameters"] = self.parameters
         return results
 
-    def _checked_render_mode(self, render_mode: str | None) -> str | None:
-        return _render_mode(self._all._arguments[0], render_mode)
-
     def render(self) -> np.ndarray | None:
         if self.render_mode is None:
             gymnasium.logger.warn("render was called, but render_mode is None: nothing is drawn")
             return None
-        from ._render import picture
-
-        preset = self._all.preset
-        assert isinstance(preset, Preset), "a system by equations has no render mode"
-        return picture(preset, *self._all.states[0].astype(float))
+        return _pictures(self._all)[0]
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -311,7 +306,7 @@ class Env(gymnasium.Env):
         if name in keywords or name == "state":
             raise refused(name, value, keywords)
         if name == SETTABLE:
-            value = self._checked_render_mode(value)
+            value = checked_render_mode(value)
         return super().set_wrapper_attr(name, value, force=force)
 
     def _keywords(self) -> dict[str, Any]:

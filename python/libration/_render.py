@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Sequence
+
 import numpy as np
 
 from ._presets import Preset
@@ -54,6 +56,31 @@ def picture(preset: Preset, position: float, velocity: float) -> np.ndarray:
     if not np.isfinite(position):
         return Canvas(1.0).array()
     return {"pendulum": _pendulum, "oscillator": _spring, "duffing": _well}[preset.system](position)
+
+
+def state_picture(states: Sequence[str], values: np.ndarray) -> np.ndarray:
+    """Return a picture of the states of any system, ``(300, 300, 3)`` of ``uint8``: a row for each, from the top in the order of ``states``.
+
+    A bar goes from zero, in the middle, to the value, coordinates in blue and all others in grey. Tick marks are at ±0.1, ±1, ±10 and ±100; the
+    axis is linear within the first of them and logarithmic beyond.
+    """
+    canvas = Canvas(1.0)
+    height = 2.0 / len(states)
+    for i, (name, value) in enumerate(zip(states, values.tolist())):
+        y = 1.0 - (i + 0.5) * height
+        canvas.box(0.0, y, 2.0, 0.008, FAINT)
+        for tick in (0.0, 0.1, 1.0, 10.0, 100.0):
+            for side in {_place(tick), _place(-tick)}:
+                canvas.box(side, y, 0.008, 0.5 * height if tick == 0 else 0.25 * height, FAINT)
+        if np.isfinite(value):
+            end = _place(value)
+            canvas.box(end / 2, y, max(abs(end), 0.012), 0.4 * min(height, 0.5), BODY if f"{name}'" in states else INK)
+    return canvas.array()
+
+
+def _place(value: float) -> float:
+    """Return the place of a value on an axis from -1 to 1, with ±100 at ±0.9."""
+    return float(np.clip(0.9 * np.arcsinh(10 * value) / np.arcsinh(1000.0), -1.0, 1.0))
 
 
 def _pendulum(angle: float) -> np.ndarray:

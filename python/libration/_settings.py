@@ -81,7 +81,10 @@ def is_several(value: Any) -> bool:
 def ends(name: str, value: Any, least: float = -math.inf) -> tuple[float, float]:
     """Return the ends of a range; a number has two equal ends."""
     if getattr(value, "shape", ()) != ():
-        value = value.tolist()
+        # Of parameters of a system an array has a number for each environment, and a pair might be taken for that.
+        raise TypeError(f"{name} is an array, but it must be a number or have two ends, like (0.0, 0.1) or Uniform(0, 0.1)")
+    if hasattr(value, "std") and getattr(value, "ends", None) is None:
+        raise ValueError(f"{name} is {value!r}, but it must be a number or have two ends, like Uniform(0, 0.1)")
     # A uniform distribution between two ends.
     value = getattr(value, "ends", None) or value
     pair = value if is_several(value) else (value, value)
@@ -92,6 +95,14 @@ def ends(name: str, value: Any, least: float = -math.inf) -> tuple[float, float]
     if low > high:
         raise ValueError(f"{name} is from {low!r} to {high!r}, but low must be at most high")
     return low, high
+
+
+def least(value: Any) -> float:
+    """Return the least of numbers, or the lower end of a distribution; infinite for what has none."""
+    if hasattr(value, "low"):
+        return float(value.low)
+    value = getattr(value, "ends", None) or (value.tolist() if hasattr(value, "tolist") else value)
+    return min((float(x) for x in (value if is_several(value) else (value,)) if isinstance(x, numbers.Real)), default=math.inf)
 
 
 def law(name: str, value: Any) -> tuple[str, float]:

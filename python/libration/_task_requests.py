@@ -53,7 +53,7 @@ def task_request(system: EquationSystem, keywords: Table) -> TaskRequest:
         task |= _pd_targets(system, task["inner"], task["targets"])
     inner = _chosen(task, own, "inner", {})
     if not isinstance(inner, Mapping):
-        raise TypeError(f"inner must be a dictionary, not {type(inner).__name__}")
+        raise TypeError(f"inner must be libration.PD or a dictionary of expressions, not {type(inner).__name__}")
     period = _chosen(task, own, "inner_period", None)
     if inner and period is None:
         raise TypeError("inner_period is required with inner: the time in s between samples of the controller")
@@ -61,6 +61,7 @@ def task_request(system: EquationSystem, keywords: Table) -> TaskRequest:
         task["actions"] = _levels(task["actions"], keywords["dtype"])
         if not task["actions"]:
             raise ValueError("actions is [], but it must be at least two commands in ascending order")
+    _check_reward(system, task, own, keywords["chunk"])
     levels = tuple(_levels(_chosen(task, own, "actions", ()), keywords["dtype"]))
     chunk, length, used, controller_text = keywords["chunk"], 1, 1, None
     if chunk is not None:
@@ -87,6 +88,19 @@ def task_request(system: EquationSystem, keywords: Table) -> TaskRequest:
         used=used,
         controller_text=controller_text,
     )
+
+
+def _check_reward(system: EquationSystem, task: Table, own: Table | None, chunk: Any) -> None:
+    """Refuse a chunk or an inner controller where the reward that the system came with has the input in place of which they are."""
+    if task["reward"] is not None or own is None or (chunk is None and task["inner"] is None):
+        return
+    for name in system.inputs:
+        if re.search(rf"(?<![A-Za-z0-9_']){re.escape(name)}(?![A-Za-z0-9_'(])", own["reward"]):
+            given, actions = ("inner", "targets") if chunk is None else ("chunk", "commands of the chunk")
+            raise ValueError(
+                f"{given} is given, but the reward of the task has the input {name}, and actions are {actions}: "
+                f"give another reward, without {name}"
+            )
 
 
 def _levels(actions: Any, dtype: str) -> list[float]:

@@ -80,6 +80,16 @@ def results_of_step(subject: Subject) -> Iterator[Found]:
         yield f"infos are a {type(result[4]).__name__}, but they must be a dict", (*code, "print(result[4])")
 
 
+def finite_rewards(subject: Subject) -> Iterator[Found]:
+    for time, step in enumerate(subject.trial.steps):
+        rewards = np.asarray(step.rewards)
+        if rewards.dtype.kind == "f" and not np.isfinite(rewards).all():
+            index = int(np.argmin(np.isfinite(rewards)))
+            code = subject.lines(f"env.reset(seed={subject.seed}); print([env.step(env.action_space.sample())[1] for _ in range({time + 1})])   # finite is expected")
+            yield f"the reward of sub-environment {index} in step {time} is {rewards[index]}", code
+            return
+
+
 def masks_of_infos(subject: Subject) -> Iterator[Found]:
     code = subject.lines(f"env.reset(seed={subject.seed}); infos = env.step(env.action_space.sample())[4]")
     seen: set[str] = set()
@@ -175,15 +185,21 @@ def seeds_differ(subject: Subject) -> Iterator[Found]:
 def results_stay(subject: Subject) -> Iterator[Found]:
     env = subject.env()
     kept: list[tuple[str, Any, Any]] = []
+    told: set[str] = set()
     observations, _ = env.reset(seed=subject.seed)
     kept.append(("observations of reset", observations, copy.deepcopy(observations)))
+    last: Any = None
     for number, actions in zip(range(3), subject.actions(env)):
         result = env.step(actions)
+        if result[4] is last and "infos" not in told:
+            told.add("infos")
+            code = subject.lines(f"env.reset(seed={subject.seed})", "print(env.step(env.action_space.sample())[4] is env.step(env.action_space.sample())[4])   # False is expected")
+            yield f"the infos of step {number} are the object that step {number - 1} returned", code
+        last = result[4]
         for name, value in zip(("observations", "rewards", "terminations", "truncations"), result):
             kept.append((f"{name} of step {number}", value, copy.deepcopy(value)))
         kept.append((f"infos of step {number}", result[4], copy.deepcopy(result[4])))
         subject.begin_ended(env, np.logical_or(result[2], result[3]))
-    told: set[str] = set()
     for name, value, copied in kept:
         kind = name.split(" ")[0]
         if kind not in told and first_difference(copied, value, kind) is not None:
@@ -227,14 +243,20 @@ def actions_stay(subject: Subject) -> Iterator[Found]:
 
 def rows_are_independent(subject: Subject) -> Iterator[Found]:
     trial = subject.trial
-    env = subject.fresh()
-    last = subject.num_envs - 1
-    others = list(subject.actions(env))[::-1]
-    changed = [replaced(env, step.actions, last, other) for step, other in zip(trial.steps, others)]
-    again = subject.play(env, iter(changed))
-    found = difference(subject, trial, again, same(last), len(again.steps))
-    if found is not None:
-        yield f"other actions of sub-environment {last} change another one: {found}", subject.lines("# twice, with the same seed and actions that differ for the last sub-environment only:", f"env.reset(seed={subject.seed}); print(env.step(actions)[0][:-1])")
+    # Also the first, whose actions an environment may give to all.
+    for index in (subject.num_envs - 1, 0):
+        env = subject.fresh()
+        others = list(subject.actions(env))[::-1]
+        changed = [replaced(env, step.actions, index, other) for step, other in zip(trial.steps, others)]
+        again = subject.play(env, iter(changed))
+        found = difference(subject, trial, again, [(i, i) for i in range(subject.num_envs) if i != index], len(again.steps))
+        if found is not None:
+            code = subject.lines(
+                f"one, two = env.action_space.sample(), env.action_space.sample(); many = [one, one.copy()]; many[1][{index}] = two[{index}]",
+                f"for actions in many: env.reset(seed={subject.seed}); print(env.step(actions)[0])   # rows besides {index} are expected to be equal",
+            )
+            yield f"other actions of sub-environment {index} change another one: {found}", code
+            return
 
 
 def rows_do_not_depend_on_their_number(subject: Subject) -> Iterator[Found]:
@@ -245,7 +267,11 @@ def rows_do_not_depend_on_their_number(subject: Subject) -> Iterator[Found]:
         other = subject.play(env, iter(alone), seed=subject.seed + i)
         found = difference(subject, trial, other, [(i, 0)], len(other.steps))
         if found is not None:
-            yield f"sub-environment {i} of {subject.num_envs} with the seed {subject.seed} is not that of one environment with the seed {subject.seed + i}: {found}", subject.lines(f"print(env.reset(seed={subject.seed})[0][{i}])", f"print({subject.source.replace('NUM', '1')}.reset(seed={subject.seed + i})[0][0])")
+            code = subject.lines(
+                f"actions = env.action_space.sample(); print(env.reset(seed={subject.seed})[0][{i}], env.step(actions)[0][{i}])",
+                f"one = {subject.source.replace('NUM', '1')}; print(one.reset(seed={subject.seed + i})[0][0], one.step(actions[{i}:{i + 1}])[0][0])   # equal is expected",
+            )
+            yield f"sub-environment {i} of {subject.num_envs} with the seed {subject.seed} is not that of one environment with the seed {subject.seed + i}: {found}", code
             return
 
 
@@ -284,6 +310,7 @@ CHECKS: tuple[tuple[str, bool, Callable[[Subject], Iterator[Found]]], ...] = (
     ("results of reset", True, results_of_reset),
     ("samples of actions", True, samples_of_actions),
     ("results of step", True, results_of_step),
+    ("finite rewards", True, finite_rewards),
     ("masks of infos", True, masks_of_infos),
     ("repetition by seed", True, seeds_repeat),
     ("different seeds", True, seeds_differ),

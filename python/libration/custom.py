@@ -18,6 +18,7 @@ from ._environment_keywords import CustomTaskKeywords, Unpack
 from ._episode_numbers import largest
 from ._gymnasium_envs import VectorEnv
 from .equations import EquationSystem
+from .linear import LinearPlant
 from .systems import System, with_commands
 
 __all__ = ["CustomTaskVectorEnv"]
@@ -32,12 +33,12 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
     Parameters
     ----------
     name:
-        ``"Oscillator"``, ``"Pendulum"`` or ``"Duffing"``.
+        Name of a preset, or a system, as in :class:`libration.VectorEnv`.
     num_envs:
         Number of environments.
     task:
-        Function ``task(before, actions, after)``. ``before`` and ``after`` are true positions and velocities, ``(N, 2)``; ``actions``
-        are limited to ``max_action``, ``(N, 1)``. It returns rewards ``(N,)``, or a pair of rewards and terminations ``(N,)``.
+        Function ``task(before, actions, after)``. ``before`` and ``after`` are true states, ``(N, states)``, such as position and
+        velocity; ``actions`` are limited to ``max_action``, ``(N, inputs)``. It returns rewards ``(N,)``, or a pair of rewards and terminations ``(N,)``.
     **given:
         Keywords of :class:`libration.Environments`, except the costs of tasks.
 
@@ -49,7 +50,7 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
 
     def __init__(
         self,
-        name: str | EquationSystem | System,
+        name: str | EquationSystem | System | LinearPlant,
         num_envs: int = 1,
         *,
         task: Callable[[np.ndarray, np.ndarray, np.ndarray], Any],
@@ -92,7 +93,7 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
 
     @property
     def states(self) -> NDArray[Any]:
-        """Positions and velocities, ``(num_envs, 2)``."""
+        """True states, ``(num_envs, states)``, such as position and velocity."""
         return self.inner.states
 
     def reset(
@@ -129,6 +130,12 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
             paid = self.task(before, np.clip(taken, -most, most), self.states)
             given, over = paid if isinstance(paid, tuple) else (paid, np.zeros(self.num_envs, bool))
             rewards = self._row("rewards", given, "fiu").astype(observations.dtype)
+            # As in the engine, a reward that is no number ends an episode.
+            unpaid = ~np.isfinite(rewards) & ~began
+            if unpaid.any():
+                lost = lost | unpaid
+                marks = infos.get("lost", False) | unpaid
+                infos = {**infos, "lost": marks, "_lost": marks.copy()}
             terminated = (self._row("ends of episodes", over, "b") & ~began) | lost
         except BaseException:
             # Under SAME_STEP a failed task must not delay the reset.

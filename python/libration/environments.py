@@ -18,6 +18,7 @@ from ._settings import AUTORESET, count, native, nearest
 from ._spec_keywords import named_keyword_value
 from ._tasks import EquationPreset, native_equations
 from .equations import EquationSystem
+from .linear import LinearPlant
 from .systems import SYSTEMS, System, with_commands
 from .perturbations import PD
 from .policies import Policy
@@ -156,11 +157,11 @@ class Environments(_native.Batch):
 
     # A system by equations has parameters of any name.
     @overload
-    def __init__(self, name: EquationSystem | System, num_envs: int = 1, **given: Any) -> None: ...
+    def __init__(self, name: EquationSystem | System | LinearPlant, num_envs: int = 1, **given: Any) -> None: ...
 
     def __init__(
         self,
-        name: str | EquationSystem | System,
+        name: str | EquationSystem | System | LinearPlant,
         num_envs: int = 1,
         *,
         max_episode_steps: float | None = None,

@@ -114,9 +114,8 @@ class SystemEnv(Env):
     - `dtype` (`"float32"`): `"float32"` or `"float64"`.
     - `threads` (`1`): number of threads; 0 is one per core.
     - `parameter_infos` (`False`): whether `info` has `parameters`, the numbers that differ between episodes.
+    - `render_mode` (`None`): `"rgb_array"` for pictures: a bar for each state, in the order of `system.states` from the top.
     """
-
-    metadata = {"render_modes": []}
 
     def __init__(self, system: EquationSystem, **given: Any) -> None:
         super().__init__(_system(system), **given)
@@ -124,8 +123,6 @@ class SystemEnv(Env):
 
 class SystemVectorEnv(VectorEnv):
     __doc__ = vector_page(SystemEnv)
-
-    metadata = {"render_modes": []}
 
     def __init__(self, system: EquationSystem, num_envs: int = 1, **given: Any) -> None:
         super().__init__(_system(system), num_envs, **given)

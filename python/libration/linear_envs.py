@@ -146,4 +146,4 @@ class LinearVectorEnv(gymnasium.vector.VectorEnv):
         self._cost, self._lost = row.cost, lost
         self._ended = self._loops.step_count >= self._limit or bool(lost.all())
         truncated = np.full(self.num_envs, self._ended) & ~lost
-        return row.outputs, rewards, terminated, truncated, {"lost": lost} if lost.any() else {}
+        return row.outputs, rewards, terminated, truncated, {"lost": lost.copy(), "_lost": lost.copy()} if lost.any() else {}

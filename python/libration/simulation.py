@@ -46,6 +46,8 @@ class Trajectory(Mapping[str, np.ndarray]):
         if known."""
 
     def __getitem__(self, name: str) -> NDArray[Any]:
+        if name not in self._columns:
+            raise KeyError(f"no column {name!r}: {nearest(str(name), self._columns)}")
         return self._columns[name]
 
     def __iter__(self) -> Any:

@@ -13,6 +13,7 @@ from . import _native
 from ._catalogue_equations import equations_of
 from ._settings import nearest, number
 from .equations import EquationSystem
+from .linear import LinearPlant
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -164,7 +165,9 @@ def _again(name: str, parameters: list[tuple[str, float]]) -> System:
 
 
 def with_commands(system: Any) -> Any:
-    """Return a system of the catalogue by equations, and anything else as it is."""
+    """Return a system of the catalogue or a linear plant by equations, and anything else as it is."""
+    if isinstance(system, LinearPlant):
+        return system.system()
     return system.equations() if isinstance(system, System) else system
 
 

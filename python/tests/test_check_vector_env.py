@@ -230,7 +230,33 @@ class OneSeedOnly(Walk):
         return super().reset(seed=seed, options=options)
 
 
+class FollowsTheFirst(Walk):
+    """Every sub-environment takes the action of the first."""
+
+    def step(self, actions: Any) -> Any:
+        return super().step(np.full_like(actions, actions[0]))
+
+
+class PaysNothingKnown(Walk):
+    def move(self, i: int, action: np.ndarray) -> float:
+        return float("nan") if i == 1 else super().move(i, action)
+
+
+class OneDictionary(Walk):
+    """Each step clears and fills the same infos."""
+
+    def step(self, actions: Any) -> Any:
+        *results, infos = super().step(actions)
+        self.told = vars(self).get("told", {})
+        self.told.clear()
+        self.told.update(infos)
+        return *results, self.told
+
+
 FAULTS = {
+    FollowsTheFirst: "independent sub-environments",
+    PaysNothingKnown: "finite rewards",
+    OneDictionary: "results stay as they are",
     WithoutMode: "autoreset mode",
     WiderSpace: "spaces",
     DoubleStart: "results of reset",
@@ -257,7 +283,7 @@ FAULTS = {
 def test_a_correct_environment_has_neither_breaches_nor_remarks(mode: AutoresetMode) -> None:
     report = check_vector_env(lambda n: Walk(n, mode))
     assert report.is_correct and not report.remarks, str(report)
-    assert len(report.passed) == 16 and len(report.not_checked) == 2, str(report)
+    assert len(report.passed) == 17 and len(report.not_checked) == 2, str(report)
 
 
 @pytest.mark.parametrize("faulty", list(FAULTS))
@@ -272,6 +298,16 @@ def test_a_planted_fault_is_found_by_its_check(faulty: type[Walk]) -> None:
 def test_what_gymnasium_does_not_promise_is_a_remark(faulty: type[Walk], check: str) -> None:
     report = check_vector_env(faulty)
     assert report.is_correct and [remark.check for remark in report.remarks] == [check], str(report)
+
+
+@pytest.mark.parametrize("faulty", [Coupled, FollowsTheFirst, CountsRows])
+def test_the_lines_of_a_finding_about_rows_run_and_show_two_different_results(faulty: type[Walk], capsys: pytest.CaptureFixture[str]) -> None:
+    report = check_vector_env(faulty, source="made(NUM)")
+    (found,) = [each for each in (*report.breaches, *report.remarks) if each.check.startswith("independen")][:1]
+    names = {"made": faulty, "gymnasium": gymnasium, "np": np, "copy": copy}
+    exec("\n".join(found.lines), names)
+    one, two = capsys.readouterr().out.replace("]\n [", "], [").strip().split("\n")[-2:]
+    assert one != two
 
 
 def test_what_is_written_into_a_result_does_not_change_the_environment() -> None:

@@ -417,3 +417,24 @@ def test_the_last_infos_of_an_episode_have_the_time_of_the_answer_to_its_last_ob
         own, other = (envs.step(np.zeros(3, int))[4] for envs in (vector, sync))
     same_infos(own["final_info"], other["final_info"])
     same_infos(own["parameters"], other["parameters"])
+
+
+@pytest.mark.parametrize(
+    ("make", "given"),
+    [
+        (libration.classic_control.CartPoleVectorEnv, {"length": -0.5}),
+        (libration.classic_control.CartPoleVectorEnv, {"masscart": libration.Uniform(-1.0, 1.0)}),
+        (libration.classic_control.PendulumVectorEnv, {"l": np.array([1.0, 0.0])}),
+        (libration.classic_control.AcrobotVectorEnv, {"m1": 0}),
+    ],
+)
+def test_lengths_and_masses_are_above_zero(make, given):
+    (name,) = given
+    with pytest.raises(ValueError, match=f"^{name} is .*, but it must be greater than 0$"):
+        make(2, **given)
+
+
+def test_pictures_keep_pace_with_the_time_step():
+    frames = lambda env: env.metadata["render_fps"]  # noqa: E731
+    cart_pole, pendulum = libration.classic_control.CartPoleEnv, libration.classic_control.PendulumVectorEnv
+    assert (frames(cart_pole()), frames(cart_pole(dt=0.01)), frames(pendulum(2))) == (50, 100, 30)

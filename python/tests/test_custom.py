@@ -156,3 +156,14 @@ def test_a_task_sees_the_commands_of_discrete_actions():
     actions = np.array([0, 1, 2])
     np.testing.assert_array_equal(own.step(actions)[1], built_in.step(actions)[1])
     assert seen == [[-5.0, 0.0, 5.0]] and own.np_random_seed == 7
+
+
+@pytest.mark.parametrize("mode", ["NextStep", "SameStep", "Disabled"])
+def test_a_reward_that_is_no_number_ends_the_episode_as_lost(mode):
+    paid = np.array([np.nan, -np.inf, 2.0])
+    envs = CustomTaskVectorEnv("Pendulum", 3, task=lambda before, actions, after: paid, autoreset_mode=mode)
+    envs.reset(seed=0)
+    _, rewards, terminated, truncated, infos = envs.step(np.zeros((3, 1)))
+    assert rewards.tolist() == [0, 0, 2] and terminated.tolist() == [True, True, False] and not truncated.any()
+    told = infos["final_info"] if mode == "SameStep" else infos
+    assert told["lost"].tolist() == told["_lost"].tolist() == [True, True, False]

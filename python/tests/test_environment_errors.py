@@ -2,6 +2,7 @@
 
 import copy
 
+import gymnasium
 import numpy as np
 import pytest
 from gymnasium.error import ClosedEnvironmentError
@@ -170,3 +171,32 @@ def test_an_action_beyond_the_float_type_is_shown_as_it_was_given():
         env.step([0.0, 1e39])
     with pytest.raises(TypeError, match="^dtype must be float32 or float64, not 'foo'$"):
         VectorEnv("Pendulum", 2, dtype="foo")
+
+
+@pytest.mark.parametrize("name", ["start_position", "start_velocity", "action_delay", "observation_delay"])
+def test_an_array_is_no_range(name):
+    with pytest.raises(TypeError, match=f"^{name} is an array, but it must be a number or have two ends"):
+        VectorEnv("Pendulum", 2, **{name: np.array([0.0, 0.05])})
+
+
+def test_a_distribution_around_zero_is_no_range():
+    with pytest.raises(ValueError, match=r"^action_delay is Uniform\(0.1\), but it must be a number or have two ends, like Uniform\(0, 0.1\)"):
+        VectorEnv("Pendulum", 2, action_delay=libration.Uniform(0.1))
+
+
+@pytest.mark.parametrize(("given", "name"), [({"chunk": (4, 2)}, "chunk"), ({"inner": libration.PD(100, 10), "inner_period": 0.01}, "inner")])
+def test_a_reward_with_the_input_allows_no_actions_in_place_of_it(given, name):
+    with pytest.raises(ValueError, match=f"^{name} is given, but the reward of the task has the input u, .*give another reward, without u$"):
+        libration.classic_control.PendulumVectorEnv(2, **given)
+
+
+def test_nothing_is_drawn_before_a_reset():
+    for made in (PendulumEnv(render_mode="rgb_array"), VectorEnv("Pendulum", 2, render_mode="rgb_array")):
+        with pytest.raises(gymnasium.error.ResetNeeded, match="render was called before reset"):
+            made.render()
+
+
+def test_an_unknown_column_of_a_trajectory_is_named_with_the_nearest():
+    trajectory = libration.simulate(system=System("oscillator"), integrator="leapfrog", dt=0.1, steps=3)
+    with pytest.raises(KeyError, match="no column 'energi'.*energy"):
+        trajectory["energi"]

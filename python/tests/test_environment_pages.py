@@ -77,10 +77,7 @@ def test_a_page_has_each_argument(class_):
     own = {"system"} if class_.startswith("System") else set()
     own |= {"num_envs"} if "Vector" in class_ else set()
     missing = (typed | own) - set(arguments(class_))
-    if class_.startswith("System"):
-        # It has no picture.
-        missing -= {"render_mode"}
-    else:
+    if not class_.startswith("System"):
         missing -= {"m", "k"} if "a mass `m` in kg and a stiffness `k` in N/m" in section(class_, "Arguments") else set()
     assert not missing
     assert set(arguments(class_)) <= typed | own
@@ -172,10 +169,9 @@ def test_each_integrator_but_the_exact_one_is_that_of_an_environment():
             libration.Environments("Pendulum", 1, integrator=integrator)
 
 
-def test_a_system_needs_the_time_between_actions_and_has_no_picture():
-    assert arguments("SystemEnv")["dt"] == "" and "render_mode" not in arguments("SystemEnv")
+def test_a_system_needs_the_time_between_actions():
+    assert arguments("SystemEnv")["dt"] == ""
     with pytest.raises(TypeError, match="dt"):
         envs.SystemEnv(SPRING)
-    with pytest.raises(ValueError, match="render_mode"):
-        envs.SystemEnv(SPRING, dt=0.01, render_mode="rgb_array")
+    assert envs.SystemEnv(SPRING, dt=0.01, render_mode="rgb_array").metadata == {"render_modes": ["rgb_array"], "render_fps": 100}
     assert envs.SystemEnv(SPRING, dt=0.01).action_space.high == math.inf

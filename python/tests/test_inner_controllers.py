@@ -102,7 +102,7 @@ def test_an_inner_controller_by_expressions_has_targets_of_its_own():
         ({"inner": {"w": "target"}, "targets": ["target"], "inner_period": 0.01}, ValueError, "unknown name `w`"),
         ({"inner": {}, "targets": ["target"]}, ValueError, "`u` has no command"),
         ({"inner": {"u": "target + u"}, "targets": ["target"], "inner_period": 0.01}, ValueError, "unknown name `u`"),
-        ({"inner": "target"}, TypeError, "inner must be a dictionary"),
+        ({"inner": "target"}, TypeError, "inner must be libration.PD or a dictionary of expressions, not str"),
         ({"inner": PD(1, 1)}, TypeError, "inner_period is required with inner"),
         ({"inner": PD(1, 1), "inner_period": 0.01, "targets": ["a", "b"]}, ValueError, "a name for each coordinate: q"),
         ({"inner": PD("stiff", 1)}, TypeError, "kp of inner must be a number"),

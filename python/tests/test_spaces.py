@@ -62,7 +62,7 @@ for name in ("single_observation_space", "single_action_space", "observation_spa
         (CartPoleEnv, {"terminated": ["x > 2.4"]}),
         (CartPoleEnv, {"start": {"x": (5, 6)}}),
         (CartPoleEnv, {"start": {"theta": libration.Uniform(-1, 1)}}),
-        (PendulumEnv, {"start": {"theta'": np.array([-20.0, 20.0])}}),
+        (PendulumEnv, {"start": {"theta'": [-20.0, 20.0]}}),
         (MountainCarEnv, {"start": {"x": -2.0}}),
         (AcrobotEnv, {"start": {"theta2'": (0, 60)}}),
     ],
