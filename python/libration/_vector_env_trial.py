@@ -106,7 +106,9 @@ class Subject:
             if (spec := env.spec) is not None:
                 self._make, self.source = lambda n: gymnasium.make_vec(spec, n), f'gymnasium.make_vec("{spec.id}", NUM)'
         elif callable(env):
-            self._make, self.source = env, f"{getattr(env, '__qualname__', 'make')}(NUM)"
+            # A lambda has no name that a reader can write.
+            name = getattr(env, "__qualname__", "<")
+            self._make, self.source = env, f"{'make' if '<' in name else name}(NUM)"
         else:
             raise TypeError(f"env is {env!r}, but it must be a VectorEnv, a function of num_envs that returns one, or an id")
         self.source = source or self.source
@@ -145,7 +147,9 @@ class Subject:
                 env.close()
 
     def lines(self, *code: str, num_envs: int | None = None) -> tuple[str, ...]:
-        """Return lines of code, the first of which makes the environment."""
+        """Return lines of code, the first of which makes the environment; ``sample`` is the caller's function, and ``random`` a generator."""
+        if self.sample is not None:
+            code = tuple(line.replace("env.action_space.sample()", "sample(env, random)") for line in code)
         return (f"env = {self.source.replace('NUM', str(num_envs or self.num_envs))}", *code)
 
     @property

@@ -310,6 +310,12 @@ def test_the_lines_of_a_finding_about_rows_run_and_show_two_different_results(fa
     assert one != two
 
 
+def test_lines_have_the_functions_that_were_given() -> None:
+    report = check_vector_env(lambda n: RewardsAsList(n), sample=lambda env, random: np.full((env.num_envs, 1), random.uniform(), np.float32))
+    (found,) = [breach for breach in report.breaches if breach.check == "results of step"]
+    assert found.lines[0] == "env = make(3)" and "env.step(sample(env, random))" in found.lines[1]
+
+
 def test_what_is_written_into_a_result_does_not_change_the_environment() -> None:
     report = check_vector_env(Aliased)
     assert "results are copies" in {breach.check for breach in report.breaches}, str(report)
