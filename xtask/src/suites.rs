@@ -80,8 +80,8 @@ struct Queue {
 /// # Errors
 /// Names all that failed.
 pub(crate) fn run(suites: Vec<Suite>) -> Outcome {
-    // One more than there are cores: some wait for a browser.
-    let workers = thread::available_parallelism().map_or(1, usize::from) + 1;
+    // More than there are cores: some wait for a browser, a disk or other programs.
+    let workers = thread::available_parallelism().map_or(1, usize::from) + 2;
     let queue = Mutex::new(Queue { waiting: VecDeque::from(suites), ahead: 0 });
     let (changed, results) = (Condvar::new(), Mutex::new(Vec::new()));
     thread::scope(|scope| {
