@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any, Iterable, Mapping
+from typing import Any, Iterable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._matrices import columns, matrix
-from .equations import EquationSystem
-
-if TYPE_CHECKING:
-    from .linear import LinearPlant
+from .linear import LinearPlant
 
 
-def equations_of_plant(plant: LinearPlant, task: Mapping[str, Any] | None, name: str) -> EquationSystem:
-    """Return the equations of a plant; see :meth:`libration.LinearPlant.system`."""
+def keywords_of_plant(plant: LinearPlant) -> dict[str, Any]:
+    """Return the keywords of a system with the equations of a plant; see :meth:`libration.EquationSystem.from_plant`."""
     if plant.dt is not None:
         raise ValueError(f"dt of the plant is {plant.dt!r}, but it must be None: equations are those of continuous time; help: LinearVectorEnv")
     if plant.parts:
@@ -37,14 +34,12 @@ def equations_of_plant(plant: LinearPlant, task: Mapping[str, Any] | None, name:
         for each in all_names:
             if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", each):
                 raise ValueError(f"{key} has {each!r}, but in equations a name must have letters, digits and _ only, or the stroke of a velocity")
-    return EquationSystem(
-        acceleration={state: rows[place] for state, place in rates.items()} or None,
-        rate={state: row for state, row in zip(states, rows) if state not in rates and state not in strokes} or None,
-        inputs=inputs,
-        units={key: unit for key, unit in {**units, **units_of_inputs}.items() if unit and key not in strokes} or None,
-        task=task,
-        name=name,
-    )
+    return {
+        "acceleration": {state: rows[place] for state, place in rates.items()} or None,
+        "rate": {state: row for state, row in zip(states, rows) if state not in rates and state not in strokes} or None,
+        "inputs": inputs,
+        "units": {key: unit for key, unit in {**units, **units_of_inputs}.items() if unit and key not in strokes} or None,
+    }
 
 
 def _named(key: str, names: Iterable[str] | None, letter: str, count: int) -> tuple[list[str], dict[str, str]]:

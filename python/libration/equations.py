@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._keywords import check_keywords
+from ._plant_equations import keywords_of_plant
 from ._settings import number
 from ._toml import text_of
 from .linear import LinearPlant
@@ -133,6 +134,33 @@ class EquationSystem:
             os.fspath(path),
             [(key, number(key, value, "finite")) for key, value in parameters.items()],
         )
+
+    @classmethod
+    @check_keywords
+    def from_plant(cls, plant: LinearPlant, *, task: Mapping[str, Any] | None = None, name: str = "plant") -> EquationSystem:
+        """Return a linear plant by equations: simulations, environments and data sets take it with each integrator and float type.
+
+        A state whose derivative is another one, as ``q`` and ``q'`` of :meth:`LinearPlant.mechanical`, becomes a coordinate with an
+        acceleration; all others are states of first order. ``G`` has no equation; in place of ``C`` environments have ``observe``, which is
+        all states by default.
+
+        Parameters
+        ----------
+        plant:
+            A plant in continuous time without ``parts``; :class:`LinearVectorEnv` takes others.
+        task:
+            As in :class:`EquationSystem`.
+        name:
+            Shown in results.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For another plant, or a name that is none in an expression.
+        """
+        if not isinstance(plant, LinearPlant):
+            raise TypeError(f"plant must be a libration.LinearPlant, not {type(plant).__name__}")
+        return cls(**keywords_of_plant(plant), task=task, name=name)
 
     @classmethod
     def _again(cls, text: str, file: str, given: list[tuple[str, float]]) -> EquationSystem:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from types import MethodType
-from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence
+from typing import Any, Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,9 +17,6 @@ from ._toml import text_of
 from ._transfer_functions import of_object, polynomials
 from .operating_point import OperatingPoint, linearize
 from .perturbations import LQR, PID, Steps, file_table, law
-
-if TYPE_CHECKING:
-    from .equations import EquationSystem
 
 __all__ = [
     "LQG",
@@ -105,29 +102,6 @@ class LinearPlant:
     """Lags and filters of the channels."""
     operating_point: OperatingPoint | Any = None
     """The equilibrium at which :meth:`linearize` found the matrices; None of other plants."""
-
-    @check_keywords
-    def system(self, *, task: Mapping[str, Any] | None = None, name: str = "plant") -> EquationSystem:
-        """Return the plant by equations: simulations, environments and data sets take it with each integrator and float type.
-
-        A state whose derivative is another one, as ``q`` and ``q'`` of :meth:`mechanical`, becomes a coordinate with an acceleration; all
-        others are states of first order. ``G`` has no equation; in place of ``C`` environments have ``observe``, which is all states by default.
-
-        Parameters
-        ----------
-        task:
-            The task of environments, as in :class:`EquationSystem`.
-        name:
-            Shown in results.
-
-        Raises
-        ------
-        ValueError
-            For a sampled plant, or one with ``parts``: :class:`LinearVectorEnv` takes both. For a name that is none in an expression.
-        """
-        from ._plant_equations import equations_of_plant
-
-        return equations_of_plant(self, task, name)
 
     @classmethod
     @check_keywords

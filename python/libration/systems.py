@@ -167,7 +167,7 @@ def _again(name: str, parameters: list[tuple[str, float]]) -> System:
 def with_commands(system: Any) -> Any:
     """Return a system of the catalogue or a linear plant by equations, and anything else as it is."""
     if isinstance(system, LinearPlant):
-        return system.system()
+        return EquationSystem.from_plant(system)
     return system.equations() if isinstance(system, System) else system
 
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import expm
 
 import libration
-from libration import LinearPlant, VectorEnv
+from libration import EquationSystem, LinearPlant, VectorEnv
 
 MASSES = LinearPlant.mechanical(np.eye(2), 0.1 * np.eye(2), [[20.0, -10.0], [-10.0, 20.0]], [1.0, 0.0], states=["a (m)", "b (m)"], inputs=["f (N)"])
 MOTOR = LinearPlant([[-2.0, 0.5], [-0.25, -40.0]], [[0.0], [20.0]], states=["speed (rad/s)", "current (A)"])
@@ -18,7 +18,7 @@ def test_environments_of_a_plant_move_as_its_matrix_exponential(plant):
     a, b = np.array(plant.A), np.array(plant.B)
     n = len(a)
     power = expm(0.02 * np.block([[a, b], [np.zeros((1, n + 1))]]))
-    command = plant.system().inputs[0]
+    command = EquationSystem.from_plant(plant).inputs[0]
     envs = VectorEnv(plant, 1, dt=0.02, substeps=40, integrator="rk4", dtype="float64", max_action=5.0, reward=f"-{command}^2")
     state = np.linspace(0.1, 0.4, n)
     envs.reset(seed=0, options={"state": state})
@@ -31,11 +31,12 @@ def test_environments_of_a_plant_move_as_its_matrix_exponential(plant):
 
 
 def test_a_state_with_the_rate_of_its_name_is_a_coordinate_and_units_stay():
-    system = MASSES.system(name="two-masses")
+    system = EquationSystem.from_plant(MASSES, name="two-masses")
     assert system.name == "two-masses" and system.states == ("a", "b", "a'", "b'") and system.inputs == ("f",)
     assert [state["unit"] for state in system.summary["states"]] == ["m", "m", "m/s", "m/s"]
-    assert MOTOR.system().states == ("speed", "current")
-    assert LinearPlant([[0.0, 1.0], [-1.0, 0.0]], [[0.0], [1.0]]).system().states == ("x1", "x2")
+    assert EquationSystem.from_plant(MOTOR).states == ("speed", "current")
+    plain = LinearPlant([[0.0, 1.0], [-1.0, 0.0]], [[0.0], [1.0]])
+    assert EquationSystem.from_plant(plain).states == ("x1", "x2")
 
 
 def test_environments_of_a_plant_have_rollouts_buffers_pickles_and_pictures():
@@ -77,4 +78,4 @@ def test_a_picture_of_states_has_bars_as_long_as_its_axis_says():
 )
 def test_a_plant_without_equations_is_refused(plant, text):
     with pytest.raises(ValueError, match=text):
-        plant.system()
+        EquationSystem.from_plant(plant)
