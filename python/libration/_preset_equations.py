@@ -13,8 +13,8 @@ from . import _native
 from ._catalogue_equations import commanded
 from ._episode_numbers import episode_number, is_varied, scaled_law
 from ._presets import Preset
-from ._settings import CATALOGUE, TASK_OPTIONS, count, ends, law, native, refuse_others
-from ._tasks import SMALLEST_OPTIONS, native_equations
+from ._settings import CATALOGUE, count, ends, law, native, refuse_of_preset
+from ._tasks import native_equations
 from .equations import EquationSystem
 
 _TASKS: Mapping[str, Mapping[str, Any]] = {
@@ -55,11 +55,7 @@ def native_varied(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
     """
     parameters = given["parameters"]
     of_system = CATALOGUE[preset.system]
-    taken = {*of_system, *preset.costs}
-    refuse_others(parameters, taken, [*SMALLEST_OPTIONS, *taken])
-    for name in (*TASK_OPTIONS, "chunk"):
-        if given[name] is not None:
-            raise TypeError(f"{name} belongs to environments of a System, not to {preset.name!r}")
+    refuse_of_preset(preset, given)
     mass = {"m", "k"} & set(parameters)
     if len(mass) == 1:
         raise TypeError(f"{mass.pop()} is given alone, but m and k must be given together")

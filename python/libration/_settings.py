@@ -7,7 +7,7 @@ import math
 import numbers
 import sys
 import warnings
-from typing import Any, Container, Iterable, Sequence
+from typing import Any, Container, Iterable, Mapping, Sequence
 
 from ._native import _systems
 from ._presets import Preset
@@ -258,7 +258,10 @@ OPTIONS = (
 )
 
 TASK_OPTIONS = ("observe", "reward", "terminated", "start", "project", "actions", "targets", "inner", "inner_period")
-"""Options of environments of systems by equations."""
+"""Options of tasks by expressions."""
+
+OF_SYSTEMS = (*TASK_OPTIONS, "chunk")
+"""Options of environments of systems by equations, which presets do not have."""
 
 CATALOGUE = {name: tuple(entry[0] for entry in all) for name, _, _, _, all in _systems()}
 """Parameters of each system."""
@@ -273,13 +276,11 @@ def native(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
         For the first invalid keyword; the message has its name, its value and the allowed values.
     """
     given = dict(given)
+    refuse_of_preset(preset, given)
     parameters = given.pop("parameters")
     of_system = CATALOGUE[preset.system]
-    taken = set(of_system) | set(preset.costs)
-    refuse_others(parameters, taken, set(OPTIONS) | taken)
-    for name in (*TASK_OPTIONS, "chunk"):
-        if given.pop(name) is not None:
-            raise TypeError(f"{name} belongs to environments of a System, not to {preset.name!r}")
+    for name in OF_SYSTEMS:
+        del given[name]
     system = {name: parameters[name] for name in of_system if name in parameters}
     if len(alone := {"m", "k"} & set(system)) == 1:
         raise TypeError(f"{alone.pop()} is given alone, but m and k must be given together")
@@ -327,6 +328,15 @@ def refuse_others(given: Iterable[str], taken: Container[str], known: Iterable[s
         # An option here belongs to another class and has no effect.
         if name not in taken:
             raise TypeError(f"unexpected keyword argument {name!r}: {nearest(name, known)}")
+
+
+def refuse_of_preset(preset: Preset, given: Mapping[str, Any]) -> None:
+    """Raise a TypeError for the first keyword that environments of a preset do not have, among parameters and options."""
+    taken = {*CATALOGUE[preset.system], *preset.costs}
+    refuse_others(given["parameters"], taken, [*(name for name in OPTIONS if name not in OF_SYSTEMS), *taken])
+    for name in OF_SYSTEMS:
+        if given[name] is not None:
+            raise TypeError(f"{name} belongs to environments of a System, not to {preset.name!r}")
 
 
 _NORMAL = {"float32": (2.0**-126, (2 - 2.0**-23) * 2.0**127), "float64": (sys.float_info.min, sys.float_info.max)}
