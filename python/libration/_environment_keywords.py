@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 
     Range: TypeAlias = SupportsFloat | Sequence[SupportsFloat] | Uniform
     """A number, or a pair ``(low, high)``."""
-    Varied: TypeAlias = SupportsFloat | Sequence[SupportsFloat | str] | NDArray[Any] | Uniform | LogUniform | LogNormal | Gaussian
+    Varied: TypeAlias = (
+        SupportsFloat | Sequence[SupportsFloat] | tuple[str, float, float] | NDArray[Any] | Uniform | LogUniform | LogNormal | Gaussian
+    )
     """A number, a distribution of episodes, or a number for each environment."""
     Inference: TypeAlias = SupportsFloat | tuple[str, float, float] | list[str | float] | LogNormal | LogUniform | Uniform | None
     """The time of an inference in s, or its distribution."""

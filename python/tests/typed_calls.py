@@ -58,6 +58,7 @@ def twins() -> None:
     ClassicPendulumEnv(g=9.81, m=1, l=libration.Gaussian(0.1, mean=1.0), max_action=3.0)
     MountainCarEnv(force=0.002, gravity=0.002, goal_velocity=0.01, observe=["x"])
     MountainCarContinuousVectorEnv(2, power=0.002, autoreset_mode="SameStep")
+    CartPoleEnv(length=("uniform", 0.4, 0.6))
     AcrobotEnv(m1=1.0, m2=2.0, l1=1.0, lc1=0.5, lc2=0.5, moi=1.0, actions=[-1.0, 1.0])
     single: gymnasium.Env = CartPoleEnv()
     vector: gymnasium.vector.VectorEnv = CartPoleVectorEnv(2)
@@ -65,6 +66,7 @@ def twins() -> None:
 
 
 def wrong_twins() -> None:
+    CartPoleEnv(length=("uniform", 0.4))  # type: ignore[arg-type]
     CartPoleEnv(lenght=1.0)  # type: ignore[call-arg]
     CartPoleEnv(num_envs=4)  # type: ignore[call-arg]
     CartPoleEnv(name="CartPole")  # type: ignore[call-arg]
