@@ -14,16 +14,17 @@ const OLDER_GYMNASIUM: &str = "gymnasium==1.2.2";
 const PROCESSES: usize = 4;
 
 /// Files of tests that take longest, which are divided first.
-const LONG: [&str; 11] = [
-    "test_hosts_fmu.py",
-    "test_stubs.py",
-    "test_leaks.py",
+const LONG: [&str; 12] = [
     "test_documentation.py",
+    "test_cluster.py",
+    "test_stubs.py",
+    "test_hosts_fmu.py",
+    "test_probe_fmu.py",
     "test_linear.py",
+    "test_leaks.py",
     "test_probe_mujoco.py",
     "test_examples.py",
-    "test_probe_report.py",
-    "test_probe_fmu.py",
+    "test_properties.py",
     "test_probe.py",
     "test_laboratory.py",
 ];
