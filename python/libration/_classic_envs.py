@@ -125,7 +125,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
         self._given = copied({"num_envs": num_envs, "starts": starts, "render_mode": render_mode, **given})
         self.render_mode = checked_render_mode(render_mode)
         self._picture: _Picture | None = None
-        self.metadata = {**self.metadata, "render_modes": ["rgb_array"], "render_fps": _frames(self._classic, self._settings["dt"])}
+        self.metadata = {**self.metadata, "render_modes": ["rgb_array"], "render_fps": _frames(self._classic, self._settings)}
         self.single_observation_space = _seen(self._classic, self._settings, given, self.single_observation_space)
         self.single_action_space = _action_space(self._classic, given, self.single_action_space)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
@@ -256,7 +256,7 @@ class ClassicEnv(ClassicAttributes, Env):
         super().__init__(system_of(name), **_with_defaults(self._classic, starts, given))
         self.render_mode = checked_render_mode(render_mode)
         self._picture: _Picture | None = None
-        self.metadata = {"render_modes": ["rgb_array"], "render_fps": _frames(self._classic, self._all._settings["dt"])}
+        self.metadata = {"render_modes": ["rgb_array"], "render_fps": _frames(self._classic, self._all._settings)}
         self.observation_space = _seen(self._classic, self._all._settings, given, self.observation_space)
         self.action_space = _action_space(self._classic, given, self.action_space)
         self._finish()
@@ -317,6 +317,6 @@ _FPS: Mapping[str, int] = {"CartPole": 50, "Pendulum": 30, "MountainCar": 30, "M
 """Frames per second of Gymnasium's environments."""
 
 
-def _frames(classic: ClassicSystem, dt: float) -> int:
+def _frames(classic: ClassicSystem, settings: Mapping[str, Any]) -> int:
     """Return the frames per second of pictures: those of Gymnasium, in proportion where a step takes another time."""
-    return max(1, round(_FPS[classic.name] * classic.dt / dt))
+    return max(1, round(_FPS[classic.name] * classic.dt / (settings["dt"] * settings["substeps"])))

@@ -26,7 +26,7 @@ def keywords_of_plant(plant: LinearPlant) -> dict[str, Any]:
     rows = [_sum(row, [*states, *inputs]) for row in np.hstack([a, b])]
     # Coordinates: states whose derivative is the state with their name and a stroke.
     rates = {state: states.index(f"{state}'") for state in states if f"{state}'" in states}
-    for state, rate in rates.items():
+    for state in rates:
         if rows[states.index(state)] != f"{state}'":
             raise ValueError(f"the derivative of {state!r} is {rows[states.index(state)]}, but it must be {state + chr(39)!r}: rename one of them")
     strokes = {f"{state}'" for state in rates}
@@ -47,6 +47,9 @@ def _named(key: str, names: Iterable[str] | None, letter: str, count: int) -> tu
     pairs = [re.fullmatch(r"(.*?)(?: \((.*)\))?", str(name)) for name in ([f"{letter}{i + 1}" for i in range(count)] if names is None else names)]
     if len(pairs) != count:
         raise ValueError(f"{key} has {len(pairs)} names, but it must have {count}")
+    for i, pair in enumerate(pairs):
+        if pair is not None and any(other is not None and other.group(1) == pair.group(1) for other in pairs[:i]):
+            raise ValueError(f"{key} has {pair.group(1)!r} twice, but it must have names that differ")
     found = [(pair.group(1), pair.group(2) or "") for pair in pairs if pair is not None]
     return [name for name, _ in found], dict(found)
 

@@ -83,7 +83,8 @@ def ends(name: str, value: Any, least: float = -math.inf) -> tuple[float, float]
     if getattr(value, "shape", ()) != ():
         # Of parameters of a system an array has a number for each environment, and a pair might be taken for that.
         raise TypeError(f"{name} is an array, but it must be a number or have two ends, like (0.0, 0.1) or Uniform(0, 0.1)")
-    if hasattr(value, "std") and getattr(value, "ends", None) is None:
+    # Scalars of NumPy have a method of this name.
+    if hasattr(value, "std") and not hasattr(value, "shape") and getattr(value, "ends", None) is None:
         raise ValueError(f"{name} is {value!r}, but it must be a number or have two ends, like Uniform(0, 0.1)")
     # A uniform distribution between two ends.
     value = getattr(value, "ends", None) or value

@@ -437,4 +437,4 @@ def test_lengths_and_masses_are_above_zero(make, given):
 def test_pictures_keep_pace_with_the_time_step():
     frames = lambda env: env.metadata["render_fps"]  # noqa: E731
     cart_pole, pendulum = libration.classic_control.CartPoleEnv, libration.classic_control.PendulumVectorEnv
-    assert (frames(cart_pole()), frames(cart_pole(dt=0.01)), frames(pendulum(2))) == (50, 100, 30)
+    assert (frames(cart_pole()), frames(cart_pole(dt=0.01)), frames(cart_pole(substeps=4)), frames(pendulum(2))) == (50, 100, 50, 30)

@@ -179,7 +179,8 @@ def test_an_array_is_no_range(name):
         VectorEnv("Pendulum", 2, **{name: np.array([0.0, 0.05])})
 
 
-def test_a_distribution_around_zero_is_no_range():
+def test_a_distribution_around_zero_is_no_range_and_a_scalar_of_numpy_is_one():
+    assert VectorEnv("Pendulum", 2, action_delay=np.float64(0.05), start_position=(np.float32(0.5), np.array(1.0))).num_envs == 2
     with pytest.raises(ValueError, match=r"^action_delay is Uniform\(0.1\), but it must be a number or have two ends, like Uniform\(0, 0.1\)"):
         VectorEnv("Pendulum", 2, action_delay=libration.Uniform(0.1))
 

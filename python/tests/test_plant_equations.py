@@ -71,6 +71,7 @@ def test_a_picture_of_states_has_bars_as_long_as_its_axis_says():
         (LinearPlant([[0.5]], [[1.0]], dt=0.1), r"dt of the plant is 0\.1, but it must be None"),
         (LinearPlant([[0.0]], [[1.0]], parts=[libration.Lag(0.1, input=0)]), "the plant has 1 parts, but it must have none"),
         (LinearPlant([[0.0]], [[1.0]], states=["a b"]), "states has 'a b', but in equations"),
+        (LinearPlant(np.eye(2), [[1.0], [1.0]], states=["a (m)", "a (s)"]), "states has 'a' twice"),
         (LinearPlant([[0.0]], [[1.0]], states=["a", "b"]), "states has 2 names, but it must have 1"),
         (LinearPlant([[0.0, 2.0], [0.0, 0.0]], [[0.0], [1.0]], states=["a", "a'"]), r"the derivative of 'a' is 2\.0\*a', but it must be \"a'\""),
         (LinearPlant([[0.0, 1.0]], [[1.0]]), "A has shape"),
