@@ -18,27 +18,31 @@ from ._classic_attributes import ClassicAttributes
 from ._classic_starts import drawn_start, start_bounds, start_ranges
 from ._classic_systems import CLASSIC, ClassicSystem, system_of
 from ._environment_keywords import BatchKeywords, ClassicKeywords
+from ._episode_numbers import episode_number
 from ._episode_states import options_of
 from ._gymnasium_envs import Env, RoundedBatch, VectorEnv, checked_render_mode
-from ._settings import OPTIONS, ends, least, nearest, shown
+from ._settings import OPTIONS, ends, nearest
 from ._spec_keywords import keyword_value
 from .environments import Environments
+from .perturbations import Gaussian
 
 STARTS = ("libration", "gymnasium")
 _RESTORED = {"_arguments", "_given", "_picture", "_seeder", "_settings", "preset"}
 """Attributes of vector environments that a copy has from its construction."""
 
 
-def _with_defaults(classic: ClassicSystem, starts: Any, given: dict[str, Any]) -> dict[str, Any]:
+def _with_defaults(classic: ClassicSystem, num_envs: Any, starts: Any, given: dict[str, Any]) -> dict[str, Any]:
     """Return keywords of the engine with the twin's constants where nothing else is given."""
     parameters = classic.system["parameters"]
     for key in given:
         if key not in OPTIONS and key not in parameters:
             known = {*BatchKeywords.__optional_keys__, *ClassicKeywords.__optional_keys__, *parameters}
             raise TypeError(f"unexpected keyword argument {key!r}: {nearest(key, known)}")
-    for key in classic.positive:
-        if key in given and not least(given[key]) > 0:
-            raise ValueError(f"{key} is {shown(given[key])}, but it must be greater than 0")
+    for key in classic.positive & given.keys():
+        value = keyword_value(given[key])
+        # A normal distribution has no end; that it draws such numbers is the caller's choice.
+        if not isinstance(value, Gaussian):
+            episode_number(key, value, num_envs, "greater than 0", lambda x: 0 < x < math.inf)
     if starts not in STARTS:
         raise ValueError(f"starts is {starts!r}: {nearest(str(starts), STARTS)}")
     if starts == "gymnasium" and given.get("start") is not None:
@@ -121,7 +125,7 @@ class ClassicVectorEnv(ClassicAttributes, VectorEnv):
     def __init__(self, name: str, /, num_envs: int = 1, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
         self._classic, self._starts = _classic(name), starts
         given.setdefault("max_episode_steps", self._classic.max_episode_steps)
-        super().__init__(system_of(name), num_envs, **_with_defaults(self._classic, starts, given))
+        super().__init__(system_of(name), num_envs, **_with_defaults(self._classic, num_envs, starts, given))
         self._given = copied({"num_envs": num_envs, "starts": starts, "render_mode": render_mode, **given})
         self.render_mode = checked_render_mode(render_mode)
         self._picture: _Picture | None = None
@@ -253,7 +257,7 @@ class ClassicEnv(ClassicAttributes, Env):
 
     def __init__(self, name: str, /, *, starts: str = "libration", render_mode: str | None = None, **given: Any) -> None:
         self._classic, self._starts = _classic(name), starts
-        super().__init__(system_of(name), **_with_defaults(self._classic, starts, given))
+        super().__init__(system_of(name), **_with_defaults(self._classic, 1, starts, given))
         self.render_mode = checked_render_mode(render_mode)
         self._picture: _Picture | None = None
         self.metadata = {"render_modes": ["rgb_array"], "render_fps": _frames(self._classic, self._all._settings)}

@@ -39,7 +39,7 @@ class ClassicSystem:
     charges_more: bool = False
     """Whether the reward is that of actions beyond the action space."""
     reward_threshold: float | None = None
-    positive: tuple[str, ...] = ()
+    positive: frozenset[str] = frozenset()
     """Parameters that must be greater than 0."""
     rounds_start: bool = False
     """Whether Gymnasium rounds starts to ``float32``."""
@@ -58,7 +58,7 @@ _THETA = 12 * 2 * pi / 360
 
 _CARTPOLE = ClassicSystem(
     id="CartPole-v1",
-    positive=("masscart", "masspole", "length"),
+    positive=frozenset({"masscart", "masspole", "length"}),
     reward_threshold=475.0,
     integrator="explicit-euler",
     dt=0.02,
@@ -88,7 +88,7 @@ _SPEED = _within("theta'", "-8", "8")
 
 _PENDULUM = ClassicSystem(
     id="Pendulum-v1",
-    positive=("m", "l"),
+    positive=frozenset({"m", "l"}),
     integrator="symplectic-euler",
     dt=0.05,
     max_episode_steps=200,
@@ -172,7 +172,7 @@ _ABOVE = "-cos(theta1) - cos(theta2 + theta1) > 1"
 
 _ACROBOT = ClassicSystem(
     id="Acrobot-v1",
-    positive=("m1", "m2", "l1", "lc1", "lc2", "moi"),
+    positive=frozenset({"m1", "m2", "l1", "lc1", "lc2", "moi"}),
     reward_threshold=-100.0,
     integrator="rk4",
     dt=0.2,

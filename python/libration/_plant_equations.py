@@ -44,14 +44,14 @@ def keywords_of_plant(plant: LinearPlant) -> dict[str, Any]:
 
 def _named(key: str, names: Iterable[str] | None, letter: str, count: int) -> tuple[list[str], dict[str, str]]:
     """Return names without their units, and units by name."""
-    pairs = [re.fullmatch(r"(.*?)(?: \((.*)\))?", str(name)) for name in ([f"{letter}{i + 1}" for i in range(count)] if names is None else names)]
+    pairs = [str(name).partition(" (") for name in ([f"{letter}{i + 1}" for i in range(count)] if names is None else names)]
     if len(pairs) != count:
         raise ValueError(f"{key} has {len(pairs)} names, but it must have {count}")
-    for i, pair in enumerate(pairs):
-        if pair is not None and any(other is not None and other.group(1) == pair.group(1) for other in pairs[:i]):
-            raise ValueError(f"{key} has {pair.group(1)!r} twice, but it must have names that differ")
-    found = [(pair.group(1), pair.group(2) or "") for pair in pairs if pair is not None]
-    return [name for name, _ in found], dict(found)
+    found = [name for name, _, _ in pairs]
+    for i, name in enumerate(found):
+        if name in found[:i]:
+            raise ValueError(f"{key} has {name!r} twice, but it must have names that differ")
+    return found, {name: unit.removesuffix(")") for name, _, unit in pairs}
 
 
 def _sum(factors: NDArray[Any], names: list[str]) -> str:

@@ -98,14 +98,6 @@ def ends(name: str, value: Any, least: float = -math.inf) -> tuple[float, float]
     return low, high
 
 
-def least(value: Any) -> float:
-    """Return the least of numbers, or the lower end of a distribution; infinite for what has none."""
-    if hasattr(value, "low"):
-        return float(value.low)
-    value = getattr(value, "ends", None) or (value.tolist() if hasattr(value, "tolist") else value)
-    return min((float(x) for x in (value if is_several(value) else (value,)) if isinstance(x, numbers.Real)), default=math.inf)
-
-
 def law(name: str, value: Any) -> tuple[str, float]:
     """Return a distribution and its standard deviation."""
     if value is None:

@@ -38,7 +38,8 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
         Number of environments.
     task:
         Function ``task(before, actions, after)``. ``before`` and ``after`` are true states, ``(N, states)``, such as position and
-        velocity; ``actions`` are limited to ``max_action``, ``(N, inputs)``. It returns rewards ``(N,)``, or a pair of rewards and terminations ``(N,)``.
+        velocity; ``actions`` are limited to ``max_action``, ``(N, inputs)``. It returns rewards ``(N,)``, or a pair of rewards and
+        terminations ``(N,)``.
     **given:
         Keywords of :class:`libration.Environments`, except the costs of tasks.
 

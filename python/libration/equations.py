@@ -141,8 +141,8 @@ class EquationSystem:
         """Return a linear plant by equations: simulations, environments and data sets take it with each integrator and float type.
 
         A state whose derivative is another one, as ``q`` and ``q'`` of :meth:`LinearPlant.mechanical`, becomes a coordinate with an
-        acceleration; all others are states of first order, which come last in :attr:`states`. ``G`` has no equation; in place of ``C`` environments have ``observe``, which is
-        all states by default.
+        acceleration; all others are states of first order, which come last in :attr:`states`. ``G`` has no equation; in place of ``C``
+        environments have ``observe``, which is all states by default.
 
         Parameters
         ----------

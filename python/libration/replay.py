@@ -68,7 +68,8 @@ class ReplayBuffer:
     Parameters
     ----------
     environments:
-        Environments of the rollouts to insert, with 2 to 4 observed numbers and one action. Discrete actions are stored as their commands.
+        Environments of the rollouts to insert, with 2 to 4 observed numbers and one action. Of discrete actions
+        commands are stored, those of the policy before the nearest level was taken.
     steps:
         Capacity in steps per environment.
     priorities:

@@ -304,10 +304,16 @@ def test_what_gymnasium_does_not_promise_is_a_remark(faulty: type[Walk], check: 
 def test_the_lines_of_a_finding_about_rows_run_and_show_two_different_results(faulty: type[Walk], capsys: pytest.CaptureFixture[str]) -> None:
     report = check_vector_env(faulty, source="made(NUM)")
     (found,) = [each for each in (*report.breaches, *report.remarks) if each.check.startswith("independen")][:1]
-    names = {"made": faulty, "gymnasium": gymnasium, "np": np, "copy": copy}
-    exec("\n".join(found.lines), names)
-    one, two = capsys.readouterr().out.replace("]\n [", "], [").strip().split("\n")[-2:]
+
+    def printed(made: Any) -> list[str]:
+        exec("\n".join(found.lines), {"made": made, "gymnasium": gymnasium, "np": np, "copy": copy})
+        return capsys.readouterr().out.replace("]\n [", "], [").strip().split("\n")
+
+    one, two = printed(faulty)
     assert one != two
+    # What is correct prints the same twice.
+    one, two = printed(Walk)
+    assert one == two
 
 
 def test_lines_have_the_functions_that_were_given() -> None:

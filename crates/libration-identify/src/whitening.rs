@@ -210,7 +210,7 @@ impl<'a> Filter<'a> {
         }
     }
 
-    /// Takes a response, and leaves the innovations. Sums are plain loops: most of an identification is spent in them.
+    /// Takes a response, and leaves the innovations. Sums are plain loops, and buffers stay: half of an identification is spent here and in `advance`.
     fn measure(&mut self, command: f64, response: f64, whitened: &mut Whitened) {
         let (n, width, states) = (self.plant.states(), self.width, self.states);
         let c = |i: usize| if i < n { self.plant.c[i] } else { 1.0 };
