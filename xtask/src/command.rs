@@ -1,13 +1,18 @@
 //! Programs that a task runs: in the workspace's folder, without standard input.
 
 use std::ffi::OsStr;
-use std::io::Read;
+use std::fs::{self, File};
+use std::io;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
+use crate::scratch::Scratch;
 use crate::{Outcome, processor_time, workspace};
+
+/// Time after which a program that still runs hangs: the slowest takes a fourth of it on a slow machine.
+pub(crate) const LONGEST: Duration = Duration::from_secs(30 * 60);
 
 /// A command in the workspace's folder that never waits for a keyboard.
 pub(crate) fn program(path: impl AsRef<OsStr>) -> Command {
@@ -49,43 +54,34 @@ pub(crate) struct Ended {
     pub(crate) processor: Duration,
 }
 
-/// Runs `command` to its end, and keeps all that it says until then.
-pub(crate) fn kept(command: &mut Command) -> Ended {
-    let nothing = |error: std::io::Error, command: &Command| Ended {
+/// Runs `command` to its end, and keeps all that it says until then. Whatever takes longer than `longest` is killed.
+pub(crate) fn kept(command: &mut Command, longest: Duration) -> Ended {
+    ended(command, longest).unwrap_or_else(|error| Ended {
         outcome: Err(not_started(command, &error)),
         said: String::new(),
         processor: Duration::ZERO,
-    };
-    let mut child = match command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn() {
-        Ok(child) => child,
-        Err(error) => return nothing(error, command),
-    };
-    let (out, err) = (child.stdout.take(), child.stderr.take());
-    let said = thread::scope(|scope| {
-        let out = scope.spawn(|| all_of(out));
-        let err = all_of(err);
-        [out.join().unwrap_or_default(), err].concat()
-    });
-    let processor = processor_time::at_the_end_of(&child);
-    let status = match child.wait() {
-        Ok(status) => status,
-        Err(error) => return nothing(error, command),
-    };
-    let failed = || Err(format!("`{}` failed ({status})", shown(command)));
-    Ended {
-        outcome: if status.success() { Ok(()) } else { failed() },
-        said: String::from_utf8_lossy(&said).into_owned(),
-        processor,
-    }
+    })
 }
 
-/// What a stream says to its end, or until it cannot be read.
-fn all_of(stream: Option<impl Read>) -> Vec<u8> {
-    let mut said = Vec::new();
-    if let Some(mut stream) = stream {
-        let _ = stream.read_to_end(&mut said);
+fn ended(command: &mut Command, longest: Duration) -> io::Result<Ended> {
+    // No pipe: what a killed program has started would keep it open.
+    let folder =
+        Scratch::new(&format!("said-{:?}", thread::current().id())).map_err(io::Error::other)?;
+    let path = folder.path().join("said");
+    let file = File::create(&path)?;
+    let mut child = command.stdout(file.try_clone()?).stderr(file).spawn()?;
+    let processor = processor_time::at_the_end_of(&child, Instant::now() + longest);
+    if processor.is_none() {
+        child.kill()?;
     }
-    said
+    let status = child.wait()?;
+    let outcome = match processor {
+        None => Err(format!("`{}` hung and was killed after {longest:?}", shown(command))),
+        Some(_) if status.success() => Ok(()),
+        Some(_) => Err(format!("`{}` failed ({status})", shown(command))),
+    };
+    let said = String::from_utf8_lossy(&fs::read(path)?).into_owned();
+    Ok(Ended { outcome, said, processor: processor.unwrap_or_default() })
 }
 
 /// Returns the standard output of `command`.
@@ -99,7 +95,7 @@ pub(crate) fn output(command: &mut Command) -> Result<String, String> {
         .map_err(|_| format!("`{}` printed something that is not UTF-8", shown(command)))
 }
 
-fn not_started(command: &Command, error: &std::io::Error) -> String {
+fn not_started(command: &Command, error: &io::Error) -> String {
     format!("`{}` could not be started: {error}", shown(command))
 }
 
@@ -114,11 +110,34 @@ fn shown(command: &Command) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{cargo, run, silent};
+    use std::time::{Duration, Instant};
+
+    use super::{LONGEST, cargo, kept, program, run, silent};
 
     #[test]
     fn a_command_that_succeeds_with_words_is_not_silent() {
         assert!(run(&mut cargo("--version")).is_ok());
         assert!(silent(&mut cargo("--version")).is_err());
+    }
+
+    #[test]
+    fn what_both_streams_say_is_kept() {
+        let ended = kept(&mut cargo("--version"), LONGEST);
+        assert!(ended.said.starts_with("cargo "), "{}", ended.said);
+        let ended = kept(&mut cargo("--wrong"), LONGEST);
+        assert!(ended.said.contains("--wrong") && ended.outcome.is_err(), "{}", ended.said);
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_program_that_hangs_is_killed_and_named_with_what_it_said() {
+        // The second one outlives it, and holds its streams.
+        let mut hanging = program("sh");
+        hanging.args(["-c", "echo started; sleep 5 & wait"]);
+        let start = Instant::now();
+        let ended = kept(&mut hanging, Duration::from_millis(100));
+        assert!(start.elapsed() < Duration::from_secs(4));
+        assert!(ended.outcome.unwrap_err().contains("hung and was killed after 100ms"));
+        assert_eq!(ended.said, "started\n");
     }
 }

@@ -1,7 +1,7 @@
 //! Processor time of programs: unlike their duration it does not depend on what else the machine does.
 
 use std::process::Child;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use std::{fs, thread};
 
 /// Fields of `/proc/PID/stat` behind the name of the program: proc(5).
@@ -22,18 +22,23 @@ pub(crate) fn of_children() -> Duration {
         .map_or(Duration::ZERO, |fields| ticks(&fields[CHILDREN_SYSTEM - 1..=CHILDREN_SYSTEM]))
 }
 
-/// Waits until a program ends, and returns its processor time and that of its children; zero where the system does not tell.
-pub(crate) fn at_the_end_of(child: &Child) -> Duration {
+/// Waits until a program ends, and returns its processor time and that of its children; none if it still runs at `deadline`.
+///
+/// Where the system does not tell, zero at once.
+pub(crate) fn at_the_end_of(child: &Child, deadline: Instant) -> Option<Duration> {
     let process = child.id().to_string();
     while let Some(text) = stat(&process) {
         let Some(fields) = fields(&text) else { break };
         // It stays a zombie until this program waits for it.
         if fields[STATE] == "Z" {
-            return ticks(&fields[USER..=CHILDREN_SYSTEM]);
+            return Some(ticks(&fields[USER..=CHILDREN_SYSTEM]));
+        }
+        if Instant::now() > deadline {
+            return None;
         }
         thread::sleep(PAUSE);
     }
-    Duration::ZERO
+    Some(Duration::ZERO)
 }
 
 fn stat(process: &str) -> Option<String> {
@@ -54,6 +59,7 @@ fn ticks(fields: &[&str]) -> Duration {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::command::LONGEST;
 
     #[test]
     fn times_are_the_fields_fourteen_to_seventeen() {
@@ -70,7 +76,7 @@ mod tests {
         let before = of_children();
         let mut computing =
             crate::command::cargo("--list").stdout(std::process::Stdio::null()).spawn().unwrap();
-        let of_child = at_the_end_of(&computing);
+        let of_child = at_the_end_of(&computing, Instant::now() + LONGEST).unwrap();
         assert!(computing.wait().unwrap().success());
         // Other tests run programs at the same time.
         assert!(of_children() - before >= of_child);

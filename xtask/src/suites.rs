@@ -89,7 +89,7 @@ pub(crate) fn run(suites: Vec<Suite>) -> Outcome {
             scope.spawn(|| {
                 while let Some(mut suite) = next(&queue, &changed) {
                     let start = Instant::now();
-                    let ended = command::kept(&mut suite.command);
+                    let ended = command::kept(&mut suite.command, command::LONGEST);
                     let cost = Cost {
                         name: suite.name,
                         duration: start.elapsed(),
