@@ -224,7 +224,7 @@ class Buffer:
         cls,
         steps: int,
         environments: int,
-        observations: int,
+        sizes: Sequence[int],
         single: bool,
         priorities: bool,
         ends: int | None = None,

@@ -16,26 +16,25 @@ from .rollout import Rollout
 
 __all__ = ["ReplayBuffer", "Sequences", "Transitions"]
 
-_SIZES = (2, 3, 4)
-"""Numbers of observed numbers for which the engine has buffers."""
-
 
 @dataclass(frozen=True)
 class Transitions:
-    """Batch of ``B`` transitions."""
+    """Batch of ``B`` transitions, each with ``n`` observed numbers and ``m`` actions."""
 
     indices: NDArray[np.uint64]
     """Indices for :meth:`ReplayBuffer.update_priorities`, ``(B,)``."""
     observations: NDArray[Any]
     """Observations before the actions, ``(B, n)``."""
     actions: NDArray[Any]
-    """Actions, ``(B, 1)``."""
+    """Actions as in ``Rollout.actions``, ``(B, m)``."""
     rewards: NDArray[Any]
     """Discounted sums of rewards over ``steps`` steps, ``(B,)``."""
     next_observations: NDArray[Any]
     """Observations after the last of these steps, ``(B, n)``; the final observation if the episode ended."""
     terminated: NDArray[np.bool_]
+    """Whether the episode terminated with the last of these steps, ``(B,)``."""
     truncated: NDArray[np.bool_]
+    """Whether the time limit truncated the episode at the last of these steps, ``(B,)``."""
     discounts: NDArray[Any]
     """Discounts of the values of ``next_observations``, ``(B,)``; 0 if the episode terminated."""
     weights: NDArray[Any]
@@ -44,18 +43,20 @@ class Transitions:
 
 @dataclass(frozen=True)
 class Sequences:
-    """Batch of ``B`` sequences of ``T`` steps."""
+    """Batch of ``B`` sequences of ``T`` steps, each with ``n`` observed numbers and ``m`` actions."""
 
     indices: NDArray[np.uint64]
     """Indices of the first transitions, ``(B,)``."""
     observations: NDArray[Any]
     """Observations before the actions, ``(B, T, n)``."""
     actions: NDArray[Any]
-    """Actions, ``(B, T, 1)``."""
+    """Actions as in ``Rollout.actions``, ``(B, T, m)``."""
     rewards: NDArray[Any]
     """Rewards, ``(B, T)``."""
     terminated: NDArray[np.bool_]
+    """Whether the episode terminated with the step, ``(B, T)``."""
     truncated: NDArray[np.bool_]
+    """Whether the time limit truncated the episode at the step, ``(B, T)``."""
     mask: NDArray[np.bool_]
     """Whether a step belongs to the episode of the first step, ``(B, T)``."""
     next_observations: NDArray[Any]
@@ -68,8 +69,8 @@ class ReplayBuffer:
     Parameters
     ----------
     environments:
-        Environments of the rollouts to insert, with 2 to 4 observed numbers and one action. Of discrete actions
-        commands are stored, those of the policy before the nearest level was taken.
+        Environments of the rollouts to insert, with any numbers of observed numbers and actions. Of discrete actions
+        commands are stored, those of the policy before the nearest level was taken; of a chunk all its actions.
     steps:
         Capacity in steps per environment.
     priorities:
@@ -82,7 +83,7 @@ class ReplayBuffer:
     Raises
     ------
     ValueError
-        For a capacity of zero, or environments with another number of observed numbers or actions.
+        For a capacity of zero.
     MemoryError
         If there is not enough memory.
     """
@@ -99,12 +100,7 @@ class ReplayBuffer:
     ) -> None:
         if not isinstance(environments, Environments):
             raise TypeError(f"environments must be Environments, not {type(environments).__name__}")
-        observed, actions = environments.preset.seen, environments.preset.actions
-        if len(observed) not in _SIZES or len(actions) != 1:
-            raise ValueError(
-                f"the environments have observations of length {len(observed)} and actions of length {len(actions)}; expected lengths 2 to 4 and 1; "
-                "help: observe=[…] selects observed numbers, and Rollout.observations, actions and rewards are arrays for any other buffer"
-            )
+        preset = environments.preset
         settings = environments._settings
         self.seed = count("seed", seed, 0, 2**64 - 1)
         #: Number of the next draw.
@@ -112,7 +108,7 @@ class ReplayBuffer:
         self._buffer = _native.Buffer(
             count("steps", steps, 1, 2**40),
             settings["num_envs"],
-            len(observed),
+            [len(preset.seen), len(preset.actions)],
             settings["dtype"] == "float32",
             bool(priorities),
             None if ends is None else count("ends", ends, 1, 2**40),
@@ -133,7 +129,8 @@ class ReplayBuffer:
         Raises
         ------
         ValueError
-            For a rollout of other environments, or with more steps than the capacity.
+            For a rollout with another number of environments, observed numbers or actions, of another dtype, or with more steps or
+            ends of episodes than the capacity. The buffer is then unchanged.
         """
         if not isinstance(rollout, Rollout):
             raise TypeError(f"rollout must be a Rollout, not {type(rollout).__name__}")

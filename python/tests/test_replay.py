@@ -153,17 +153,126 @@ def test_a_buffer_takes_rollouts_of_systems_by_equations(twin):
     assert buffer.update_priorities(drawn.indices, np.abs(drawn.rewards)) > 0
 
 
+PUSHED = System(acceleration={"q": "u - q", "p": "w - 2*p"}, inputs=["u", "w"])
+WIDE = {
+    "acrobot": (lambda **given: AcrobotVectorEnv(5, **given), 6, 1),
+    "two actions": (lambda **given: Environments(PUSHED, 5, dt=0.1, reward="-q^2 - p^2", terminated=["abs(q) > 0.2"], **given), 4, 2),
+    "orbit": (lambda **given: Environments(System("kepler"), 5, dt=0.02, reward="-x^2", start={"x": 1.0, "y'": 1.0}, **given), 4, 2),
+    "chunk": (lambda **given: Environments(PUSHED, 5, dt=0.1, reward="-q^2", chunk=(3, 2), **given), 4, 6),
+    "one number": (lambda **given: Environments(System(rate={"q": "u - q"}, inputs=["u"]), 5, dt=0.1, reward="-q^2", **given), 1, 1),
+    "compiled": (lambda **given: Environments("Oscillator", 5, **given), 2, 1),
+}
+
+
+def rollouts(kind, dtype, count=3, horizon=16):
+    """Return environments, a buffer that has kept 40 of their 48 steps, and the arrays of all rollouts."""
+    make, observed, acted = WIDE[kind]
+    envs = make(dtype=dtype, max_episode_steps=9, autoreset_mode="SameStep")
+    envs.reset(seed=3)
+    buffer = ReplayBuffer(envs, steps=40)
+    every, ends = [], {}
+    for part in range(count):
+        rollout = envs.rollout(Random(-2.0, 2.0), horizon)
+        buffer.insert(rollout)
+        assert rollout.observations.shape[2:] == (observed,) and rollout.actions.shape[2:] == (acted,)
+        names = ("observations", "actions", "rewards", "terminated", "truncated")
+        every.append({name: getattr(rollout, name).copy() for name in names})
+        episodes = rollout.episodes
+        for step, n, last in zip(episodes["steps"], episodes["environments"], episodes["final_observations"]):
+            ends[part * horizon + int(step), int(n)] = last
+        after = np.array(rollout.last_observations)
+    arrays = {name: np.concatenate([part[name] for part in every]) for name in every[0]}
+    arrays["observations"] = np.concatenate([arrays["observations"], after[None]])
+    return envs, buffer, arrays, ends
+
+
+@pytest.mark.parametrize("dtype", ["float32", "float64"])
+@pytest.mark.parametrize("kind", WIDE)
+def test_samples_of_any_width_are_the_arrays_of_the_rollouts(kind, dtype):
+    envs, buffer, arrays, ends = rollouts(kind, dtype)
+    drawn = buffer.sample(3000)
+    step, n = np.divmod(drawn.indices.astype(int), 5)
+    assert step.min() == 8 and step.max() == 47
+    for name in ("observations", "actions", "rewards", "terminated", "truncated"):
+        found = getattr(drawn, name)
+        assert found.dtype == arrays[name].dtype and found.shape == (3000, *arrays[name].shape[2:])
+        np.testing.assert_array_equal(found, arrays[name][step, n])
+    expected = arrays["observations"][step + 1, n]
+    ended = drawn.terminated | drawn.truncated
+    assert ended.any() and not ended.all() and drawn.terminated.any() == (kind == "two actions")
+    for k in np.flatnonzero(ended):
+        expected[k] = ends[step[k], n[k]]
+    np.testing.assert_array_equal(drawn.next_observations, expected)
+    assert drawn.observations.dtype == dtype
+
+
+@pytest.mark.parametrize("dtype", ["float32", "float64"])
+@pytest.mark.parametrize("kind", WIDE)
+def test_returns_of_several_steps_are_sums_of_rewards_up_to_the_end_of_the_episode(kind, dtype):
+    _, buffer, arrays, ends = rollouts(kind, dtype)
+    steps, gamma = 4, 0.75
+    drawn = buffer.sample(1000, steps=steps, gamma=gamma)
+    ended = arrays["terminated"] | arrays["truncated"]
+    lengths = set()
+    for k, index in enumerate(drawn.indices.astype(int)):
+        first, n = divmod(index, 5)
+        last = min(first + steps, 48) - 1
+        stops = np.flatnonzero(ended[first : last + 1, n])
+        last = first + int(stops[0]) if len(stops) else last
+        powers = gamma ** np.arange(last + 1 - first)
+        wanted = (powers * arrays["rewards"][first : last + 1, n].astype(float)).sum()
+        # Products, sums and powers round up to ten times.
+        size = (powers * np.abs(arrays["rewards"][first : last + 1, n].astype(float))).sum()
+        assert abs(drawn.rewards[k] - wanted) <= 10 * np.finfo(dtype).eps * size
+        over = arrays["terminated"][last, n]
+        assert drawn.terminated[k] == over and drawn.truncated[k] == arrays["truncated"][last, n]
+        # Powers of 3/4 up to the fourth are exact.
+        assert drawn.discounts[k] == (0.0 if over else gamma ** (last + 1 - first))
+        after = ends[last, n] if ended[last, n] else arrays["observations"][last + 1, n]
+        np.testing.assert_array_equal(drawn.next_observations[k], after)
+        lengths.add(last + 1 - first)
+    assert lengths == {1, 2, 3, 4}
+
+
+@pytest.mark.parametrize("dtype", ["float32", "float64"])
+@pytest.mark.parametrize("kind", WIDE)
+def test_sequences_of_any_width_are_the_arrays_of_the_rollouts(kind, dtype):
+    _, buffer, arrays, ends = rollouts(kind, dtype)
+    drawn = buffer.sample_sequences(100, 12)
+    first, n = np.divmod(drawn.indices.astype(int), 5)
+    at = first[:, None] + np.arange(12)
+    for name in ("observations", "actions", "rewards", "terminated", "truncated"):
+        np.testing.assert_array_equal(getattr(drawn, name), arrays[name][at, n[:, None]])
+    ended = (drawn.terminated | drawn.truncated).cumsum(axis=1)
+    np.testing.assert_array_equal(drawn.mask, np.pad(ended, ((0, 0), (1, 0)))[:, :-1] == 0)
+    last = drawn.mask.sum(axis=1) - 1
+    assert last.min() < 11
+    for k in range(100):
+        step = first[k] + last[k]
+        after = ends.get((step, n[k]), arrays["observations"][step + 1, n[k]])
+        np.testing.assert_array_equal(drawn.next_observations[k], after)
+
+
 @pytest.mark.parametrize(
-    ("envs", "text"),
+    ("kind", "other", "text"),
     [
-        (lambda: AcrobotVectorEnv(2), "length 6 and actions of length 1"),
-        (lambda: Environments(System(acceleration={"q": "u - p", "p": "w"}, inputs=["u", "w"]), 2, dt=0.1, reward="0"), "length 4 and actions of length 2"),
-        (lambda: Environments(System(rate={"q": "u - q"}, inputs=["u"]), 2, dt=0.1, reward="0"), "length 1 and actions of length 1"),
+        ("acrobot", "two actions", "the number of observed numbers of the rollout is 4; it must be 6"),
+        ("two actions", "acrobot", "the number of observed numbers of the rollout is 6; it must be 4"),
+        ("two actions", "chunk", "the number of actions of the rollout is 6; it must be 2"),
+        ("compiled", "one number", "the number of observed numbers of the rollout is 1; it must be 2"),
+        ("orbit", "compiled", "the number of observed numbers of the rollout is 2; it must be 4"),
     ],
 )
-def test_environments_for_which_there_is_no_buffer_are_refused_with_what_works(envs, text):
-    with pytest.raises(ValueError, match=f"observations of {text}; expected lengths 2 to 4 and 1; help: observe="):
-        ReplayBuffer(envs(), 10)
+def test_a_rollout_of_another_width_is_refused_and_changes_nothing(kind, other, text):
+    _, buffer, _, _ = rollouts(kind, "float64")
+    before = buffer.sample(200)
+    envs = rollouts(other, "float64")[0]
+    with pytest.raises(ValueError, match=text):
+        buffer.insert(envs.rollout(Random(-2.0, 2.0), 4))
+    buffer.number = 0
+    again = buffer.sample(200)
+    np.testing.assert_array_equal(again.indices, before.indices)
+    np.testing.assert_array_equal(again.observations, before.observations)
 
 
 @pytest.mark.parametrize("given", [{"jitter": 0.1}, {"omega2": Uniform(10, 20)}, {"action_delay": 0.0333}])

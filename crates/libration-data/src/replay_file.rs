@@ -18,20 +18,22 @@ use crate::lock::LockedFile;
 /// loss of power, only a buffer that was [flushed](Self::flush) after its last change is intact, because the system writes pages
 /// in any order.
 #[derive(Debug)]
-pub struct ReplayFile<T, const O: usize, const D: usize> {
-    replay: ReplayBuffer<T, O, D>,
+pub struct ReplayFile<T> {
+    replay: ReplayBuffer<T>,
     path: PathBuf,
     /// Locked as long as it is open.
     _file: LockedFile,
 }
 
-impl<T: Float + Pod, const O: usize, const D: usize> ReplayFile<T, O, D> {
-    /// Creates an empty buffer in a new file and allocates all its disk space: a full disk would end the process later.
+impl<T: Float + Pod> ReplayFile<T> {
+    /// Creates an empty buffer in a new file, of transitions with these numbers of observations and actions, and allocates all its
+    /// disk space: a full disk would end the process later.
     ///
     /// # Errors
     /// [`DataError::Io`] if the file exists or the disk is full; [`DataError::Replay`].
-    pub fn create(path: &Path, capacity: Capacity) -> Result<Self, DataError> {
-        let bytes = capacity.bytes(O, D, size_of::<T>()).map_err(refused(path))?;
+    pub fn create(path: &Path, sizes: [usize; 2], capacity: Capacity) -> Result<Self, DataError> {
+        let [observations, actions] = sizes;
+        let bytes = capacity.bytes(observations, actions, size_of::<T>()).map_err(refused(path))?;
         if path.exists() {
             let error = io::Error::from(io::ErrorKind::AlreadyExists);
             return Err(DataError::io("create", path)(error));
@@ -42,23 +44,23 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayFile<T, O, D> {
             let file = LockedFile::try_lock(file)?;
             fill(&file, bytes)?;
             let map = map(&file)?;
-            let replay = ReplayBuffer::create(map, capacity).map_err(io::Error::other)?;
+            let replay = ReplayBuffer::create(map, sizes, capacity).map_err(io::Error::other)?;
             replay.map().flush()?;
             Ok((file, replay))
         })?;
         Ok(ReplayFile { replay, path: path.to_owned(), _file: file })
     }
 
-    /// Opens a file that an earlier process wrote.
+    /// Opens a file that an earlier process wrote with the same numbers of observations and actions.
     ///
     /// # Errors
-    /// [`DataError::Io`], [`DataError::Locked`] if another process has it, [`DataError::Replay`] if it is none or damaged.
-    pub fn open(path: &Path) -> Result<Self, DataError> {
+    /// [`DataError::Io`], [`DataError::Locked`] if another process has it, [`DataError::Replay`] if it is none, has other numbers or is damaged.
+    pub fn open(path: &Path, sizes: [usize; 2]) -> Result<Self, DataError> {
         let file = OpenOptions::new().read(true).write(true).open(path);
         let file = file.map_err(DataError::io("open", path))?;
         let file = LockedFile::lock(file, path)?;
         let map = map(&file).map_err(DataError::io("map", path))?;
-        let replay = ReplayBuffer::open(map).map_err(refused(path))?;
+        let replay = ReplayBuffer::open(map, sizes).map_err(refused(path))?;
         Ok(ReplayFile { replay, path: path.to_owned(), _file: file })
     }
 
@@ -71,16 +73,16 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayFile<T, O, D> {
     }
 }
 
-impl<T, const O: usize, const D: usize> Deref for ReplayFile<T, O, D> {
-    type Target = ReplayBuffer<T, O, D>;
+impl<T> Deref for ReplayFile<T> {
+    type Target = ReplayBuffer<T>;
 
-    fn deref(&self) -> &ReplayBuffer<T, O, D> {
+    fn deref(&self) -> &ReplayBuffer<T> {
         &self.replay
     }
 }
 
-impl<T, const O: usize, const D: usize> DerefMut for ReplayFile<T, O, D> {
-    fn deref_mut(&mut self) -> &mut ReplayBuffer<T, O, D> {
+impl<T> DerefMut for ReplayFile<T> {
+    fn deref_mut(&mut self) -> &mut ReplayBuffer<T> {
         &mut self.replay
     }
 }

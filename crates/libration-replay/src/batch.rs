@@ -2,19 +2,21 @@
 
 use libration_core::Float;
 
+use super::ReplayError;
+
 /// A batch of transitions, allocated once, to be filled again and again.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Batch<T, const O: usize, const D: usize> {
+pub struct Batch<T> {
     /// The numbers of the transitions.
     pub number: Vec<u64>,
-    /// The observations.
-    pub observation: Vec<[T; O]>,
-    /// The actions.
-    pub action: Vec<[T; D]>,
+    /// The observations: `[n, i]`.
+    pub observation: Vec<T>,
+    /// The actions: `[n, i]`.
+    pub action: Vec<T>,
     /// The discounted sums of rewards over the steps of the lookahead: `Σ γᵏ·r`.
     pub reward: Vec<T>,
-    /// The observations after the last of these steps.
-    pub next_observation: Vec<[T; O]>,
+    /// The observations after the last of these steps: `[n, i]`.
+    pub next_observation: Vec<T>,
     /// 1 where the episode was over then, otherwise 0.
     pub terminated: Vec<u8>,
     /// 1 where it was cut off then, otherwise 0.
@@ -25,16 +27,17 @@ pub struct Batch<T, const O: usize, const D: usize> {
     pub weight: Vec<T>,
 }
 
-impl<T: Float, const O: usize, const D: usize> Batch<T, O, D> {
-    /// Allocates a batch of `len` transitions.
-    pub fn new(len: usize) -> Self {
-        let zeros = || vec![T::zero(); len];
+impl<T: Float> Batch<T> {
+    /// Allocates a batch of `len` transitions with these numbers of observations and actions.
+    pub fn new(len: usize, [observations, actions]: [usize; 2]) -> Self {
+        let rows = |width| vec![T::zero(); len.saturating_mul(width)];
+        let zeros = || rows(1);
         Batch {
             number: vec![0; len],
-            observation: vec![[T::zero(); O]; len],
-            action: vec![[T::zero(); D]; len],
+            observation: rows(observations),
+            action: rows(actions),
             reward: zeros(),
-            next_observation: vec![[T::zero(); O]; len],
+            next_observation: rows(observations),
             terminated: vec![0; len],
             truncated: vec![0; len],
             discount: zeros(),
@@ -43,7 +46,7 @@ impl<T: Float, const O: usize, const D: usize> Batch<T, O, D> {
     }
 
     /// All of it, to be written.
-    pub fn columns(&mut self) -> Columns<'_, T, O, D> {
+    pub fn columns(&mut self) -> Columns<'_, T> {
         Columns {
             number: &mut self.number,
             observation: &mut self.observation,
@@ -60,17 +63,17 @@ impl<T: Float, const O: usize, const D: usize> Batch<T, O, D> {
 
 /// The columns of a [`Batch`], wherever they lie.
 #[derive(Debug)]
-pub struct Columns<'a, T, const O: usize, const D: usize> {
+pub struct Columns<'a, T> {
     /// As in a batch.
     pub number: &'a mut [u64],
     /// As in a batch.
-    pub observation: &'a mut [[T; O]],
+    pub observation: &'a mut [T],
     /// As in a batch.
-    pub action: &'a mut [[T; D]],
+    pub action: &'a mut [T],
     /// As in a batch.
     pub reward: &'a mut [T],
     /// As in a batch.
-    pub next_observation: &'a mut [[T; O]],
+    pub next_observation: &'a mut [T],
     /// As in a batch.
     pub terminated: &'a mut [u8],
     /// As in a batch.
@@ -81,33 +84,37 @@ pub struct Columns<'a, T, const O: usize, const D: usize> {
     pub weight: &'a mut [T],
 }
 
-impl<'a, T, const O: usize, const D: usize> Columns<'a, T, O, D> {
-    /// The number of transitions.
-    pub(super) fn len(&self) -> Result<usize, super::ReplayError> {
+impl<'a, T> Columns<'a, T> {
+    /// The number of transitions with these numbers of observations and actions.
+    pub(super) fn len(&self, [observations, actions]: [usize; 2]) -> Result<usize, ReplayError> {
         let len = self.number.len();
-        for (name, found) in [
-            ("observations of the batch", self.observation.len()),
-            ("actions of the batch", self.action.len()),
-            ("rewards of the batch", self.reward.len()),
-            ("next observations of the batch", self.next_observation.len()),
-            ("terminations of the batch", self.terminated.len()),
-            ("truncations of the batch", self.truncated.len()),
-            ("discounts of the batch", self.discount.len()),
-            ("weights of the batch", self.weight.len()),
+        for (name, found, width) in [
+            ("observations of the batch", self.observation.len(), observations),
+            ("actions of the batch", self.action.len(), actions),
+            ("rewards of the batch", self.reward.len(), 1),
+            ("next observations of the batch", self.next_observation.len(), observations),
+            ("terminations of the batch", self.terminated.len(), 1),
+            ("truncations of the batch", self.truncated.len(), 1),
+            ("discounts of the batch", self.discount.len(), 1),
+            ("weights of the batch", self.weight.len(), 1),
         ] {
-            super::ReplayError::shape(name, found, len)?;
+            ReplayError::shape(name, found, len.saturating_mul(width))?;
         }
         Ok(len)
     }
 
-    /// Takes off the first `count`.
-    pub(super) fn split_off(&mut self, count: usize) -> Columns<'a, T, O, D> {
+    /// Takes off the first `count`, with these numbers of observations and actions.
+    pub(super) fn split_off(
+        &mut self,
+        count: usize,
+        [observations, actions]: [usize; 2],
+    ) -> Columns<'a, T> {
         Columns {
             number: first_of(&mut self.number, count),
-            observation: first_of(&mut self.observation, count),
-            action: first_of(&mut self.action, count),
+            observation: first_of(&mut self.observation, count * observations),
+            action: first_of(&mut self.action, count * actions),
             reward: first_of(&mut self.reward, count),
-            next_observation: first_of(&mut self.next_observation, count),
+            next_observation: first_of(&mut self.next_observation, count * observations),
             terminated: first_of(&mut self.terminated, count),
             truncated: first_of(&mut self.truncated, count),
             discount: first_of(&mut self.discount, count),

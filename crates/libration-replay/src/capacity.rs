@@ -51,7 +51,7 @@ impl Capacity {
     /// The number of bytes for `observation` and `action` values per transition, of `number` bytes each.
     ///
     /// # Errors
-    /// [`ReplayError::Nothing`] if it holds nothing; [`ReplayError::Environment`] if no machine has so much memory.
+    /// [`ReplayError::Nothing`] if it holds nothing, or no observations or no actions; [`ReplayError::Environment`] if no machine has so much memory.
     pub fn bytes(
         &self,
         observation: usize,
@@ -68,21 +68,28 @@ impl Capacity {
         number: usize,
     ) -> Result<Fields, ReplayError> {
         let Capacity { steps, environments, ends, priorities } = *self;
-        for (name, value) in [("steps", steps), ("environments", environments), ("ends", ends)] {
+        for (name, value) in [
+            ("steps", steps),
+            ("environments", environments),
+            ("ends", ends),
+            ("observations", observation),
+            ("actions", action),
+        ] {
             if value == 0 {
                 return Err(ReplayError::Nothing { name });
             }
         }
         let cells = (steps as u128 + 1) * environments as u128;
         let wide = |count: u128, each: usize| count.saturating_mul(each as u128);
+        let row = |count: u128, numbers: usize| wide(wide(count, numbers), number);
         let sizes = [
-            wide(cells, observation * number),
-            wide(cells, action * number),
+            row(cells, observation),
+            row(cells, action),
             wide(cells, number),
             cells,
             if priorities { wide(cells, 8) } else { 0 },
             wide(ends as u128, 8),
-            wide(ends as u128, observation * number),
+            row(ends as u128, observation),
         ];
         let mut at = PAGE as u128;
         let mut ranges = [const { 0..0 }; 7];

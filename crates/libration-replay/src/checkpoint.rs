@@ -7,14 +7,15 @@ use memmap2::MmapMut;
 use super::{Capacity, ReplayBuffer, ReplayError};
 use libration_batch::checkpoint::{Checkpoint, CheckpointError, Trait};
 
-impl<T: Float + Pod, const O: usize, const D: usize> Checkpoint for ReplayBuffer<T, O, D> {
+impl<T: Float + Pod> Checkpoint for ReplayBuffer<T> {
     fn traits(&self) -> Vec<Trait> {
         let Capacity { steps, environments, ends, priorities } = self.capacity;
+        let [observations, actions] = self.sizes;
         vec![
             ("kind", "replay buffer".to_owned()),
             ("float type", T::NAME.to_owned()),
-            ("number of dimensions", D.to_string()),
-            ("number of observations", O.to_string()),
+            ("number of dimensions", actions.to_string()),
+            ("number of observations", observations.to_string()),
             ("number of steps", steps.to_string()),
             ("number of environments", environments.to_string()),
             ("number of ends", ends.to_string()),
@@ -34,7 +35,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Checkpoint for ReplayBuffer
         let damaged = |error: &dyn ToString| CheckpointError::Damaged(error.to_string());
         let mut map = MmapMut::map_anon(wanted).map_err(|error| damaged(&error))?;
         map.copy_from_slice(state);
-        let opened = Self::open(map).map_err(|error: ReplayError| damaged(&error))?;
+        let opened = Self::open(map, self.sizes).map_err(|error: ReplayError| damaged(&error))?;
         // It may lie in a file, and stays there.
         self.memory.copy_from(&opened.memory);
         (self.marks, self.sums) = (opened.marks, opened.sums);

@@ -8,9 +8,10 @@ use libration_core::Float;
 use super::capacity::Fields;
 use super::memory::Marks;
 use super::replay_buffer::{END, NONE, TERMINATED, TRUNCATED};
+use super::rows::interleave;
 use super::{ReplayBuffer, ReplayError};
 use libration_batch::ensemble::Execution;
-use libration_batch::rl::{Layout, Plan, Rollout};
+use libration_batch::rl::{Layout, Plan, RolloutTensors};
 
 /// Rows that come in.
 struct Rows<'a> {
@@ -21,8 +22,8 @@ struct Rows<'a> {
     execution: &'a Execution,
 }
 
-impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
-    /// Inserts a rollout and overwrites the oldest steps. `next` are the observations after its last step: `[n, i]`, as
+impl<T: Float + Pod> ReplayBuffer<T> {
+    /// Inserts a [`Rollout`](libration_batch::rl::Rollout) or [`ProgramRollout`](libration_batch::rl::ProgramRollout) and overwrites the oldest steps. `next` are the observations after its last step: `[n, i]`, as
     /// [`observe`](libration_batch::rl::Environments::observe) writes them.
     ///
     /// If the first observation differs from `next` of the insertion before, as after a reset, the transition before keeps its own.
@@ -30,17 +31,21 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
     ///
     /// # Errors
     /// [`ReplayError::Capacity`] if it has more steps or more ends of episodes than the capacity;
-    /// [`ReplayError::Environment`] if it has another number of environments. The buffer is then unchanged.
+    /// [`ReplayError::Environment`] if it has another number of environments, observations or actions. The buffer is then unchanged.
     pub fn insert(
         &mut self,
-        rollout: &Rollout<T, O, D>,
+        rollout: &dyn RolloutTensors<T>,
         next: &[T],
         execution: &Execution,
     ) -> Result<(), ReplayError> {
         let Plan { horizon, environments, layout, .. } = rollout.plan();
         let n = self.capacity.environments;
         ReplayError::shape("environments of the rollout", environments, n)?;
-        ReplayError::shape("numbers seen after the last step", next.len(), n.saturating_mul(O))?;
+        let ([observations, actions], sizes) = (self.sizes, rollout.sizes());
+        ReplayError::shape("observed numbers of the rollout", sizes[0], observations)?;
+        ReplayError::shape("actions of the rollout", sizes[1], actions)?;
+        let wanted = n.saturating_mul(observations);
+        ReplayError::shape("numbers seen after the last step", next.len(), wanted)?;
         if horizon > self.capacity.steps {
             let capacity = self.capacity.steps;
             return Err(ReplayError::Capacity {
@@ -53,7 +58,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
             return Ok(());
         }
         let (before, broken) = (self.marks, self.broken(rollout));
-        let tail = self.make_room(horizon, rollout.finals().len() + broken.len())?;
+        let tail = self.make_room(horizon, rollout.ended() + broken.len())?;
         let broken = if tail < before.head { broken } else { Vec::new() };
         self.retire(tail);
         self.part(&broken);
@@ -61,17 +66,17 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
         let head = self.marks.head;
         let Fields { observation, action, reward, .. } = self.memory.fields.clone();
         let rows = Rows { head, steps: horizon, layout, execution };
-        self.copy::<O>(&rows, rollout.observation(), observation.clone());
-        self.copy::<D>(&rows, rollout.action(), action);
-        self.copy::<1>(&rows, rollout.reward(), reward);
+        self.copy(&rows, rollout.observation(), observation.clone(), observations);
+        self.copy(&rows, rollout.action(), action, actions);
+        self.copy(&rows, rollout.reward(), reward, 1);
         let nones = self.mark(head, rollout);
         let lost = self.end(head, rollout);
-        let row = self.row(head + horizon as u64);
-        let seen = &mut self.memory.field_mut::<[T; O]>(observation)[row * n..][..n];
-        seen.copy_from_slice(bytemuck::cast_slice(next));
+        let first = self.cell(head + horizon as u64, 0) * observations;
+        let seen = &mut self.memory.field_mut::<T>(observation)[first..][..next.len()];
+        seen.copy_from_slice(next);
         let live = (horizon * n) as u64 - nones - lost;
         self.marks.head += horizon as u64;
-        self.marks.ends.end += rollout.finals().len() as u64;
+        self.marks.ends.end += rollout.ended() as u64;
         self.marks.live += live;
         self.set_weights(before, nones + lost > 0);
         self.memory.commit(self.marks);
@@ -79,21 +84,29 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
     }
 
     /// The environments whose next observation differs from the stored one.
-    fn broken(&self, rollout: &Rollout<T, O, D>) -> Vec<usize> {
+    fn broken(&self, rollout: &dyn RolloutTensors<T>) -> Vec<usize> {
         let Marks { head, tail, .. } = self.marks;
         if head == tail {
             return Vec::new();
         }
-        let n = self.capacity.environments;
-        let last = &self.observation()[self.row(head) * n..][..n];
-        if rollout.plan().layout == Layout::Interleaved {
-            let first: &[[T; O]] = bytemuck::cast_slice(&rollout.observation()[..n * O]);
-            if bytemuck::cast_slice::<_, u8>(first) == bytemuck::cast_slice::<_, u8>(last) {
-                return Vec::new();
+        let (n, width) = (self.capacity.environments, self.sizes[0]);
+        let last = &self.observation()[self.cell(head, 0) * width..][..n * width];
+        let Plan { horizon, layout, .. } = rollout.plan();
+        let mut rows = Vec::new();
+        let first = match layout {
+            Layout::Interleaved => &rollout.observation()[..n * width],
+            Layout::Planes => {
+                rows.resize(n * width, T::zero());
+                interleave(&mut rows, rollout.observation(), horizon * n, width);
+                &rows
             }
+        };
+        let [first, last] = [first, last].map(bytemuck::cast_slice::<T, u8>);
+        if first == last {
+            return Vec::new();
         }
-        let differs =
-            |&i: &usize| bytemuck::bytes_of(&rollout.seen(0, i)) != bytemuck::bytes_of(&last[i]);
+        let row = |&i: &usize| i * width * size_of::<T>()..(i + 1) * width * size_of::<T>();
+        let differs = |i: &usize| first[row(i)] != last[row(i)];
         // What ended before has its end already.
         let goes_on = |&i: &usize| self.flags()[self.cell(head - 1, i)] & (END | NONE) == 0;
         (0..n).filter(differs).filter(goes_on).collect()
@@ -154,8 +167,11 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
         }
         let head = self.marks.head;
         for &i in environments {
-            let seen = self.observation()[self.cell(head, i)];
-            self.write_end(self.marks.ends.end, self.place_of(head - 1, i, true), seen);
+            let bytes = self.sizes[0] * size_of::<T>();
+            let from = self.memory.fields.observation.start + self.cell(head, i) * bytes;
+            let at = self.write_end(self.marks.ends.end, self.place_of(head - 1, i, true));
+            let to = self.memory.fields.end_seen.start + at * bytes;
+            self.memory.copy_within(from..from + bytes, to);
             self.marks.ends.end += 1;
         }
         // An end without its mark says what the next row says as well.
@@ -166,49 +182,46 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
         cells.into_iter().for_each(|cell| flags[cell] |= END);
     }
 
-    /// Writes end `i`.
-    fn write_end(&mut self, i: u64, place: u64, seen: [T; O]) {
+    /// Writes the place of end `i`. Returns the index of its observation.
+    fn write_end(&mut self, i: u64, place: u64) -> usize {
         let at = (i % self.capacity.ends as u64) as usize;
         let range = self.memory.fields.end_place.clone();
         self.memory.field_mut::<u64>(range)[at] = place;
-        let range = self.memory.fields.end_seen.clone();
-        self.memory.field_mut::<[T; O]>(range)[at] = seen;
+        at
     }
 
-    /// Copies rows of `N` numbers.
-    fn copy<const N: usize>(&mut self, new: &Rows<'_>, from: &[T], field: Range<usize>) {
+    /// Copies rows of transitions of `width` numbers.
+    fn copy(&mut self, new: &Rows<'_>, from: &[T], field: Range<usize>, width: usize) {
         let Rows { head, steps, layout, execution } = *new;
         let (n, rows) = (self.capacity.environments, self.capacity.rows());
-        let row = self.row(head);
-        let whole = self.memory.field_mut::<[T; N]>(field);
-        if layout == Layout::Planes && N > 1 {
+        let (row, len) = (self.row(head), n * width);
+        let whole = self.memory.field_mut::<T>(field);
+        if layout == Layout::Planes && width > 1 {
             for (t, row) in (0..steps).map(|t| (t, (row + t) % rows)) {
-                for (l, to) in whole[row * n..][..n].iter_mut().enumerate() {
-                    let at = t * n + l;
-                    *to = core::array::from_fn(|i| from[i * steps * n + at]);
-                }
+                interleave(&mut whole[row * len..][..len], &from[t * n..], steps * n, width);
             }
             return;
         }
-        let from: &[[T; N]] = bytemuck::cast_slice(from);
-        let first = (rows - row).min(steps) * n;
-        let (start, rest) = whole.split_at_mut(row * n);
+        let first = (rows - row).min(steps) * len;
+        let (start, rest) = whole.split_at_mut(row * len);
         let (head, tail) = from.split_at(first);
-        copy_all(&mut rest[..first], head, execution);
-        copy_all(&mut start[..tail.len()], tail, execution);
+        copy_all(&mut rest[..first], head, PIECE * width, execution);
+        copy_all(&mut start[..tail.len()], tail, PIECE * width, execution);
     }
 
     /// Marks ends of episodes and cells without a transition. Returns the number of the latter.
-    fn mark(&mut self, head: u64, rollout: &Rollout<T, O, D>) -> u64 {
+    fn mark(&mut self, head: u64, rollout: &dyn RolloutTensors<T>) -> u64 {
         let n = self.capacity.environments;
         let mut idle = vec![0; n];
         let mut nones = 0;
-        for t in 0..rollout.plan().horizon {
+        let (terminated, truncated) = (rollout.terminated(), rollout.truncated());
+        let (horizon, pauses) = (rollout.plan().horizon, rollout.pauses());
+        for t in 0..horizon {
             let cell = self.cell(head + t as u64, 0);
             let range = self.memory.fields.flags.clone();
             let to = &mut self.memory.field_mut::<u8>(range)[cell..][..n];
-            let over = &rollout.terminated()[t * n..][..n];
-            match rollout.truncated().get(t * n..(t + 1) * n) {
+            let over = &terminated[t * n..][..n];
+            match truncated.get(t * n..(t + 1) * n) {
                 Some(cut) => {
                     let both = over.iter().zip(cut);
                     let flags =
@@ -219,7 +232,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
                     to.iter_mut().zip(over).for_each(|(to, over)| *to = over * (TERMINATED + END));
                 }
             }
-            if rollout.pauses() {
+            if pauses {
                 rollout.write_idle(t, 0, &mut idle);
                 for (to, _) in to.iter_mut().zip(&idle).filter(|(_, idle)| **idle != 0) {
                     *to = NONE;
@@ -231,11 +244,16 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
     }
 
     /// Stores the final observations. Returns the number of lost environments.
-    fn end(&mut self, head: u64, rollout: &Rollout<T, O, D>) -> u64 {
+    fn end(&mut self, head: u64, rollout: &dyn RolloutTensors<T>) -> u64 {
         let mut lost = 0;
-        for (i, end) in (self.marks.ends.end..).zip(rollout.finals()) {
+        let width = self.sizes[0];
+        for k in 0..rollout.ended() {
+            let (end, seen) = rollout.end(k);
             let step = head + end.step as u64;
-            self.write_end(i, self.place_of(step, end.environment, false), end.observation);
+            let place = self.place_of(step, end.environment, false);
+            let at = self.write_end(self.marks.ends.end + k as u64, place);
+            let range = self.memory.fields.end_seen.clone();
+            self.memory.field_mut::<T>(range)[at * width..][..width].copy_from_slice(seen);
             if end.lost {
                 lost += 1;
                 let cell = self.cell(step, end.environment);
@@ -247,16 +265,16 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
     }
 }
 
-/// The number of values per copying thread.
+/// The number of transitions per copying thread.
 const PIECE: usize = 1 << 16;
 
-/// Copies one into the other, on all threads where there is much.
-fn copy_all<X: Pod + Send + Sync>(to: &mut [X], from: &[X], execution: &Execution) {
-    let pieces = execution.thread_count().min(from.len() / PIECE);
-    if pieces < 2 {
+/// Copies one into the other, on all threads that have a piece of so many numbers.
+fn copy_all<T: Pod + Send + Sync>(to: &mut [T], from: &[T], piece: usize, execution: &Execution) {
+    if from.len() < 2 * piece {
         to.copy_from_slice(from);
         return;
     }
+    let pieces = execution.thread_count().min(from.len() / piece);
     let len = from.len().div_ceil(pieces);
     let pairs: Vec<_> = to.chunks_mut(len).zip(from.chunks(len)).collect();
     execution.each(pairs, |(to, from)| to.copy_from_slice(from));

@@ -19,6 +19,7 @@ mod memory;
 mod power;
 mod prioritised_sampling;
 mod replay_buffer;
+mod rows;
 mod sampling;
 mod sequences;
 mod sum_tree;

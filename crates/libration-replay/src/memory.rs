@@ -202,6 +202,11 @@ impl Memory {
         &self.map
     }
 
+    /// Copies bytes to another place.
+    pub(super) fn copy_within(&mut self, from: Range<usize>, to: usize) {
+        self.map.copy_within(from, to);
+    }
+
     fn words(&self, at: usize, count: usize) -> &[u64] {
         self.field(&(at..at + 8 * count))
     }

@@ -15,7 +15,7 @@ use libration_batch::ensemble::Execution;
 /// Of so large ones any number of transitions has a finite sum.
 const MOST_WEIGHT: f64 = 1e280;
 
-impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
+impl<T: Float + Pod> ReplayBuffer<T> {
     /// Fills a batch with transitions drawn in proportion to their weights, one from each of as many equal parts of the total. Their
     /// importance is `(live·w/total)^−β` for the weight `w`, over the largest of the batch: `correction` is `β`, from 0 to 1.
     ///
@@ -27,12 +27,12 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
         draw: Draw,
         lookahead: Lookahead,
         correction: f64,
-        batch: &mut Columns<'_, T, O, D>,
+        batch: &mut Columns<'_, T>,
         execution: &Execution,
     ) -> Result<(), ReplayError> {
         lookahead.check()?;
         ensure_probability("correction of priorities", correction)?;
-        let len = batch.len()?;
+        let len = batch.len(self.sizes)?;
         let sums = self.sums.as_ref().ok_or(ReplayError::Priorities)?;
         let total = sums.total();
         if total <= 0.0 {

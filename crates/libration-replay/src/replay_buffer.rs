@@ -41,14 +41,14 @@ pub(super) const NONE: u8 = 8;
 /// let mut all = Environments::new(environment, 64, 7, Execution::serial())?;
 /// let mut rollout = Rollout::new(Plan::new(100, 64).truncated())?;
 ///
-/// let mut replay = ReplayBuffer::<f32, 2, 1>::new(Capacity::new(10_000, 64))?;
+/// let mut replay = ReplayBuffer::<f32>::new([2, 1], Capacity::new(10_000, 64))?;
 /// let mut next = vec![0.0; 64 * 2];
 /// for _ in 0..5 {
 ///     all.rollout(Random::between([-1.0], [1.0]), &mut rollout)?;
 ///     all.observe(&mut next)?;
 ///     replay.insert(&rollout, &next, &Execution::serial())?;
 /// }
-/// let mut batch = Batch::new(256);
+/// let mut batch = Batch::new(256, replay.sizes());
 /// let draw = Draw { seed: 7, number: 0 };
 /// replay.sample(draw, Lookahead::default(), &mut batch.columns(), &Execution::serial())?;
 /// assert!(batch.number.iter().all(|&number| replay.contains(number)));
@@ -56,7 +56,9 @@ pub(super) const NONE: u8 = 8;
 /// # }
 /// ```
 #[derive(Debug)]
-pub struct ReplayBuffer<T, const O: usize, const D: usize> {
+pub struct ReplayBuffer<T> {
+    /// Numbers of observations and actions.
+    pub(super) sizes: [usize; 2],
     pub(super) capacity: Capacity,
     /// Environments, and rows.
     pub(super) width: Divisor,
@@ -68,32 +70,39 @@ pub struct ReplayBuffer<T, const O: usize, const D: usize> {
     number: core::marker::PhantomData<T>,
 }
 
-impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
-    /// An empty buffer in new memory.
+impl<T: Float + Pod> ReplayBuffer<T> {
+    /// An empty buffer in new memory, of transitions with these numbers of observations and actions, each at least 1.
     ///
     /// # Errors
-    /// [`ReplayError::Nothing`] if the capacity is of nothing; [`ReplayError::Environment`] if there is not so much memory.
-    pub fn new(capacity: Capacity) -> Result<Self, ReplayError> {
-        Memory::anonymous::<T>(&capacity, [O, D]).map(|memory| Self::empty(capacity, memory))
+    /// [`ReplayError::Nothing`] if a size or the capacity is 0; [`ReplayError::Environment`] if there is not so much memory.
+    pub fn new(sizes: [usize; 2], capacity: Capacity) -> Result<Self, ReplayError> {
+        let memory = Memory::anonymous::<T>(&capacity, sizes)?;
+        Ok(Self::empty(sizes, capacity, memory))
     }
 
     /// An empty one in memory that is all zeros, as that of a new file: of at least [`Capacity::bytes`].
     ///
     /// # Errors
     /// As [`new`](Self::new), and [`ReplayError::Capacity`] if the memory is too short.
-    pub fn create(map: MmapMut, capacity: Capacity) -> Result<Self, ReplayError> {
-        Memory::create::<T>(map, &capacity, [O, D]).map(|memory| Self::empty(capacity, memory))
+    pub fn create(
+        map: MmapMut,
+        sizes: [usize; 2],
+        capacity: Capacity,
+    ) -> Result<Self, ReplayError> {
+        let memory = Memory::create::<T>(map, &capacity, sizes)?;
+        Ok(Self::empty(sizes, capacity, memory))
     }
 
-    fn empty(capacity: Capacity, memory: Memory) -> Self {
+    fn empty(sizes: [usize; 2], capacity: Capacity, memory: Memory) -> Self {
         let cells = capacity.rows() * capacity.environments;
         let sums = capacity.priorities.then(|| Sums::zero(cells));
-        ReplayBuffer { sums, ..Self::of(capacity, memory, Marks::NONE) }
+        ReplayBuffer { sums, ..Self::of(sizes, capacity, memory, Marks::NONE) }
     }
 
     /// One without sums.
-    fn of(capacity: Capacity, memory: Memory, marks: Marks) -> Self {
+    fn of(sizes: [usize; 2], capacity: Capacity, memory: Memory, marks: Marks) -> Self {
         ReplayBuffer {
+            sizes,
             capacity,
             width: Divisor::new(capacity.environments),
             height: Divisor::new(capacity.rows()),
@@ -109,9 +118,9 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
     ///
     /// # Errors
     /// [`ReplayError::Other`] if that was none, or one of other numbers; [`ReplayError::Damaged`] if it contradicts itself.
-    pub fn open(map: MmapMut) -> Result<Self, ReplayError> {
-        let (memory, capacity, marks) = Memory::open::<T>(map, [O, D])?;
-        let mut replay = Self::of(capacity, memory, marks);
+    pub fn open(map: MmapMut, sizes: [usize; 2]) -> Result<Self, ReplayError> {
+        let (memory, capacity, marks) = Memory::open::<T>(map, sizes)?;
+        let mut replay = Self::of(sizes, capacity, memory, marks);
         replay.verify()?;
         replay.mark_parted();
         if capacity.priorities {
@@ -119,6 +128,11 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
             replay.sums = Some(Sums::over(replay.weights()));
         }
         Ok(replay)
+    }
+
+    /// The numbers of observations and actions of a transition.
+    pub fn sizes(&self) -> [usize; 2] {
+        self.sizes
     }
 
     /// The capacity.
@@ -169,17 +183,26 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
         self.row(step) * self.capacity.environments + n
     }
 
+    /// The cell of the transition of this number.
+    #[inline(always)]
+    pub(super) fn cell_of(&self, number: u64) -> usize {
+        let (step, n) = self.width.divide(number);
+        self.cell(step, n as usize)
+    }
+
     /// The row of a step.
     #[inline(always)]
     pub(super) fn row(&self, step: u64) -> usize {
         self.height.divide(step).1 as usize
     }
 
-    pub(super) fn observation(&self) -> &[[T; O]] {
+    /// `[cell, i]`.
+    pub(super) fn observation(&self) -> &[T] {
         self.memory.field(&self.memory.fields.observation)
     }
 
-    pub(super) fn action(&self) -> &[[T; D]] {
+    /// `[cell, i]`.
+    pub(super) fn action(&self) -> &[T] {
         self.memory.field(&self.memory.fields.action)
     }
 
@@ -199,7 +222,8 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
         self.memory.field(&self.memory.fields.end_place)
     }
 
-    fn end_seen(&self) -> &[[T; O]] {
+    /// `[end, i]`.
+    fn end_seen(&self) -> &[T] {
         self.memory.field(&self.memory.fields.end_seen)
     }
 
@@ -230,14 +254,18 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
     }
 
     /// The observation after a transition with these flags, if it is stored with the ends.
-    pub(super) fn end_of(&self, step: u64, n: usize, flags: u8) -> Option<[T; O]> {
+    pub(super) fn end_of(&self, step: u64, n: usize, flags: u8) -> Option<&[T]> {
         if flags & END == 0 {
             return None;
         }
         let place = self.place_of(step, n, flags & (TERMINATED | TRUNCATED) == 0);
         let i = self.first_from(place);
-        (i < self.marks.ends.end && self.place(i) == place)
-            .then(|| self.end_seen()[(i % self.capacity.ends as u64) as usize])
+        let width = self.sizes[0];
+        let seen = || {
+            let at = (i % self.capacity.ends as u64) as usize;
+            &self.end_seen()[at * width..][..width]
+        };
+        (i < self.marks.ends.end && self.place(i) == place).then(seen)
     }
 
     /// The first end that belongs to a step from `step` on.

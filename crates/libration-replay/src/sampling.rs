@@ -8,6 +8,7 @@ use libration_core::control::error::ensure_probability;
 
 use super::memory::Marks;
 use super::replay_buffer::{END, NONE, TERMINATED, TRUNCATED};
+use super::rows::gather;
 use super::{Columns, Draw, ReplayBuffer, ReplayError};
 use libration_batch::ensemble::Execution;
 
@@ -58,7 +59,7 @@ const ATTEMPTS: u32 = 16;
 /// Transitions of a batch that are worth a thread.
 const PIECE: usize = 1 << 14;
 
-impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
+impl<T: Float + Pod> ReplayBuffer<T> {
     /// Fills a batch with transitions that are drawn with replacement, each as likely; their weights are 1.
     ///
     /// # Errors
@@ -68,11 +69,11 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
         &self,
         draw: Draw,
         lookahead: Lookahead,
-        batch: &mut Columns<'_, T, O, D>,
+        batch: &mut Columns<'_, T>,
         execution: &Execution,
     ) -> Result<(), ReplayError> {
         lookahead.check()?;
-        let len = batch.len()?;
+        let len = batch.len(self.sizes)?;
         let starts = self.drawable(self.marks.tail..self.marks.head);
         let starts = starts.ok_or(ReplayError::Empty("transitions"))?;
         for (i, number) in batch.number.iter_mut().enumerate() {
@@ -117,16 +118,17 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
 
     /// The observation after a step with these flags.
     #[inline(always)]
-    pub(super) fn next(&self, step: u64, l: usize, flags: u8) -> [T; O] {
+    pub(super) fn next(&self, step: u64, l: usize, flags: u8) -> &[T] {
+        let width = self.sizes[0];
         let apart = self.end_of(step, l, flags);
-        apart.unwrap_or_else(|| self.observation()[self.cell(step + 1, l)])
+        apart.unwrap_or_else(|| &self.observation()[self.cell(step + 1, l) * width..][..width])
     }
 
     /// Fills what follows from the numbers of a batch.
     pub(super) fn gather_all(
         &self,
         lookahead: Lookahead,
-        batch: &mut Columns<'_, T, O, D>,
+        batch: &mut Columns<'_, T>,
         len: usize,
         execution: &Execution,
     ) {
@@ -143,86 +145,91 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
             discount: batch.discount,
             weight: batch.weight,
         };
-        let parts = (0..pieces).map(|_| rest.split_off(piece)).collect();
+        let parts = (0..pieces).map(|_| rest.split_off(piece, self.sizes)).collect();
         execution.each(parts, |part| self.gather(lookahead, part));
     }
 
     /// Fills what follows from the numbers: field by field, since a processor waits for more lines of memory at once where
     /// little is done with each.
-    fn gather(&self, lookahead: Lookahead, batch: Columns<'_, T, O, D>) {
-        let (mut steps, mut places) = ([0; BLOCK], [0; BLOCK]);
+    fn gather(&self, lookahead: Lookahead, batch: Columns<'_, T>) {
+        let [observations, actions] = self.sizes;
+        let (mut steps, mut places, mut cells) = ([0; BLOCK], [0; BLOCK], [0; BLOCK]);
+        let mut marks = [0; BLOCK];
         let mut rest = batch;
         while !rest.number.is_empty() {
-            let mut block = rest.split_off(rest.number.len().min(BLOCK));
+            let mut block = rest.split_off(rest.number.len().min(BLOCK), self.sizes);
+            let len = block.number.len();
+            let (steps, places) = (&mut steps[..len], &mut places[..len]);
+            let (cells, marks) = (&mut cells[..len], &mut marks[..len]);
             for (i, &number) in block.number.iter().enumerate() {
                 let (step, l) = self.width.divide(number);
                 (steps[i], places[i]) = (step, l as usize);
+                cells[i] = self.cell(step, l as usize);
             }
-            let (steps, places) = (&steps[..block.number.len()], &places[..block.number.len()]);
+            gather(block.observation, self.observation(), cells, observations);
+            gather(block.action, self.action(), cells, actions);
             if lookahead.steps == 1 {
-                self.gather_next(T::from_f64(lookahead.discount), steps, places, &mut block);
+                let gamma = T::from_f64(lookahead.discount);
+                self.gather_next(gamma, cells, marks, &mut block);
             } else {
-                self.gather_far(lookahead, steps, places, &mut block);
+                self.gather_far(lookahead, steps, cells, marks, &mut block);
+            }
+            gather(block.next_observation, self.observation(), cells, observations);
+            for (i, &mark) in marks.iter().enumerate() {
+                if let Some(apart) = self.end_of(steps[i], places[i], mark) {
+                    let next = &mut block.next_observation[i * observations..][..observations];
+                    next.copy_from_slice(apart);
+                }
+                block.terminated[i] = mark & TERMINATED;
+                block.truncated[i] = (mark & TRUNCATED) / TRUNCATED;
             }
         }
     }
 
-    /// The outcome of one step.
+    /// The cell of the same environment in the next row.
+    #[inline(always)]
+    pub(super) fn cell_after(&self) -> impl Fn(usize) -> usize + Copy {
+        let width = self.capacity.environments;
+        let last = (self.capacity.rows() - 1) * width;
+        move |cell| if cell < last { cell + width } else { cell - last }
+    }
+
+    /// The outcome of one step; writes the flags of the cells, and moves these on to their next rows.
     fn gather_next(
         &self,
         gamma: T,
-        steps: &[u64],
-        places: &[usize],
-        batch: &mut Columns<'_, T, O, D>,
+        cells: &mut [usize],
+        marks: &mut [u8],
+        batch: &mut Columns<'_, T>,
     ) {
-        let (rows, width) = (self.capacity.rows(), self.capacity.environments);
-        let (mut cells, mut marks) = ([0; BLOCK], [0; BLOCK]);
-        let len = steps.len();
-        for (cell, (&step, &l)) in cells.iter_mut().zip(steps.iter().zip(places)) {
-            *cell = self.row(step) * width + l;
-        }
-        let cells = &mut cells[..len];
-        take(&mut marks[..len], self.flags(), cells);
-        take(batch.observation, self.observation(), cells);
-        take(batch.action, self.action(), cells);
-        take(batch.reward, self.reward(), cells);
-        let last = (rows - 1) * width;
-        cells
-            .iter_mut()
-            .for_each(|cell| *cell = if *cell < last { *cell + width } else { *cell - last });
-        take(batch.next_observation, self.observation(), cells);
-        for (i, &mark) in marks[..len].iter().enumerate() {
-            if let Some(apart) = self.end_of(steps[i], places[i], mark) {
-                batch.next_observation[i] = apart;
-            }
-            batch.terminated[i] = mark & TERMINATED;
-            batch.truncated[i] = (mark & TRUNCATED) / TRUNCATED;
-            batch.discount[i] = if mark & TERMINATED != 0 { T::zero() } else { gamma };
+        gather(marks, self.flags(), cells, 1);
+        gather(batch.reward, self.reward(), cells, 1);
+        let after = self.cell_after();
+        cells.iter_mut().for_each(|cell| *cell = after(*cell));
+        for (discount, mark) in batch.discount.iter_mut().zip(marks) {
+            *discount = if *mark & TERMINATED != 0 { T::zero() } else { gamma };
         }
     }
 
-    /// The outcome of several steps.
+    /// The outcome of several steps; moves `steps` on to the last of these, with its flags, and the cells to the row after it.
     fn gather_far(
         &self,
         lookahead: Lookahead,
-        steps: &[u64],
-        places: &[usize],
-        batch: &mut Columns<'_, T, O, D>,
+        steps: &mut [u64],
+        cells: &mut [usize],
+        marks: &mut [u8],
+        batch: &mut Columns<'_, T>,
     ) {
-        let (rows, width) = (self.capacity.rows(), self.capacity.environments);
-        let (seen, done) = (self.observation(), self.action());
+        let after = self.cell_after();
         let (paid, flags) = (self.reward(), self.flags());
         let gamma = T::from_f64(lookahead.discount);
-        for (i, (&step, &l)) in steps.iter().zip(places).enumerate() {
-            let mut row = self.row(step);
-            let cell = row * width + l;
-            (batch.observation[i], batch.action[i]) = (seen[cell], done[cell]);
-            let most = (self.marks.head - step).min(lookahead.steps as u64);
-            let (mut reward, mut factor, mut at) = (paid[cell], gamma, cell);
+        for (i, step) in steps.iter_mut().enumerate() {
+            let mut at = cells[i];
+            let mut next = after(at);
+            let most = (self.marks.head - *step).min(lookahead.steps as u64);
+            let (mut reward, mut factor) = (paid[at], gamma);
             let mut taken = 1;
-            row = if row + 1 == rows { 0 } else { row + 1 };
             while taken < most && flags[at] & END == 0 {
-                let next = row * width + l;
                 // What is no transition is not paid for: the one before led to where it stands.
                 if flags[next] & NONE != 0 {
                     break;
@@ -231,24 +238,16 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
                 reward = reward + factor * paid[at];
                 factor = factor * gamma;
                 taken += 1;
-                row = if row + 1 == rows { 0 } else { row + 1 };
+                next = after(next);
             }
-            let mark = flags[at];
-            let apart = self.end_of(step + taken - 1, l, mark);
-            batch.next_observation[i] = apart.unwrap_or_else(|| seen[row * width + l]);
+            *step += taken - 1;
+            cells[i] = next;
+            marks[i] = flags[at];
             batch.reward[i] = reward;
-            batch.terminated[i] = mark & TERMINATED;
-            batch.truncated[i] = (mark & TRUNCATED) / TRUNCATED;
-            batch.discount[i] = if mark & TERMINATED != 0 { T::zero() } else { factor };
+            batch.discount[i] = if flags[at] & TERMINATED != 0 { T::zero() } else { factor };
         }
     }
 }
 
 /// Transitions that are gathered together.
 const BLOCK: usize = 256;
-
-/// The values of some cells.
-#[inline(always)]
-fn take<X: Copy>(to: &mut [X], from: &[X], cells: &[usize]) {
-    to.iter_mut().zip(cells).for_each(|(to, &cell)| *to = from[cell]);
-}

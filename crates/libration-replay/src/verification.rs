@@ -7,7 +7,7 @@ use super::memory::Marks;
 use super::replay_buffer::{END, NONE};
 use super::{ReplayBuffer, ReplayError};
 
-impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
+impl<T: Float + Pod> ReplayBuffer<T> {
     /// Marks transitions before a reset: the process may have died between the end and its mark.
     pub(super) fn mark_parted(&mut self) {
         let parted = |i: u64| {

@@ -20,6 +20,12 @@ pub struct EpisodeEnd<T, const O: usize> {
 }
 
 impl<T, const O: usize> EpisodeEnd<T, O> {
+    /// The same without the observation.
+    pub(super) fn without_observation(&self) -> EpisodeEnd<T, 0> {
+        let EpisodeEnd { step, environment, episode_return, length, lost, .. } = *self;
+        EpisodeEnd { step, environment, observation: [], episode_return, length, lost }
+    }
+
     /// The ends of all threads, by step and environment.
     pub(super) fn in_order(threads: Vec<Vec<Self>>) -> Vec<Self> {
         let mut all = Vec::new();

@@ -42,6 +42,7 @@ mod rollout;
 mod rollout_row;
 mod rollout_run;
 mod rollout_slice;
+mod rollout_tensors;
 pub mod sensor;
 pub mod start;
 mod step_length;
@@ -68,6 +69,7 @@ pub use program::{
 };
 pub use rollout::Rollout;
 pub use rollout_run::StepBuffers;
+pub use rollout_tensors::RolloutTensors;
 pub use sensor::Sensor;
 pub use start::{Episode, Start};
 pub use task::Task;

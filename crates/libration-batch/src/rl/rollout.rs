@@ -63,28 +63,6 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
         })
     }
 
-    /// A rollout with what `others` has of each transition, and with these observations, actions and ends.
-    ///
-    /// # Errors
-    /// [`EnvironmentError::OutOfMemory`].
-    #[cfg(not(test))]
-    pub(super) fn with(
-        others: &Rollout<T, 0, 0>,
-        [observation, action]: [&[T]; 2],
-        finals: Vec<EpisodeEnd<T, O>>,
-    ) -> Result<Self, EnvironmentError> {
-        let mut all = Rollout::new(others.plan)?;
-        all.observation.copy_from_slice(observation);
-        all.action.copy_from_slice(action);
-        all.reward.copy_from_slice(&others.reward);
-        all.terminated.copy_from_slice(&others.terminated);
-        all.truncated.copy_from_slice(&others.truncated);
-        all.log_probability.copy_from_slice(&others.log_probability);
-        all.value.copy_from_slice(&others.value);
-        (all.finals, all.idle, all.pauses) = (finals, others.idle.clone(), others.pauses);
-        Ok(all)
-    }
-
     /// The plan.
     pub fn plan(&self) -> Plan {
         self.plan

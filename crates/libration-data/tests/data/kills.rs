@@ -66,8 +66,8 @@ fn capacity() -> Capacity {
 fn the_process_that_is_killed() {
     let Some(path) = std::env::var_os(FILE).map(PathBuf::from) else { return };
     let mut replay = match path.exists() {
-        true => ReplayFile::<f32, 2, 1>::open(&path).unwrap(),
-        false => ReplayFile::create(&path, capacity()).unwrap(),
+        true => ReplayFile::<f32>::open(&path, [2, 1]).unwrap(),
+        false => ReplayFile::create(&path, [2, 1], capacity()).unwrap(),
     };
     let mut source = source();
     let there = replay.inserted() as usize / STEPS;
@@ -117,7 +117,7 @@ fn nothing_that_was_reported_as_inserted_is_lost_however_often_its_process_is_ki
     let mut turns = 0;
     for kill in 0..kills {
         let told = killed(&path, Duration::from_micros(500 + 977 * (kill * kill % 41)));
-        let replay = ReplayFile::<f32, 2, 1>::open(&path).unwrap();
+        let replay = ReplayFile::<f32>::open(&path, [2, 1]).unwrap();
         let there = replay.inserted() as usize / STEPS;
         assert!(there == told || there == told + 1, "{there} are there, {told} were told");
         for _ in turns..there {
@@ -129,7 +129,7 @@ fn nothing_that_was_reported_as_inserted_is_lost_however_often_its_process_is_ki
         turns = there;
         // At most one rollout had to go for the one that did not come.
         assert!(replay.steps() as usize >= (there.min(7)) * STEPS, "{} steps", replay.steps());
-        let mut batch = Batch::new(4000);
+        let mut batch = Batch::new(4000, [2, 1]);
         let draw = Draw { seed: 1, number: kill };
         let serial = Execution::serial();
         replay.sample(draw, Lookahead::default(), &mut batch.columns(), &serial).unwrap();
@@ -137,8 +137,8 @@ fn nothing_that_was_reported_as_inserted_is_lost_however_often_its_process_is_ki
             let (step, n) = (number as usize / COUNT, number as usize % COUNT);
             let (rollout, next) = &kept[kept.len() + step / STEPS - turns];
             let t = step % STEPS;
-            assert_eq!(batch.observation[i], rollout.seen(t, n));
-            assert_eq!(batch.action[i], rollout.done(t, n));
+            assert_eq!(batch.observation[2 * i..][..2], rollout.seen(t, n));
+            assert_eq!(batch.action[i..][..1], rollout.done(t, n));
             assert_eq!(batch.reward[i], rollout.reward()[t * COUNT + n]);
             let end = rollout.finals().iter().find(|end| (end.step, end.environment) == (t, n));
             let after = match end {
@@ -146,7 +146,7 @@ fn nothing_that_was_reported_as_inserted_is_lost_however_often_its_process_is_ki
                 None if t + 1 < STEPS => rollout.seen(t + 1, n),
                 None => [next[2 * n], next[2 * n + 1]],
             };
-            assert_eq!(batch.next_observation[i], after, "{step} {n}");
+            assert_eq!(batch.next_observation[2 * i..][..2], after, "{step} {n}");
         }
     }
     assert!(turns > kills as usize);

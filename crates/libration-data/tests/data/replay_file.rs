@@ -14,7 +14,10 @@ use libration::system::Oscillator;
 use libration_data::ReplayFile;
 use tempfile::TempDir;
 
-type Kept = ReplayFile<f32, 2, 1>;
+type Kept = ReplayFile<f32>;
+
+/// Numbers of observations and actions.
+const SIZES: [usize; 2] = [2, 1];
 
 /// Inserts so many rollouts of five steps.
 fn fill(replay: &mut Kept, rollouts: usize) {
@@ -36,16 +39,16 @@ fn fill(replay: &mut Kept, rollouts: usize) {
 fn what_was_inserted_is_found_in_the_file_again() {
     let dir = TempDir::new().unwrap();
     let path = dir.path().join("replay");
-    let mut replay = Kept::create(&path, Capacity::new(20, 8).priorities()).unwrap();
+    let mut replay = Kept::create(&path, SIZES, Capacity::new(20, 8).priorities()).unwrap();
     fill(&mut replay, 7);
     replay.flush().unwrap();
     let (bytes, len) = (replay.bytes().to_vec(), replay.len());
-    let again = Kept::create(&path, Capacity::new(20, 8)).map(drop).unwrap_err().to_string();
+    let again = Kept::create(&path, SIZES, Capacity::new(20, 8)).map(drop).unwrap_err().to_string();
     assert!(again.contains("cannot create"), "{again}");
-    let locked = Kept::open(&path).map(drop).unwrap_err().to_string();
+    let locked = Kept::open(&path, SIZES).map(drop).unwrap_err().to_string();
     assert!(locked.contains("another process is using"), "{locked}");
     drop(replay);
-    let opened = Kept::open(&path).unwrap();
+    let opened = Kept::open(&path, SIZES).unwrap();
     assert_eq!((opened.len(), opened.inserted(), opened.steps()), (len, 35, 20));
     assert!(opened.bytes() == bytes);
 }
@@ -54,7 +57,7 @@ fn what_was_inserted_is_found_in_the_file_again() {
 fn a_file_of_something_else_is_refused_and_stays_as_it_was() {
     let dir = TempDir::new().unwrap();
     let path = dir.path().join("replay");
-    let refused = || Kept::open(&path).map(drop).unwrap_err().to_string();
+    let refused = || Kept::open(&path, SIZES).map(drop).unwrap_err().to_string();
     assert!(refused().contains("cannot open"));
     for bytes in [&b""[..], b"thesis", &[7; 9000]] {
         fs::write(&path, bytes).unwrap();
@@ -67,6 +70,6 @@ fn a_file_of_something_else_is_refused_and_stays_as_it_was() {
         assert_eq!(fs::read(&path).unwrap(), bytes);
     }
     fs::remove_file(&path).unwrap();
-    drop(ReplayFile::<f64, 2, 1>::create(&path, Capacity::new(20, 8)).unwrap());
+    drop(ReplayFile::<f64>::create(&path, SIZES, Capacity::new(20, 8)).unwrap());
     assert!(refused().contains("the float type is f64; it must be f32"));
 }

@@ -21,15 +21,16 @@ const BATCH: usize = 1024;
 const DEVIATIONS: f64 = 5.0;
 
 /// The source's transitions: position and velocity, an action and a reward in `f32`, and a flag.
-type Store = ReplayBuffer<f32, 2, 1>;
+type Store = ReplayBuffer<f32>;
+const SIZES: [usize; 2] = [2, 1];
 const BYTES: usize = 4 * size_of::<f32>() + 1;
 
 /// Inserts, looks, and draws.
 pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
     let execution = lab.alone()?;
     let capacity = Capacity::new(STEPS, ENVIRONMENTS);
-    let mut plain = Store::new(capacity)?;
-    let mut weighed = Store::new(capacity.priorities())?;
+    let mut plain = Store::new(SIZES, capacity)?;
+    let mut weighed = Store::new(SIZES, capacity.priorities())?;
     let mut all = Environments::new(regulating(), ENVIRONMENTS, 7, execution.clone())?;
     let mut rollout = Rollout::new(Plan::new(ROLLOUT, ENVIRONMENTS).truncated())?;
     let mut next = vec![0.0; 2 * ENVIRONMENTS];
@@ -106,7 +107,7 @@ fn odds(
 
     let batches = lab.effort.choose(1000, 4000, 20_000);
     let draws = (batches * BATCH as u64) as f64;
-    let mut batch = Batch::<f32, 2, 1>::new(BATCH);
+    let mut batch = Batch::<f32>::new(BATCH, SIZES);
     let mut counts = [vec![0.0; kept], vec![0.0; kept]];
     let ahead = Lookahead::default();
     for number in 0..batches {

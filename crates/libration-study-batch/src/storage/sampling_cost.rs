@@ -11,6 +11,8 @@ use libration_study::{Lab, StudyError};
 use crate::bench::{Contestant, regulating, regulating_from};
 use crate::measurement::Measurement;
 
+/// Numbers of observations and actions.
+const SIZES: [usize; 2] = [2, 1];
 const ENVIRONMENTS: usize = 64;
 const BATCH: usize = 256;
 /// Steps of a rollout.
@@ -57,8 +59,8 @@ fn times(measurement: &Measurement<'_>, kept: usize) -> Result<[f64; COLUMNS.len
     let mut rollout = Rollout::new(Plan::new(ROLLOUT, ENVIRONMENTS).truncated())?;
     let mut next = vec![0.0; 2 * ENVIRONMENTS];
     let capacity = Capacity::new(kept / ENVIRONMENTS, ENVIRONMENTS);
-    let mut plain = ReplayBuffer::<f32, 2, 1>::new(capacity)?;
-    let mut weighed = ReplayBuffer::<f32, 2, 1>::new(capacity.priorities())?;
+    let mut plain = ReplayBuffer::<f32>::new(SIZES, capacity)?;
+    let mut weighed = ReplayBuffer::<f32>::new(SIZES, capacity.priorities())?;
     // Twice around: what is written first costs faults of pages.
     for _ in 0..2 * kept / ENVIRONMENTS / ROLLOUT {
         all.rollout(Random::between([-1.0], [1.0]), &mut rollout)?;
@@ -71,11 +73,11 @@ fn times(measurement: &Measurement<'_>, kept: usize) -> Result<[f64; COLUMNS.len
     let mut rollout = Rollout::new(Plan::new(ROLLOUT, ENVIRONMENTS).truncated())?;
     still.rollout(Constant([0.0]), &mut rollout)?;
     still.observe(&mut next)?;
-    let mut inserted = ReplayBuffer::<f32, 2, 1>::new(capacity)?;
+    let mut inserted = ReplayBuffer::<f32>::new(SIZES, capacity)?;
     for _ in 0..2 * kept / ENVIRONMENTS / ROLLOUT {
         inserted.insert(&rollout, &next, execution)?;
     }
-    let [mut one, mut two] = [(); 2].map(|()| Batch::<f32, 2, 1>::new(BATCH));
+    let [mut one, mut two] = [(); 2].map(|()| Batch::<f32>::new(BATCH, SIZES));
     let [mut first, mut second] = [0, 0];
     let ahead = Lookahead::default();
     // All of it went well just now.

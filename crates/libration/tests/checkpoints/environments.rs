@@ -126,10 +126,10 @@ fn a_state_of_other_environments_or_a_damaged_one_is_refused_and_changes_nothing
 #[test]
 fn a_replay_buffer_goes_on_bit_for_bit() {
     let serial = Execution::serial();
-    let make = || ReplayBuffer::<f32, 2, 1>::new(Capacity::new(40, COUNT).priorities()).unwrap();
+    let make = || ReplayBuffer::<f32>::new([2, 1], Capacity::new(40, COUNT).priorities()).unwrap();
     let mut all = Environments::new(world(Autoreset::SameStep), COUNT, 9, serial.clone()).unwrap();
     let (mut whole, mut other) = (make(), make());
-    let mut insert = |into: [Option<&mut ReplayBuffer<f32, 2, 1>>; 2]| {
+    let mut insert = |into: [Option<&mut ReplayBuffer<f32>>; 2]| {
         let mut rollout = Rollout::new(Plan::new(7, COUNT).truncated()).unwrap();
         all.rollout(POLICY, &mut rollout).unwrap();
         let mut next = vec![0.0; 2 * COUNT];
@@ -145,7 +145,7 @@ fn a_replay_buffer_goes_on_bit_for_bit() {
     for number in 0..9 {
         insert([Some(&mut whole), Some(&mut other)]);
         let [one, two] = [&mut whole, &mut other].map(|replay| {
-            let mut batch = Batch::new(64);
+            let mut batch = Batch::new(64, [2, 1]);
             let draw = Draw { seed: 1, number };
             let columns = &mut batch.columns();
             replay.sample_prioritised(draw, Lookahead::default(), 0.5, columns, &serial).unwrap();
@@ -161,6 +161,6 @@ fn a_replay_buffer_goes_on_bit_for_bit() {
     let before = other.to_bytes();
     assert!(other.restore(&damaged).unwrap_err().to_string().contains("damaged"));
     assert!(other.to_bytes() == before);
-    let small = ReplayBuffer::<f32, 2, 1>::new(Capacity::new(41, COUNT).priorities()).unwrap();
+    let small = ReplayBuffer::<f32>::new([2, 1], Capacity::new(41, COUNT).priorities()).unwrap();
     assert!(refused(&small, &whole).contains("its number of steps is 41; it must be 40"));
 }

@@ -6,7 +6,7 @@ use libration::replay::{Batch, Capacity, Draw, Lookahead, ReplayBuffer, ReplayEr
 use libration::rl::Autoreset;
 use memmap2::MmapMut;
 
-use super::{Replay21, environments, filled, run};
+use super::{Replay, SIZES, environments, filled, run};
 
 /// Every field of these small buffers is a page; the first is the header.
 const PAGE: usize = 4096;
@@ -19,17 +19,17 @@ fn mapped(bytes: &[u8]) -> MmapMut {
 }
 
 /// What finds its bytes.
-pub(crate) fn reopened(replay: &Replay21) -> Result<Replay21, ReplayError> {
-    ReplayBuffer::open(mapped(replay.bytes()))
+pub(crate) fn reopened(replay: &Replay) -> Result<Replay, ReplayError> {
+    Replay::open(mapped(replay.bytes()), replay.sizes())
 }
 
 /// A batch of it.
-fn batch(replay: &Replay21) -> Batch<f32, 2, 1> {
+fn batch(replay: &Replay) -> Batch<f32> {
     numbered(replay, 3)
 }
 
-fn numbered(replay: &Replay21, number: u64) -> Batch<f32, 2, 1> {
-    let mut batch = Batch::new(100);
+fn numbered(replay: &Replay, number: u64) -> Batch<f32> {
+    let mut batch = Batch::new(100, SIZES);
     let draw = Draw { seed: 2, number };
     replay.sample(draw, Lookahead::default(), &mut batch.columns(), &Execution::serial()).unwrap();
     batch
@@ -40,7 +40,7 @@ fn a_process_that_dies_at_any_write_loses_nothing_that_was_inserted_before() {
     let serial = Execution::serial();
     let capacity = Capacity::new(9, 3).ends(6).priorities();
     let mut all = environments(Autoreset::SameStep, 3);
-    let mut replay = Replay21::new(capacity).unwrap();
+    let mut replay = Replay::new(SIZES, capacity).unwrap();
     for _ in 0..5 {
         let (rollout, next) = run(&mut all, 2, Default::default());
         replay.insert(&rollout, &next, &serial).unwrap();
@@ -48,10 +48,10 @@ fn a_process_that_dies_at_any_write_loses_nothing_that_was_inserted_before() {
     all.reset(&[true, false, true]).unwrap();
     let before = replay.bytes().to_vec();
     let steps = replay.inserted() - replay.steps()..replay.inserted();
-    let there = Replay21::open(mapped(&before)).unwrap();
+    let there = Replay::open(mapped(&before), SIZES).unwrap();
     let drawn: Vec<_> = (0..30).map(|number| numbered(&there, number)).collect();
     let one = |number: u64| {
-        let find = |batch: &Batch<f32, 2, 1>| {
+        let find = |batch: &Batch<f32>| {
             batch.number.iter().position(|&i| i == number).map(|i| entry(batch, i))
         };
         drawn.iter().find_map(find).unwrap()
@@ -73,7 +73,7 @@ fn a_process_that_dies_at_any_write_loses_nothing_that_was_inserted_before() {
     assert!(unmarked != dead);
     // Who died before they were set parts nothing twice, and nothing but what it parted before.
     for _ in 0..2 {
-        let mut again = Replay21::open(mapped(&unmarked)).unwrap();
+        let mut again = Replay::open(mapped(&unmarked), SIZES).unwrap();
         again.insert(&rollout, &next, &serial).unwrap();
         for number in 0..30 {
             assert_eq!(numbered(&again, number), numbered(&replay, number));
@@ -94,20 +94,22 @@ fn a_process_that_dies_at_any_write_loses_nothing_that_was_inserted_before() {
             let written = if cut % 2 == 0 { k < cut as usize / 2 } else { random };
             torn[i] = if written { after[i] } else { dead[i] };
         }
-        let found = Replay21::open(mapped(&torn)).unwrap();
+        let found = Replay::open(mapped(&torn), SIZES).unwrap();
         assert_eq!((found.inserted(), found.steps()), (steps.end, replay.steps() - 2));
         let drawn = batch(&found);
         for (i, number) in drawn.number.iter().enumerate() {
-            let was = known[(number - steps.start * 3) as usize];
-            assert_eq!(entry(&drawn, i), was, "transition {number}, {cut}");
+            let was = &known[(number - steps.start * 3) as usize];
+            assert_eq!(&entry(&drawn, i), was, "transition {number}, {cut}");
         }
     }
 }
 
 /// What there is of a transition.
-fn entry(batch: &Batch<f32, 2, 1>, i: usize) -> ([f32; 2], [f32; 1], f32, [f32; 2], [u8; 2]) {
+fn entry(batch: &Batch<f32>, i: usize) -> ([[f32; 2]; 2], [f32; 2], [u8; 2]) {
+    let seen =
+        [&batch.observation, &batch.next_observation].map(|all| [all[2 * i], all[2 * i + 1]]);
     let flags = [batch.terminated[i], batch.truncated[i]];
-    (batch.observation[i], batch.action[i], batch.reward[i], batch.next_observation[i], flags)
+    (seen, [batch.action[i], batch.reward[i]], flags)
 }
 
 fn sizes(numbers: &[f32]) -> Vec<f32> {
@@ -118,14 +120,14 @@ fn sizes(numbers: &[f32]) -> Vec<f32> {
 fn what_is_opened_goes_on_as_if_it_had_never_been_closed() {
     let serial = Execution::serial();
     let mut all = environments(Autoreset::SameStep, 3);
-    let mut kept = Replay21::new(Capacity::new(9, 3).priorities()).unwrap();
+    let mut kept = Replay::new(SIZES, Capacity::new(9, 3).priorities()).unwrap();
     let mut opened = reopened(&kept).unwrap();
     for number in 0..40 {
         let (rollout, next) = run(&mut all, 2, Default::default());
         for replay in [&mut kept, &mut opened] {
             replay.insert(&rollout, &next, &serial).unwrap();
             let draw = Draw { seed: 1, number };
-            let mut batch = Batch::<f32, 2, 1>::new(8);
+            let mut batch = Batch::<f32>::new(8, SIZES);
             let columns = &mut batch.columns();
             replay.sample_prioritised(draw, Lookahead::default(), 0.4, columns, &serial).unwrap();
             replay.update(&batch.number, &sizes(&batch.reward), 0.6).unwrap();
@@ -144,7 +146,7 @@ fn memory_of_something_else_and_damaged_memory_are_refused() {
     let refused = |change: &dyn Fn(&mut Vec<u8>)| {
         let mut bytes = bytes.to_vec();
         change(&mut bytes);
-        Replay21::open(mapped(&bytes)).map(drop).unwrap_err().to_string()
+        Replay::open(mapped(&bytes), SIZES).map(drop).unwrap_err().to_string()
     };
     for (said, found) in [
         ("its beginning is another", refused(&|bytes| bytes[0] ^= 1)),
@@ -159,8 +161,12 @@ fn memory_of_something_else_and_damaged_memory_are_refused() {
     ] {
         assert!(found.contains(said), "{found}");
     }
-    let wide = ReplayBuffer::<f64, 2, 1>::open(mapped(bytes)).map(drop).unwrap_err().to_string();
+    let wide = ReplayBuffer::<f64>::open(mapped(bytes), SIZES).map(drop).unwrap_err().to_string();
     assert!(wide.contains("the float type is f32; it must be f64"), "{wide}");
-    let other = ReplayBuffer::<f32, 3, 1>::open(mapped(bytes)).map(drop).unwrap_err().to_string();
-    assert!(other.contains("2 numbers seen, 1 done; it must be 3 numbers seen"), "{other}");
+    for (sizes, wanted) in [([3, 1], "3 numbers seen, 1 done"), ([2, 2], "2 numbers seen, 2 done")]
+    {
+        let other = Replay::open(mapped(bytes), sizes).map(drop).unwrap_err().to_string();
+        let expected = format!("2 numbers seen, 1 done; it must be {wanted}");
+        assert!(other.contains(&expected), "{other}");
+    }
 }

@@ -3,24 +3,40 @@
 use std::collections::VecDeque;
 
 use libration::replay::Capacity;
-use libration::rl::Rollout;
+use libration::rl::{Layout, RolloutTensors};
 
 /// A transition with all that belongs to it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Transition {
-    pub(crate) seen: [f32; 2],
-    pub(crate) done: [f32; 1],
+    pub(crate) seen: Vec<f32>,
+    pub(crate) done: Vec<f32>,
     pub(crate) paid: f32,
     pub(crate) over: bool,
     pub(crate) cut: bool,
     /// Whether what was seen next is not where the next step begins.
     pub(crate) parted: bool,
-    pub(crate) next: [f32; 2],
+    pub(crate) next: Vec<f32>,
     pub(crate) weight: f64,
 }
 
 /// None where a step was no transition; what was seen in it all the same.
-type Step = Vec<([f32; 2], Option<Transition>)>;
+type Step = Vec<(Vec<f32>, Option<Transition>)>;
+
+/// The `width` numbers of environment `i` in step `t`.
+fn row(
+    rollout: &dyn RolloutTensors<f32>,
+    numbers: &[f32],
+    width: usize,
+    [t, i]: [usize; 2],
+) -> Vec<f32> {
+    let plan = rollout.plan();
+    let (cell, cells) = (t * plan.environments + i, plan.horizon * plan.environments);
+    let at = |k| match plan.layout {
+        Layout::Interleaved => cell * width + k,
+        Layout::Planes => k * cells + cell,
+    };
+    (0..width).map(|k| numbers[at(k)]).collect()
+}
 
 /// The list.
 pub(crate) struct Naive {
@@ -28,7 +44,7 @@ pub(crate) struct Naive {
     /// The number of the first step.
     pub(crate) first: u64,
     steps: VecDeque<Step>,
-    next: Vec<[f32; 2]>,
+    next: Vec<Vec<f32>>,
     pub(crate) largest: f64,
 }
 
@@ -37,17 +53,21 @@ impl Naive {
         Naive { capacity, first: 0, steps: VecDeque::new(), next: Vec::new(), largest: 1.0 }
     }
 
-    pub(crate) fn insert(&mut self, rollout: &Rollout<f32, 2, 1>, next: &[f32]) {
+    pub(crate) fn insert(&mut self, rollout: &dyn RolloutTensors<f32>, next: &[f32]) {
         let plan = rollout.plan();
         let n = plan.environments;
+        let ([observations, actions], ended) = (rollout.sizes(), rollout.ended());
+        let seen = |t, i| row(rollout, rollout.observation(), observations, [t, i]);
+        let next: Vec<Vec<f32>> = next.chunks(observations).map(<[f32]>::to_vec).collect();
+        let bits = |row: &[f32]| row.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
         let parted: Vec<usize> = match self.steps.back() {
             None => Vec::new(),
             Some(last) => (0..n)
-                .filter(|&i| rollout.seen(0, i).map(f32::to_bits) != self.next[i].map(f32::to_bits))
-                .filter(|&i| last[i].1.is_some_and(|transition| !transition.parted))
+                .filter(|&i| bits(&seen(0, i)) != bits(&self.next[i]))
+                .filter(|&i| last[i].1.as_ref().is_some_and(|transition| !transition.parted))
                 .collect(),
         };
-        let coming = rollout.finals().len() + parted.len();
+        let coming = ended + parted.len();
         while !self.steps.is_empty()
             && (self.steps.len() + plan.horizon > self.capacity.steps
                 || self.ends() + coming > self.capacity.ends)
@@ -63,17 +83,20 @@ impl Naive {
             }
         }
         for t in 0..plan.horizon {
+            let mut idle = vec![0; n];
+            rollout.write_idle(t, 0, &mut idle);
             let step = (0..n).map(|i| {
                 let at = t * n + i;
-                let end = rollout.finals().iter().find(|f| (f.step, f.environment) == (t, i));
+                let mut ends = (0..ended).map(|k| rollout.end(k));
+                let end = ends.find(|(end, _)| (end.step, end.environment) == (t, i));
                 let after = match end {
-                    Some(end) => end.observation,
-                    None if t + 1 < plan.horizon => rollout.seen(t + 1, i),
-                    None => [next[2 * i], next[2 * i + 1]],
+                    Some((_, last)) => last.to_vec(),
+                    None if t + 1 < plan.horizon => seen(t + 1, i),
+                    None => next[i].clone(),
                 };
                 let transition = Transition {
-                    seen: rollout.seen(t, i),
-                    done: rollout.done(t, i),
+                    seen: seen(t, i),
+                    done: row(rollout, rollout.action(), actions, [t, i]),
                     paid: rollout.reward()[at],
                     over: rollout.terminated()[at] == 1,
                     cut: rollout.truncated()[at] == 1,
@@ -81,17 +104,17 @@ impl Naive {
                     next: after,
                     weight: self.largest,
                 };
-                let is = rollout.is_transition(t, i) && !end.is_some_and(|end| end.lost);
-                (transition.seen, is.then_some(transition))
+                let is = idle[i] == 0 && !end.is_some_and(|(end, _)| end.lost);
+                (transition.seen.clone(), is.then_some(transition))
             });
             self.steps.push_back(step.collect());
         }
-        self.next = next.chunks(2).map(|seen| [seen[0], seen[1]]).collect();
+        self.next = next;
     }
 
     fn ends(&self) -> usize {
-        let parted = |(_, transition): &&([f32; 2], Option<Transition>)| {
-            transition.is_some_and(|transition| transition.parted)
+        let parted = |(_, transition): &&(Vec<f32>, Option<Transition>)| {
+            transition.as_ref().is_some_and(|transition| transition.parted)
         };
         self.steps.iter().flatten().filter(parted).count()
     }
@@ -105,27 +128,27 @@ impl Naive {
     }
 
     /// All transitions with their numbers.
-    pub(crate) fn all(&self) -> impl Iterator<Item = (u64, Transition)> + '_ {
+    pub(crate) fn all(&self) -> impl Iterator<Item = (u64, &Transition)> {
         let n = self.capacity.environments as u64;
         let first = self.first * n;
         let flat = self.steps.iter().flatten().enumerate();
-        flat.filter_map(move |(i, (_, transition))| Some((first + i as u64, (*transition)?)))
+        flat.filter_map(move |(i, (_, transition))| Some((first + i as u64, transition.as_ref()?)))
     }
 
-    pub(crate) fn get(&self, number: u64) -> Option<Transition> {
+    pub(crate) fn get(&self, number: u64) -> Option<&Transition> {
         let n = self.capacity.environments as u64;
         let step = (number / n).checked_sub(self.first)?;
-        self.steps.get(step as usize)?[(number % n) as usize].1
+        self.steps.get(step as usize)?[(number % n) as usize].1.as_ref()
     }
 
     /// What was seen in the step of this number, transition or not.
-    pub(crate) fn seen(&self, number: u64) -> [f32; 2] {
+    pub(crate) fn seen(&self, number: u64) -> &[f32] {
         let n = self.capacity.environments as u64;
-        self.steps[(number / n - self.first) as usize][(number % n) as usize].0
+        &self.steps[(number / n - self.first) as usize][(number % n) as usize].0
     }
 
     /// The transition, and the steps after it up to so many: what they pay, the last of them, and how many they are.
-    pub(crate) fn ahead(&self, number: u64, most: usize, gamma: f32) -> (f32, Transition, usize) {
+    pub(crate) fn ahead(&self, number: u64, most: usize, gamma: f32) -> (f32, &Transition, usize) {
         let n = self.capacity.environments as u64;
         let mut last = self.get(number).unwrap();
         let (mut paid, mut factor, mut taken) = (last.paid, gamma, 1);

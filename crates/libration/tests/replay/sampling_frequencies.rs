@@ -4,7 +4,7 @@ use libration::ensemble::Execution;
 use libration::replay::{Batch, Capacity, Draw, Lookahead, Sequences};
 use libration::rl::Autoreset;
 
-use super::{Replay21, environments, filled, run};
+use super::{Replay, SIZES, environments, filled, run};
 
 const BATCHES: u64 = 4000;
 const BATCH: usize = 64;
@@ -18,7 +18,7 @@ fn deviation(found: &[f64], expected: &[f64]) -> f64 {
 }
 
 /// How often each transition was drawn.
-fn counts(replay: &Replay21, mut draw: impl FnMut(Draw) -> Vec<u64>) -> Vec<f64> {
+fn counts(replay: &Replay, mut draw: impl FnMut(Draw) -> Vec<u64>) -> Vec<f64> {
     let mut counts = vec![0.0; (replay.inserted() * 10) as usize];
     for number in 0..BATCHES {
         for at in draw(Draw { seed: 11, number }) {
@@ -33,12 +33,12 @@ fn every_transition_is_as_likely_also_among_steps_that_are_none() {
     let serial = Execution::serial();
     for autoreset in [Autoreset::SameStep, Autoreset::Disabled] {
         let mut all = environments(autoreset, 10);
-        let mut replay = Replay21::new(Capacity::new(40, 10)).unwrap();
+        let mut replay = Replay::new(SIZES, Capacity::new(40, 10)).unwrap();
         let (rollout, next) = run(&mut all, 40, Default::default());
         replay.insert(&rollout, &next, &serial).unwrap();
         // Under `Disabled` at most 7 of 40 steps are transitions.
         assert_eq!(replay.len() < 71, autoreset == Autoreset::Disabled, "{}", replay.len());
-        let mut batch = Batch::<f32, 2, 1>::new(BATCH);
+        let mut batch = Batch::<f32>::new(BATCH, SIZES);
         let counts = counts(&replay, |draw| {
             replay.sample(draw, Lookahead::default(), &mut batch.columns(), &serial).unwrap();
             batch.number.clone()
@@ -56,7 +56,7 @@ fn every_transition_is_as_likely_also_among_steps_that_are_none() {
 #[test]
 fn every_sequence_is_as_likely() {
     let replay = filled(Capacity::new(40, 10), 40);
-    let mut to = Sequences::<f32, 2, 1>::new(BATCH, 9);
+    let mut to = Sequences::<f32>::new(BATCH, 9, SIZES);
     let counts = counts(&replay, |draw| {
         replay.sample_sequences(draw, &mut to, &Execution::serial()).unwrap();
         to.number.clone()
@@ -78,7 +78,7 @@ fn transitions_are_drawn_in_proportion_to_a_power_of_their_priorities_and_weighe
     assert_eq!(replay.update(&numbers, &priorities, 0.6).unwrap(), 400);
     let weights: Vec<f64> = priorities.iter().map(|&p| f64::from(p).powf(0.6)).collect();
     let total: f64 = weights.iter().sum();
-    let mut batch = Batch::<f32, 2, 1>::new(BATCH);
+    let mut batch = Batch::<f32>::new(BATCH, SIZES);
     let counts = counts(&replay, |draw| {
         let drawn = Lookahead::default();
         replay.sample_prioritised(draw, drawn, 0.4, &mut batch.columns(), &serial).unwrap();
@@ -105,7 +105,7 @@ fn a_batch_follows_from_its_address_whatever_was_drawn_before_and_on_how_many_th
     let replay = filled(Capacity::new(400, 10), 400);
     let three = Execution::serial().threads(3).unwrap();
     let sample = |number, execution: &Execution| {
-        let mut batch = Batch::<f32, 2, 1>::new(40_000);
+        let mut batch = Batch::<f32>::new(40_000, SIZES);
         let draw = Draw { seed: 1, number };
         replay.sample(draw, Lookahead::default(), &mut batch.columns(), execution).unwrap();
         batch
@@ -113,7 +113,7 @@ fn a_batch_follows_from_its_address_whatever_was_drawn_before_and_on_how_many_th
     let alone = sample(5, &Execution::serial());
     assert_ne!(sample(4, &three), alone);
     assert_eq!(sample(5, &three), alone);
-    let mut sequences = [Sequences::<f32, 2, 1>::new(9000, 5), Sequences::new(9000, 5)];
+    let mut sequences = [(); 2].map(|()| Sequences::<f32>::new(9000, 5, SIZES));
     for (to, execution) in sequences.iter_mut().zip([&Execution::serial(), &three]) {
         replay.sample_sequences(Draw { seed: 1, number: 9 }, to, execution).unwrap();
     }

@@ -7,7 +7,8 @@ use ndarray::{ArrayViewMut3, ShapeBuilder};
 use super::transitions::Transitions;
 use crate::ensemble::{Buffer, InsufficientMemory, Pages};
 use crate::rl::rollout_slice::RolloutSlice;
-use crate::rl::{EnvironmentError, EpisodeEnd, Layout, Plan, Rollout};
+use crate::rl::rollout_tensors::rollout_tensors;
+use crate::rl::{EnvironmentError, EpisodeEnd, Layout, Plan, Rollout, RolloutTensors};
 
 /// The transitions of [`ProgramEnvironments`](super::ProgramEnvironments) over a horizon: a [`Rollout`] with any number of observations
 /// and actions.
@@ -39,12 +40,8 @@ impl<T> Default for EpisodeEnds<T> {
 
 impl<T: Copy, const O: usize> From<&[EpisodeEnd<T, O>]> for EpisodeEnds<T> {
     fn from(ends: &[EpisodeEnd<T, O>]) -> Self {
-        let without = |end: &EpisodeEnd<T, O>| {
-            let EpisodeEnd { step, environment, episode_return, length, lost, .. } = *end;
-            EpisodeEnd { step, environment, observation: [], episode_return, length, lost }
-        };
         EpisodeEnds {
-            ends: ends.iter().map(without).collect(),
+            ends: ends.iter().map(EpisodeEnd::without_observation).collect(),
             observations: ends.iter().flat_map(|end| end.observation).collect(),
         }
     }
@@ -136,24 +133,6 @@ impl<T: Float + Pod> ProgramRollout<T> {
         EpisodeEnds { ends, observations: self.last.clone() }
     }
 
-    /// A copy with numbers of observations and actions that are known at compile time, as replay buffers take it.
-    ///
-    /// # Errors
-    /// [`EnvironmentError::Shape`] for other numbers; [`EnvironmentError::OutOfMemory`].
-    pub fn to_sized<const O: usize, const D: usize>(
-        &self,
-    ) -> Result<Rollout<T, O, D>, EnvironmentError> {
-        EnvironmentError::shape("observed numbers of the rollout", self.sizes[0], O)?;
-        EnvironmentError::shape("actions of the rollout", self.sizes[1], D)?;
-        let finals = self.transitions.finals().iter().zip(self.last.chunks(O.max(1)));
-        let finals = finals.map(|(end, last)| {
-            let EpisodeEnd { step, environment, episode_return, length, lost, .. } = *end;
-            let observation = core::array::from_fn(|i| last[i]);
-            EpisodeEnd { step, environment, observation, episode_return, length, lost }
-        });
-        Rollout::with(&self.transitions, [&self.observation, &self.action], finals.collect())
-    }
-
     /// A range of its rows, to be written.
     pub(super) fn rows(&mut self, rows: &core::ops::Range<usize>) -> Transitions<'_, T> {
         let Plan { horizon, environments, layout, .. } = self.transitions.plan();
@@ -169,6 +148,19 @@ impl<T: Float + Pod> ProgramRollout<T> {
             truncated,
             log_probability,
         }
+    }
+}
+
+impl<T: Float + Pod> RolloutTensors<T> for ProgramRollout<T> {
+    rollout_tensors!(self, self.transitions);
+
+    fn sizes(&self) -> [usize; 2] {
+        self.sizes
+    }
+
+    fn end(&self, index: usize) -> (EpisodeEnd<T, 0>, &[T]) {
+        let width = self.sizes[0];
+        (self.transitions.finals()[index], &self.last[index * width..][..width])
     }
 }
 

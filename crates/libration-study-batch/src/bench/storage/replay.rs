@@ -22,7 +22,8 @@ const INSERTED: [usize; 2] = [4096, 16];
 const DRAWN: usize = 64;
 
 /// The source's transitions.
-type Store = ReplayBuffer<f32, 2, 1>;
+type Store = ReplayBuffer<f32>;
+const SIZES: [usize; 2] = [2, 1];
 
 /// Times them on one core: none of it is worth a second.
 pub(super) fn measure(lab: &Lab<'_>) -> Result<Vec<StorageRate>, StudyError> {
@@ -53,7 +54,7 @@ fn filled(
     let mut all = Environments::new(world, environments, 7, execution.clone())?;
     let mut rollout = Rollout::new(Plan::new(INSERTED[1], environments).truncated())?;
     let mut next = vec![0.0; environments * 2];
-    let mut store = Store::new(capacity)?;
+    let mut store = Store::new(SIZES, capacity)?;
     while store.inserted() * (environments as u64) < 2 * KEPT as u64 {
         all.rollout(policy, &mut rollout)?;
         all.observe(&mut next)?;
@@ -83,7 +84,7 @@ fn draws(
     let plain = filled(regulating(), acting, capacity, serial)?.store;
     let mut weighed = filled(regulating(), acting, capacity.priorities(), serial)?.store;
     let ahead = Lookahead::default();
-    let [mut one, mut two] = [(); 2].map(|()| Batch::<f32, 2, 1>::new(BATCH));
+    let [mut one, mut two] = [(); 2].map(|()| Batch::<f32>::new(BATCH, SIZES));
     let [mut first, mut second] = [0, 0];
     let mut priorities = vec![0.0_f32; BATCH];
     let uniform = Contestant::new(1.0, |times| {
