@@ -72,4 +72,7 @@ fn a_file_of_something_else_is_refused_and_stays_as_it_was() {
     fs::remove_file(&path).unwrap();
     drop(ReplayFile::<f64>::create(&path, SIZES, Capacity::new(20, 8)).unwrap());
     assert!(refused().contains("the float type is f64; it must be f32"));
+    fs::remove_file(&path).unwrap();
+    drop(Kept::create(&path, [6, 2], Capacity::new(20, 8)).unwrap());
+    assert!(refused().contains("6 numbers seen, 2 done; it must be 2 numbers seen, 1 done"));
 }
