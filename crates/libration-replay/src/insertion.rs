@@ -23,7 +23,8 @@ struct Rows<'a> {
 }
 
 impl<T: Float + Pod> ReplayBuffer<T> {
-    /// Inserts a [`Rollout`](libration_batch::rl::Rollout) or [`ProgramRollout`](libration_batch::rl::ProgramRollout) and overwrites the oldest steps. `next` are the observations after its last step: `[n, i]`, as
+    /// Inserts a [`Rollout`](libration_batch::rl::Rollout) or [`ProgramRollout`](libration_batch::rl::ProgramRollout) and overwrites
+    /// the oldest steps. `next` are the observations after its last step: `[n, i]`, as
     /// [`observe`](libration_batch::rl::Environments::observe) writes them.
     ///
     /// If the first observation differs from `next` of the insertion before, as after a reset, the transition before keeps its own.

@@ -4,7 +4,8 @@ use bytemuck::Pod;
 
 use super::{EpisodeEnd, Plan, Rollout};
 
-/// The tensors of a [`Rollout`] or [`ProgramRollout`](super::ProgramRollout), whose sizes are known at run time.
+/// The tensors of a [`Rollout`] or [`ProgramRollout`](super::ProgramRollout), whose sizes are known at run time. Their lengths follow
+/// from the plan and the sizes.
 pub trait RolloutTensors<T> {
     /// The plan.
     fn plan(&self) -> Plan;
