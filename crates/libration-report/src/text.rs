@@ -26,6 +26,10 @@ pub(crate) fn runs(text: &str) -> Vec<(Lift, String)> {
     while at < chars.len() {
         let c = chars[at];
         at += 1;
+        if c.is_ascii() && c != '^' && c != '_' {
+            push(Lift::Base, c);
+            continue;
+        }
         let plain = |table: &str| {
             let place = table.chars().position(|t| t == c)?;
             RAISED_PLAIN.chars().nth(place)
