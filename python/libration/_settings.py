@@ -21,10 +21,22 @@ MANY_SUBSTEPS = 20
 """Substeps above which a warning says what they cost."""
 
 
+_FORMER = {
+    "float": "dtype",
+    "every": "save_every",
+    "count": "num_trajectories",
+    "environments": "num_envs",
+    "limit": "max_episode_steps",
+    "lam": "gae_lambda",
+    "log_probabilities": "log_probs",
+}
+"""Names of keywords that others are called by elsewhere, or were before."""
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """Return a hint for an unknown name."""
     known = sorted(known)
-    near = difflib.get_close_matches(name, known, n=1)
+    near = [_FORMER[name]] if _FORMER.get(name) in known else difflib.get_close_matches(name, known, n=1)
     hint = f"did you mean {near[0]!r}? " if near else ""
     return f"{hint}known are {', '.join(known)}"
 

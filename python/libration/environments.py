@@ -14,7 +14,7 @@ from ._episode_states import episode_numbers, options_of, refuse_options, rows_o
 from ._keywords import check_keywords
 from ._preset_equations import has_varied, native_varied
 from ._presets import PRESETS, Preset
-from ._settings import AUTORESET, count, native, nearest
+from ._settings import AUTORESET, count, native, nearest, shown
 from ._spec_keywords import named_keyword_value
 from ._tasks import EquationPreset, native_equations
 from .equations import EquationSystem
@@ -196,6 +196,10 @@ class Environments(_native.Batch):
         parameter_infos: bool = False,
         **parameters: Any,
     ) -> None:
+        if not isinstance(name, (str, System, EquationSystem, LinearPlant)):
+            raise TypeError(
+                f"an environment is {shown(name)}, but it must be the name of a preset, a System, an EquationSystem or a LinearPlant"
+            )
         subject: str | EquationSystem = with_commands(name)
         if not isinstance(subject, EquationSystem) and subject not in PRESETS:
             help = f"; help: System({subject!r}) and a task" if subject in SYSTEMS else ""

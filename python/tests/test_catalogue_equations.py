@@ -61,6 +61,8 @@ def test_commands_of_a_system_with_a_mass_are_forces():
 def test_a_name_of_the_catalogue_that_is_no_preset_is_told_how_to_be_an_environment():
     with pytest.raises(ValueError, match=r"unknown environment 'kepler'.*help: System\('kepler'\) and a task"):
         libration.VectorEnv("kepler", 2)
+    with pytest.raises(TypeError, match=r"an environment is \['Pendulum'\], but it must be the name of a preset"):
+        libration.VectorEnv(["Pendulum"], 4)
 
 
 def test_an_orbit_starts_where_it_is_no_singularity():

@@ -189,6 +189,13 @@ def test_wrong_keywords_of_twins_are_refused(given, error, text):
             make(**given)
 
 
+@pytest.mark.parametrize("id", ["CartPole-v1", "MountainCar-v0"])
+def test_twins_with_the_starts_of_gymnasium_match_as_its_environments_are_called(id, capsys):
+    assert main([id, f"libration/{id}", "--second", "starts=gymnasium", "--steps", "300"]) == 0, capsys.readouterr().out
+    assert main([id, f"libration/{id}", "--steps", "300"]) == 1
+    assert capsys.readouterr().out.endswith("have the starts of Gymnasium with starts='gymnasium'\n")
+
+
 def test_environments_that_differ_are_told_with_seed_and_step():
     match = check_environments_match("CartPole-v1", lambda: twin("CartPole-v1", gravity=9.81), steps=100, seeds=[5])
     assert not match and match.difference.startswith("seed 5, step 0: observation[3]"), str(match)

@@ -201,3 +201,17 @@ def test_an_unknown_column_of_a_trajectory_is_named_with_the_nearest():
     trajectory = libration.simulate(system=System("oscillator"), integrator="leapfrog", dt=0.1, steps=3)
     with pytest.raises(KeyError, match="no column 'energi'.*energy"):
         trajectory["energi"]
+
+
+@pytest.mark.parametrize(
+    ("call", "former", "name"),
+    [
+        (lambda: Environments("Pendulum", 4, float="float32"), "float", "dtype"),
+        (lambda: Environments("Pendulum", environments=4), "environments", "num_envs"),
+        (lambda: libration.simulate("pendulum", integrator="rk4", dt=0.01, steps=1, count=3), "count", "num_trajectories"),
+        (lambda: libration.simulate("pendulum", integrator="rk4", dt=0.01, steps=1, every=3), "every", "save_every"),
+    ],
+)
+def test_a_former_keyword_is_told_its_name(call, former, name):
+    with pytest.raises(TypeError, match=f"unexpected keyword argument '{former}': did you mean '{name}'"):
+        call()
