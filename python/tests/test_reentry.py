@@ -34,6 +34,26 @@ while worker.is_alive():
     out.episodes, out.transitions
 worker.join()
 """,
+    "threads_that_ask_again_and_again_take_turns": """
+envs = made(64, 1)
+rollout = envs.rollout(Random(-1, 1), 16)
+buffer = libration.ReplayBuffer(envs, steps=100)
+buffer.insert(rollout)
+work = (lambda: buffer.sample(256), lambda: buffer.insert(rollout), lambda: envs.rollout(Random(-1, 1), 16), lambda: envs.states)
+done, end = [0] * len(work), time.monotonic() + 1
+
+def again(i):
+    while time.monotonic() < end:
+        work[i]()
+        done[i] += 1
+
+threads = [threading.Thread(target=again, args=(i,)) for i in range(len(work))]
+[thread.start() for thread in threads]
+[thread.join() for thread in threads]
+# A rollout needs its environments twice. Without turns one thread of a pair works a thousand times as often as the other.
+for pair in done[:2], done[2:]:
+    assert min(pair) > max(10, max(pair) / 5), done
+""",
     "two_threads_fill_one_rollout": """
 some, others = made(), made()
 out = some.rollout(Constant(), 200)
