@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import importlib
 from dataclasses import dataclass, field
@@ -143,8 +144,10 @@ class Subject:
     def close(self) -> None:
         """Close what was made here."""
         for env in self._made:
-            if not env.closed:
-                env.close()
+            # What is wrong with it the check of closing tells.
+            with contextlib.suppress(Exception):
+                if not env.closed:
+                    env.close()
 
     def lines(self, *code: str, num_envs: int | None = None) -> tuple[str, ...]:
         """Return lines of code, the first of which makes the environment; ``sample`` is the caller's function, and ``random`` a generator."""

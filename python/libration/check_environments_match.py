@@ -36,6 +36,8 @@ class EnvironmentsMatch:
     names: tuple[str, str]
     steps: int
     """Steps of each seed."""
+    compared: int
+    """Steps of all seeds that were compared."""
     episodes: int
     """Ended episodes of all seeds."""
     seeds: tuple[int, ...]
@@ -58,7 +60,9 @@ class EnvironmentsMatch:
 
     def __str__(self) -> str:
         first, second = self.names
-        head = f"{first} and {second}: {len(self.seeds)} × {self.steps} steps, {self.episodes} episodes"
+        # A seed ends at its first difference.
+        steps = f"{len(self.seeds)} × {self.steps}" if self.matches else f"{self.compared} of {len(self.seeds)} × {self.steps}"
+        head = f"{first} and {second}: {steps} steps, {self.episodes} episodes"
         ulps = ", ".join(f"{x:.3g}" for x in self.observation_ulps)
         lines = [
             f"{head}: {'match' if self.matches else 'differ'}",
@@ -149,7 +153,7 @@ class _Run:
     def __init__(self, envs: Sequence[gymnasium.Env], tolerances: tuple[float, float], sample: Callable[..., Any] | None) -> None:
         self.envs, self.sample = envs, sample
         self.tolerance, self.reward_tolerance = tolerances
-        self.count = self.equal = self.episodes = 0
+        self.count = self.equal = self.episodes = self.compared = 0
         space = envs[0].observation_space
         ends = [np.abs(getattr(space, name, np.zeros(()))) for name in ("low", "high")]
         self.largest: Any = np.where(np.isfinite(ends[0]) & np.isfinite(ends[1]), np.maximum(*ends), 0)
@@ -167,6 +171,7 @@ class _Run:
             space = self.envs[0].action_space
             action = space.sample() if self.sample is None else self.sample(self.envs[0], generator)
             results: list[Any] = [env.step(action) for env in self.envs]
+            self.compared += 1
             place = f"seed {seed}, step {step}"
             if self.observed([result[0] for result in results], place):
                 return
@@ -234,6 +239,7 @@ class _Run:
         return EnvironmentsMatch(
             names=names,
             steps=steps,
+            compared=self.compared,
             episodes=self.episodes,
             seeds=seeds,
             observation_ulps=tuple(float(x) for x in ulps),

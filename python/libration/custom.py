@@ -129,6 +129,8 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
         most = self._most.astype(dtype)
         try:
             paid = self.task(before, np.clip(taken, -most, most), self.states)
+            if isinstance(paid, tuple) and len(paid) != 2:
+                raise ValueError(f"the task returned {len(paid)} values, but it must return rewards, or rewards and ends of episodes")
             given, over = paid if isinstance(paid, tuple) else (paid, np.zeros(self.num_envs, bool))
             rewards = self._row("rewards", given, "fiu").astype(observations.dtype)
             # As in the engine, a reward that is no number ends an episode.

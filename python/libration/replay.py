@@ -17,6 +17,10 @@ from .rollout import Rollout
 __all__ = ["ReplayBuffer", "Sequences", "Transitions"]
 
 
+def _is_share(value: float) -> bool:
+    return 0 <= value <= 1
+
+
 @dataclass(frozen=True)
 class Transitions:
     """Batch of ``B`` transitions, each with ``n`` observed numbers and ``m`` actions."""
@@ -82,8 +86,8 @@ class ReplayBuffer:
 
     Raises
     ------
-    ValueError
-        For a capacity of zero.
+    TypeError, ValueError
+        For an invalid argument, such as a capacity of zero.
     MemoryError
         If there is not enough memory.
     """
@@ -101,21 +105,30 @@ class ReplayBuffer:
         if not isinstance(environments, Environments):
             raise TypeError(f"environments must be Environments, not {type(environments).__name__}")
         preset = environments.preset
+        if not isinstance(priorities, bool):
+            raise TypeError(f"priorities must be True or False, not {type(priorities).__name__}")
         settings = environments._settings
         self.seed = count("seed", seed, 0, 2**64 - 1)
         #: Number of the next draw.
         self.number = 0
+        self._dtype = np.dtype(settings["dtype"])
+        self._sizes = [len(preset.seen), len(preset.actions)]
+        self._shown = f"steps={steps}, num_envs={settings['num_envs']}, priorities={priorities}, dtype='{self._dtype}'"
         self._buffer = _native.Buffer(
             count("steps", steps, 1, 2**40),
             settings["num_envs"],
-            [len(preset.seen), len(preset.actions)],
+            self._sizes,
             settings["dtype"] == "float32",
-            bool(priorities),
+            priorities,
             None if ends is None else count("ends", ends, 1, 2**40),
         )
 
     def __len__(self) -> int:
         return len(self._buffer)
+
+    def __repr__(self) -> str:
+        observations, actions = self._sizes
+        return f"ReplayBuffer({self._shown}; {len(self)} transitions with {observations} observed numbers and {actions} actions)"
 
     def __copy__(self) -> ReplayBuffer:
         raise TypeError("a ReplayBuffer cannot be copied")
@@ -134,6 +147,8 @@ class ReplayBuffer:
         """
         if not isinstance(rollout, Rollout):
             raise TypeError(f"rollout must be a Rollout, not {type(rollout).__name__}")
+        if rollout.rewards.dtype != self._dtype:
+            raise ValueError(f"the rollout has the dtype {rollout.rewards.dtype}, but the buffer has {self._dtype}")
         self._buffer._insert(rollout._memory, rollout.last_observations)
 
     def sample(
@@ -164,7 +179,7 @@ class ReplayBuffer:
         """
         request = self._sample_request(batch_size, steps, gamma)
         if correction is not None:
-            request["correction"] = number("correction", correction, "0 to 1")
+            request["correction"] = number("correction", correction, "0 to 1", _is_share)
         drawn = Transitions(**self._buffer._sample(request))
         self.number += 1
         return drawn
@@ -206,6 +221,8 @@ class ReplayBuffer:
             For a wrong shape, a priority that is negative or not finite, or a buffer without priorities.
         """
         which, errors = np.asarray(indices), np.asarray(priorities)
+        if which.shape == errors.shape == (0,):
+            return 0
         if which.dtype.kind not in "iu" or errors.dtype.kind not in "fiu":
             raise TypeError(
                 f"indices have dtype {which.dtype} and priorities {errors.dtype}, but they must be whole numbers and real numbers"
@@ -217,6 +234,12 @@ class ReplayBuffer:
             )
         exponent = number("exponent", exponent, "finite")
         which, errors = which.astype(np.uint64), errors.astype(np.float64)
+        limits = np.finfo(self._dtype)
+        large = errors[np.isfinite(errors) & (errors > limits.max)]
+        if large.size:
+            raise ValueError(f"a priority is {large[0]:g}, but it must be at most {limits.max:g} in {self._dtype}")
+        # What is not zero stays so.
+        errors = np.where((errors > 0) & (errors < limits.tiny), limits.tiny, errors)
         return self._buffer._update(np.ascontiguousarray(which), np.ascontiguousarray(errors), exponent)
 
     def _sample_request(self, batch_size: int, steps: int, gamma: float) -> dict[str, Any]:
@@ -225,7 +248,7 @@ class ReplayBuffer:
             "seed": count("seed", self.seed, 0, 2**64 - 1),
             "number": count("number", self.number, 0, 2**64 - 1),
             "steps": count("steps", steps, 1, 2**32),
-            "gamma": number("gamma", gamma, "0 to 1"),
+            "gamma": number("gamma", gamma, "0 to 1", _is_share),
             "correction": None,
         }
         return request

@@ -316,6 +316,15 @@ def test_the_lines_of_a_finding_about_rows_run_and_show_two_different_results(fa
     assert one == two
 
 
+def test_an_environment_that_cannot_be_closed_is_told_with_what_else_is_found():
+    class Open(gymnasium.vector.SyncVectorEnv):
+        def close(self, **kwargs):
+            raise RuntimeError("no")
+
+    report = check_vector_env(lambda n: Open([lambda: gymnasium.make("CartPole-v1")] * n))
+    assert [breach.check for breach in report.breaches] == ["closing"] and "it raises RuntimeError: no" in str(report)
+
+
 def test_lines_have_the_functions_that_were_given() -> None:
     report = check_vector_env(lambda n: RewardsAsList(n), sample=lambda env, random: np.full((env.num_envs, 1), random.uniform(), np.float32))
     (found,) = [breach for breach in report.breaches if breach.check == "results of step"]

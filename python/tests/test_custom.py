@@ -167,3 +167,10 @@ def test_a_reward_that_is_no_number_ends_the_episode_as_lost(mode):
     assert rewards.tolist() == [0, 0, 2] and terminated.tolist() == [True, True, False] and not truncated.any()
     told = infos["final_info"] if mode == "SameStep" else infos
     assert told["lost"].tolist() == told["_lost"].tolist() == [True, True, False]
+
+
+def test_a_task_that_returns_three_values_is_told_what_it_must_return():
+    envs = libration.CustomTaskVectorEnv("Pendulum", 2, task=lambda before, actions, after: (after[:, 0], after[:, 0] > 0, {}))
+    envs.reset(seed=0)
+    with pytest.raises(ValueError, match="the task returned 3 values, but it must return rewards, or rewards and ends of episodes"):
+        envs.step(np.zeros((2, 1)))

@@ -99,7 +99,7 @@ def test_what_has_a_priority_of_zero_is_never_drawn():
     "call, error, told",
     [
         (lambda b: b.sample(0), ValueError, "batch_size"),
-        (lambda b: b.sample(4, gamma=1.5), ValueError, "discount"),
+        (lambda b: b.sample(4, gamma=1.5), ValueError, "gamma is"),
         (lambda b: b.sample(4, steps=0), ValueError, "steps"),
         (lambda b: b.sample(4, correction=0.5), ValueError, "priorities"),
         (lambda b: b.update_priorities([1], [1.0]), ValueError, "priorities"),
@@ -291,3 +291,34 @@ def test_a_buffer_takes_rollouts_of_environments_with_noise_or_parameters_that_v
     assert drawn.truncated.sum() > 100
     for k in np.flatnonzero(drawn.truncated)[:50]:
         np.testing.assert_array_equal(drawn.next_observations[k], ends[step[k], n[k]])
+
+
+def test_a_step_to_an_observation_that_is_not_finite_is_lost_and_no_transition():
+    falling = System(acceleration={"q": "-1 + 0*u"}, inputs=["u"])
+    envs = Environments(falling, 3, dt=0.1, integrator="rk4", observe=["sqrt(q)"], reward="-1", start={"q": 0.5}, dtype="float64")
+    envs.reset(seed=0)
+    # The height 0.5 - t²/2 is below zero after 1 s.
+    rollout = envs.rollout(Random(-1.0, 1.0), 60)
+    assert rollout.episodes["lost"].all() and (rollout.episodes["lengths"] >= 10).all() and len(rollout.episodes["lost"]) >= 9
+    buffer = ReplayBuffer(envs, 60)
+    buffer.insert(rollout)
+    # The step that is lost is none, nor is the one that resets.
+    assert len(buffer) == 3 * 60 - 2 * len(rollout.episodes["lost"])
+    drawn = buffer.sample(5000)
+    assert np.isfinite(drawn.observations).all() and np.isfinite(drawn.next_observations).all()
+
+
+def test_priorities_beyond_the_floats_of_the_buffer_are_refused_and_small_ones_stay():
+    envs = Environments("Pendulum", 2)
+    envs.reset(seed=0)
+    buffer = ReplayBuffer(envs, 10, priorities=True)
+    made = "steps=10, num_envs=2, priorities=True, dtype='float32'"
+    assert repr(buffer) == f"ReplayBuffer({made}; 0 transitions with 3 observed numbers and 1 actions)"
+    buffer.insert(envs.rollout(Random(-1.0, 1.0), 10))
+    indices = np.arange(20, dtype=np.uint64)
+    with pytest.raises(ValueError, match=r"a priority is 1e\+39, but it must be at most 3.40282e\+38 in float32"):
+        buffer.update_priorities(indices, np.full(20, 1e39))
+    assert buffer.update_priorities([], []) == 0
+    # All are as likely again, though none is a number of float32.
+    assert buffer.update_priorities(indices, np.full(20, 1e-46)) == 20
+    assert len(np.unique(buffer.sample(2000, correction=0.5).indices)) == 20

@@ -99,6 +99,21 @@ impl Function {
         !matches!(self, Function::Abs | Function::Min | Function::Max | Function::Sign)
     }
 
+    /// Whether the function is infinite or NaN for some arguments that are not large.
+    pub(crate) const fn is_partial(self) -> bool {
+        matches!(
+            self,
+            Function::Tan
+                | Function::Asin
+                | Function::Acos
+                | Function::Sinh
+                | Function::Cosh
+                | Function::Exp
+                | Function::Log
+                | Function::Sqrt
+        )
+    }
+
     /// The value of the function. One of a single argument ignores the second.
     pub fn of<S: Elementary>(self, [x, y]: [S; 2]) -> S {
         match self {

@@ -18,7 +18,8 @@ pub struct TaskPrograms {
     /// From positions, velocities, parameters that vary and the time since the episode began to the observed numbers.
     pub observation: Program,
     /// From positions and velocities before a step, inputs and parameters that vary, positions and velocities after it, and the time
-    /// after it, to the reward, and to 1 where the episode terminates, else 0.
+    /// after it, to the reward, and to 1 where the episode terminates, else 0. The reward is NaN where an observed number before or after
+    /// the step is not finite.
     pub verdict: Program,
     /// From positions and velocities after a step of the integrator, inputs and parameters that vary, the length of the step, and
     /// positions and velocities before it, to those that take the place of the former.
@@ -46,9 +47,10 @@ impl TaskPrograms {
                 return Err(EquationError { key: format!("task.{key}"), span: None, kind });
             }
         }
+        let observation = observation(task, definitions, equations)?;
         Ok(TaskPrograms {
-            observation: observation(task, definitions, equations)?,
-            verdict: verdict(task, definitions, equations)?,
+            verdict: verdict(task, definitions, equations, &observation)?,
+            observation,
             projection: projection::program(task, definitions, equations)?,
             inner: inner_controller::program(task, definitions, equations)?,
             targets: task.targets.len(),
@@ -75,6 +77,7 @@ fn verdict(
     task: &TaskDefinitions,
     definitions: &Definitions,
     equations: &Equations,
+    observation: &Program,
 ) -> Result<Program, EquationError> {
     let degrees = equations.degrees();
     let mut builder = ProgramBuilder::default();
@@ -99,8 +102,21 @@ fn verdict(
     define_values(&mut resolver, actions, &commands);
     define_states(&mut resolver, degrees, before.split_at(degrees.len()), name_before);
     let reward = core::slice::from_ref(&task.reward);
-    let reward = values(&mut resolver, "reward", reward, Expression::parse)?;
-    Ok(resolver.builder.finish(&[reward[0], over]))
+    let mut reward = values(&mut resolver, "reward", reward, Expression::parse)?[0];
+    let partial = observation.partial_outputs();
+    if !partial.is_empty() {
+        let builder = &mut resolver.builder;
+        let zero = builder.constant(0.0);
+        for states in [&before, &after] {
+            let seen = builder.inline(observation, &[states, &varied[..], &[time]].concat());
+            for &output in &partial {
+                // Neither an infinite number nor NaN times zero is zero.
+                let none = builder.value(Operation::Product(seen[output], zero));
+                reward = builder.value(Operation::Sum(reward, none));
+            }
+        }
+    }
+    Ok(resolver.builder.finish(&[reward, over]))
 }
 
 /// The values of the texts of a key, in order.

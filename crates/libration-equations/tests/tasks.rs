@@ -46,6 +46,34 @@ fn a_parameter_that_varies_is_an_input_of_observation_and_reward() {
 }
 
 #[test]
+fn a_reward_is_no_number_where_an_observed_one_is_not_finite_before_or_after_the_step() {
+    let with = |observe: &str| {
+        let definitions = TaskDefinitions {
+            observe: vec!["x'".into(), observe.into()],
+            reward: "5".into(),
+            ..TaskDefinitions::default()
+        };
+        task(&definitions).unwrap().verdict
+    };
+    let reward = |verdict: &Program, [before, after]: [f64; 2]| {
+        run(verdict, &[before, 0.25, 3.0, 4.0, 7.0, after, 0.0, 1.5])[0]
+    };
+    for (observe, outside) in
+        [("sqrt(x)", -1.0), ("2/x", 0.0), ("x^-1", 0.0), ("g*log(x)", 0.0), ("acos(x)", 2.0)]
+    {
+        let verdict = with(observe);
+        assert_eq!(reward(&verdict, [0.5, 0.25]), 5.0, "{observe}");
+        for states in [[outside, 0.5], [0.5, outside]] {
+            assert!(reward(&verdict, states).is_nan(), "{observe} of {states:?}");
+        }
+    }
+    // What is finite everywhere costs no operation.
+    for observe in ["x/2", "sin(x)*x^2", "min(x, atan2(x, g))"] {
+        assert_eq!(with(observe), with("x"), "{observe}");
+    }
+}
+
+#[test]
 fn a_projection_has_the_states_before_and_after_a_step_and_its_length() {
     let definitions = TaskDefinitions {
         reward: "0".into(),

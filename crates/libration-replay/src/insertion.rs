@@ -28,7 +28,7 @@ impl<T: Float + Pod> ReplayBuffer<T> {
     /// [`observe`](libration_batch::rl::Environments::observe) writes them.
     ///
     /// If the first observation differs from `next` of the insertion before, as after a reset, the transition before keeps its own.
-    /// The last step of a lost environment is not stored: samples are always finite.
+    /// The last step of a lost environment is not stored, so that samples are finite.
     ///
     /// # Errors
     /// [`ReplayError::Capacity`] if it has more steps or more ends of episodes than the capacity;

@@ -15,7 +15,7 @@ pub struct EpisodeEnd<T, const O: usize> {
     pub episode_return: f64,
     /// The number of actions.
     pub length: u64,
-    /// Whether the environment was lost: its state, action or reward was not finite.
+    /// Whether the environment was lost: its state, observation, action or reward was not finite.
     pub lost: bool,
 }
 
