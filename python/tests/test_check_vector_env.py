@@ -321,6 +321,9 @@ def test_an_environment_that_cannot_be_closed_is_told_with_what_else_is_found():
         def close(self, **kwargs):
             raise RuntimeError("no")
 
+        def __del__(self):
+            """That of Gymnasium closes it once more."""
+
     report = check_vector_env(lambda n: Open([lambda: gymnasium.make("CartPole-v1")] * n))
     assert [breach.check for breach in report.breaches] == ["closing"] and "it raises RuntimeError: no" in str(report)
 
