@@ -50,9 +50,8 @@ def again(i):
 threads = [threading.Thread(target=again, args=(i,)) for i in range(len(work))]
 [thread.start() for thread in threads]
 [thread.join() for thread in threads]
-# A rollout needs its environments twice. Without turns one thread of a pair works a thousand times as often as the other.
-for pair in done[:2], done[2:]:
-    assert min(pair) > max(10, max(pair) / 5), done
+# Without turns the second and the last had one, or none.
+assert min(done) > 10, done
 """,
     "two_threads_fill_one_rollout": """
 some, others = made(), made()
