@@ -30,7 +30,7 @@ _FORMER = {
     "lam": "gae_lambda",
     "log_probabilities": "log_probs",
 }
-"""Names of keywords that others are called by elsewhere, or were before."""
+"""Names of keywords in former versions and in files, with those that they have here."""
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

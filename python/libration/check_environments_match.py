@@ -71,7 +71,7 @@ class EnvironmentsMatch:
         ]
         if self.difference is not None:
             lines.append(f"first difference beyond the tolerance: {self.difference}")
-            if self.difference.startswith(f"seed {self.seeds[0]}, reset:"):
+            if self.compared == 0 and any(self.observation_ulps):
                 lines.append("help: episodes start elsewhere; the twins of Libration have the starts of Gymnasium with starts='gymnasium'")
         return "\n".join(lines)
 

@@ -2,5 +2,5 @@
 
 import os
 
-# Workers of Ray give way to all other programs, and would take minutes to start beside the other tests.
+# Workers of Ray give way to all other programs, and take tens of seconds to start beside the other tests.
 os.environ.setdefault("RAY_worker_niceness", "0")

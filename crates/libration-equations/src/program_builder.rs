@@ -188,20 +188,22 @@ impl Program {
         without_unused(self.values.clone(), outputs)
     }
 
-    /// The places of outputs that may be infinite or NaN although no input is large.
-    pub(crate) fn partial_outputs(&self) -> Vec<usize> {
-        let is_partial = |&i: &usize| {
-            let part = self.part(&[self.outputs[i]]);
-            part.values.iter().any(|operation| match *operation {
-                Operation::Quotient(_, b) => {
-                    !matches!(part.values[b], Operation::Constant(c) if c != 0.0)
-                }
-                Operation::Reciprocal(_) => true,
-                Operation::Call(function, _) => function.is_partial(),
-                _ => false,
-            })
-        };
-        (0..self.outputs.len()).filter(is_partial).collect()
+    /// Whether output `i` may be infinite or NaN although no input is large.
+    pub(crate) fn is_partial(&self, i: usize) -> bool {
+        let part = self.part(&[self.outputs[i]]);
+        part.values.iter().any(|operation| match *operation {
+            Operation::Quotient(_, b) => {
+                !matches!(part.values[b], Operation::Constant(c) if c != 0.0)
+            }
+            Operation::Reciprocal(_) => true,
+            Operation::Call(function, _) => function.is_partial(),
+            _ => false,
+        })
+    }
+
+    /// Whether output `i` depends on input `input`.
+    pub(crate) fn depends_on(&self, i: usize, input: usize) -> bool {
+        self.part(&[self.outputs[i]]).values.contains(&Operation::Input(input))
     }
 }
 

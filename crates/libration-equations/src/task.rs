@@ -18,8 +18,8 @@ pub struct TaskPrograms {
     /// From positions, velocities, parameters that vary and the time since the episode began to the observed numbers.
     pub observation: Program,
     /// From positions and velocities before a step, inputs and parameters that vary, positions and velocities after it, and the time
-    /// after it, to the reward, and to 1 where the episode terminates, else 0. The reward is NaN where an observed number before or after
-    /// the step is not finite.
+    /// after it, to the reward, and to 1 where the episode terminates, else 0. The reward is NaN where an observed number after the step is
+    /// not finite, or before it one that does not depend on time.
     pub verdict: Program,
     /// From positions and velocities after a step of the integrator, inputs and parameters that vary, the length of the step, and
     /// positions and velocities before it, to those that take the place of the former.
@@ -103,17 +103,19 @@ fn verdict(
     define_states(&mut resolver, degrees, before.split_at(degrees.len()), name_before);
     let reward = core::slice::from_ref(&task.reward);
     let mut reward = values(&mut resolver, "reward", reward, Expression::parse)?[0];
-    let partial = observation.partial_outputs();
-    if !partial.is_empty() {
-        let builder = &mut resolver.builder;
-        let zero = builder.constant(0.0);
-        for states in [&before, &after] {
-            let seen = builder.inline(observation, &[states, &varied[..], &[time]].concat());
-            for &output in &partial {
-                // Neither an infinite number nor NaN times zero is zero.
-                let none = builder.value(Operation::Product(seen[output], zero));
-                reward = builder.value(Operation::Sum(reward, none));
-            }
+    let builder = &mut resolver.builder;
+    let seen = |states: &[ValueId]| [states, &varied[..], &[time]].concat();
+    let [seen_before, seen_after] =
+        [&before, &after].map(|states| builder.inline(observation, &seen(states)));
+    let clock = before.len() + varied.len();
+    for i in (0..task.observe.len()).filter(|&i| observation.is_partial(i)) {
+        // Before a step its time is another: what depends on it was that after the step before, but for the first.
+        let at_start = (!observation.depends_on(i, clock)).then_some(seen_before[i]);
+        for value in at_start.into_iter().chain([seen_after[i]]) {
+            // Neither an infinite number nor NaN times zero is zero.
+            let zero = builder.constant(0.0);
+            let none = builder.value(Operation::Product(value, zero));
+            reward = builder.value(Operation::Sum(reward, none));
         }
     }
     Ok(resolver.builder.finish(&[reward, over]))

@@ -67,6 +67,10 @@ fn a_reward_is_no_number_where_an_observed_one_is_not_finite_before_or_after_the
             assert!(reward(&verdict, states).is_nan(), "{observe} of {states:?}");
         }
     }
+    // The time is that after the step.
+    let verdict = with("sqrt(x - t)");
+    assert_eq!(reward(&verdict, [1.25, 2.0]), 5.0);
+    assert!(reward(&verdict, [1.25, 1.25]).is_nan());
     // What is finite everywhere costs no operation.
     for observe in ["x/2", "sin(x)*x^2", "min(x, atan2(x, g))"] {
         assert_eq!(with(observe), with("x"), "{observe}");

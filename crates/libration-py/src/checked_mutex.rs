@@ -92,7 +92,7 @@ impl<T> CheckedMutex<T> {
     }
 }
 
-/// Threads that wait. Whoever changes it has the interpreter's lock, so that no fork finds it locked.
+/// Waiting threads. It is used under the interpreter's lock only, so a fork never finds it locked.
 #[derive(Default)]
 struct Queue {
     waiting: Mutex<Waiting>,

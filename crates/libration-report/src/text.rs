@@ -26,6 +26,7 @@ pub(crate) fn runs(text: &str) -> Vec<(Lift, String)> {
     while at < chars.len() {
         let c = chars[at];
         at += 1;
+        // Most characters are; the tables are searched for the others.
         if c.is_ascii() && c != '^' && c != '_' {
             push(Lift::Base, c);
             continue;

@@ -25,7 +25,7 @@ impl Dice {
     }
 }
 
-/// Goes through the operations of these numbers; what is asked of both must be the same.
+/// Performs the operations with these numbers on both buffers, and requires the same results.
 fn compare(mut all: impl Source, sizes: [usize; 2], operations: Range<u64>) {
     let serial = Execution::serial();
     let capacity = Capacity::new(12, ENVIRONMENTS).ends(8).priorities();
