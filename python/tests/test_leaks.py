@@ -46,6 +46,14 @@ def grown(work, turns):
     return held() - before
 
 
+@pytest.fixture(autouse=True)
+def only_new_objects_are_collected():
+    """Let collections skip what earlier tests have imported, which takes a fifth of a second each time."""
+    gc.freeze()
+    yield
+    gc.unfreeze()
+
+
 needs_memory = pytest.mark.skipif(
     not os.path.exists(STATM), reason="no account of memory on this platform"
 )

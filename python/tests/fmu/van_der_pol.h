@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* Value references: 0 time, 1 x0, 2 der(x0), 3 x1, 4 der(x1), 5 mu, 6 u, 7 y, 8 fault, 9 floor, 10 x0_start. */
 enum { TIME, X0, DX0, X1, DX1, MU, U, Y, FAULT, FLOOR, X0_START, SIZE };
@@ -87,7 +88,7 @@ static int macro_step(Model *m, double time, double dt) {
         break;
     case EXIT: exit(3);
     case HANG:
-        for (;;) {}
+        for (;;) pause();
     case ERROR: return 3;
     case DISCARD:
         if (v[X0] > 3) return 2;
