@@ -38,17 +38,13 @@ impl NystromCertificate {
         let of_sizes = tableau.of_sizes();
         let b_sizes = [of_sizes.b, of_sizes.b_position];
         let mut excess = vec![0.0_f64; degree];
-        let mut weights: Vec<Vec<Wide>> = Vec::with_capacity(trees.len());
-        let mut sizes: Vec<Vec<f64>> = Vec::with_capacity(trees.len());
+        // Of each tree that is a child of others: the position that its force has moved, at each evaluation, and its size.
+        let mut moved: Vec<Vec<Wide>> = Vec::with_capacity(trees.len());
+        let mut moved_sizes: Vec<Vec<f64>> = Vec::with_capacity(trees.len());
         for tree in &trees {
-            // The position that a child's force has moved, at each evaluation.
-            let moved = |child: usize| -> Vec<Wide> {
-                a.iter().map(|row| dot(row, &weights[child])).collect()
-            };
-            let moved: Vec<Vec<Wide>> = tree.children.iter().map(|&child| moved(child)).collect();
             let weight = |i: usize| {
                 let leaves = (0..tree.leaves).fold(Wide::one(), |product, _| product * c[i]);
-                moved.iter().fold(leaves, |product, moved| product * moved[i])
+                tree.children.iter().fold(leaves, |product, &child| product * moved[child][i])
             };
             let weight: Vec<Wide> = (0..c.len()).map(weight).collect();
             let order = Wide::from_f64(tree.order as f64);
@@ -58,9 +54,7 @@ impl NystromCertificate {
             let share = tree.symmetry.recip();
             let size = |i: usize| {
                 let leaves = of_sizes.c[i].powi(tree.leaves as i32);
-                let moved =
-                    tree.children.iter().map(|&child| dot_of_sizes(&of_sizes.a[i], &sizes[child]));
-                leaves * moved.product::<f64>()
+                leaves * tree.children.iter().map(|&child| moved_sizes[child][i]).product::<f64>()
             };
             let size: Vec<f64> = (0..c.len()).map(size).collect();
             for ((i, residual), b) in [velocity, position].into_iter().enumerate().zip(&b_sizes) {
@@ -72,8 +66,11 @@ impl NystromCertificate {
                     excess[power - 1] = excess[power - 1].max(residual.to_f64().abs() / rounding);
                 }
             }
-            weights.push(weight);
-            sizes.push(size);
+            if tree.order + 2 <= degree {
+                moved.push(a.iter().map(|row| dot(row, &weight)).collect());
+                let sizes = of_sizes.a.iter().map(|row| dot_of_sizes(row, &size));
+                moved_sizes.push(sizes.collect());
+            }
         }
         let residuals: Vec<Wide> = squares.into_iter().map(Wide::sqrt).collect();
         if tableau.word().is_some() {
