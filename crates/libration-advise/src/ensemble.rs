@@ -21,6 +21,9 @@ pub(super) const MOST_PERIODS: f64 = 100_000.0;
 /// Number of time constants of the decay after which the start is forgotten.
 pub(super) const MEMORIES: f64 = 20.0;
 
+/// Part of the memory that passes before costs are measured: the cost lacks `e⁻¹⁰` of its value then, less than 1/200 of its standard error.
+pub(super) const FORGOTTEN: f64 = 0.5;
+
 impl<M: PlantModel> Loop<M> {
     /// Runs loops with all stated imperfections; none if the latency is too long for losses.
     pub(super) fn run(

@@ -30,8 +30,8 @@ pub struct Throughput {
 /// Largest number of measured trajectories.
 const MOST: usize = 1 << 16;
 
-/// Duration of the measurement, in s.
-const LONG: f64 = 0.05;
+/// Shortest duration of the measurement, in s.
+const LONG: f64 = 0.02;
 
 impl Throughput {
     /// Measures the chosen integrator and step.
@@ -78,6 +78,8 @@ fn speed<T: BatchFloat>(
         if seconds > LONG || steps > 1 << 30 {
             return Ok(count as f64 * steps as f64 / seconds);
         }
-        steps *= 2;
+        // As many as take long enough by this speed, of which the first steps know little.
+        let missing = 1.2 * LONG / seconds;
+        steps *= missing.clamp(2.0, 64.0) as u64;
     }
 }

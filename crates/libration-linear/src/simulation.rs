@@ -1,17 +1,20 @@
 //! Simulation of loops, event by event.
 
+mod movement;
+
 use std::collections::VecDeque;
 
 use libration_core::control::{Jitter, Latency};
 use libration_core::random::{Address, Purpose};
 
+use self::movement::{Movement, flow};
 use crate::phases::{merged, same};
-use crate::{Discretisation, LinearLoop, LoopTiming, Matrix, MissingCommand};
+use crate::{LinearLoop, LoopTiming, Matrix, MissingCommand};
 
 /// A simulation of a loop with a timing, under noise that is held through each period.
 ///
 /// It knows nothing of period matrices: states move by Taylor's series of the equations of motion (those of a stiff plant by the
-/// exponential of its matrix), and commands and measurements wait in queues.
+/// exponential of its matrix), of unit vectors where all periods have the same length, and commands and measurements wait in queues.
 #[derive(Clone, Copy, Debug)]
 pub struct Simulation<'a> {
     /// The loop.
@@ -49,6 +52,8 @@ struct Trajectory<'a> {
     measured: Vec<VecDeque<f64>>,
     counted: u64,
     cost: f64,
+    /// The movements between the events of a period, where all periods have the same length.
+    movements: Vec<Movement>,
 }
 
 impl Simulation<'_> {
@@ -94,7 +99,13 @@ impl Simulation<'_> {
             measured: self.timing.output_latency.iter().map(waiting).collect(),
             counted: 0,
             cost: 0.0,
+            movements: Vec::new(),
         }
+    }
+
+    /// Whether all periods have the same length.
+    fn is_even(&self) -> bool {
+        self.record.is_none() && self.timing.jitter.rms() == 0.0
     }
 }
 
@@ -137,6 +148,22 @@ impl Trajectory<'_> {
         let value = self.output(j, noise);
         self.measured[j].push_front(value);
         self.measured[j].pop_back();
+    }
+
+    /// Moves the states through so many seconds.
+    fn move_plant(&mut self, push: &[f64], seconds: f64) {
+        let a = &self.simulation.linear.plant().a;
+        if !self.simulation.is_even() {
+            return flow(a, &mut self.x, push, seconds);
+        }
+        let known = self.movements.iter().position(|known| known.seconds == seconds);
+        let place = known.unwrap_or_else(|| {
+            self.movements.push(Movement::new(a, seconds));
+            self.movements.len() - 1
+        });
+        let Movement { phi, gamma, .. } = &self.movements[place];
+        let pairs = phi.apply(&self.x).into_iter().zip(gamma.apply(push));
+        self.x = pairs.map(|(x, push)| x + push).collect();
     }
 
     fn advance(&mut self) {
@@ -204,7 +231,7 @@ impl Trajectory<'_> {
                 }
                 None => {
                     let push: Vec<f64> = add(plant.b.apply(&self.acting), held.clone());
-                    flow(&plant.a, &mut self.x, &push, (next - phase) * seconds);
+                    self.move_plant(&push, (next - phase) * seconds);
                 }
             }
         }
@@ -216,39 +243,6 @@ impl Trajectory<'_> {
 
 fn form(form: &Matrix, x: &[f64]) -> f64 {
     form.apply(x).iter().zip(x).map(|(a, b)| a * b).sum()
-}
-
-/// `ẋ = Ax + push` for so many seconds, by Taylor's series of short steps.
-fn flow(a: &Matrix, x: &mut [f64], push: &[f64], seconds: f64) {
-    let n = x.len();
-    // Terms reach e⁴ at most before they fall: two digits.
-    let parts = (0.25 * a.row_sum_norm() * seconds).ceil().max(1.0);
-    if parts > 64.0 {
-        let driving = Matrix::from_fn(n, 1, |i, _| push[i]);
-        let Discretisation { phi, gamma } = Discretisation::exact(a, &driving, seconds);
-        let moved = phi.apply(x);
-        x.iter_mut()
-            .zip(moved)
-            .zip(gamma.entries())
-            .for_each(|((x, moved), push)| *x = moved + push);
-        return;
-    }
-    let h = seconds / parts;
-    let (mut term, mut next) = (vec![0.0; n], vec![0.0; n]);
-    for _ in 0..parts as u64 {
-        for i in 0..n {
-            term[i] = h * (dot(a.row(i), x) + push[i]);
-        }
-        for k in 2..40 {
-            x.iter_mut().zip(&term).for_each(|(x, y)| *x += y);
-            if term.iter().zip(x.iter()).all(|(y, x)| y.abs() <= 1e-14 * x.abs()) {
-                break;
-            }
-            let share = h / f64::from(k);
-            next.iter_mut().enumerate().for_each(|(i, x)| *x = share * dot(a.row(i), &term));
-            core::mem::swap(&mut term, &mut next);
-        }
-    }
 }
 
 /// Four sums beside each other, which do not wait for each other.

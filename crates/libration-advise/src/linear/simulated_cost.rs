@@ -6,7 +6,7 @@ use libration_work::Work;
 use super::LinearRequest;
 use crate::AdviseError;
 use crate::combined_effect::SimulatedCost;
-use crate::ensemble::MEMORIES;
+use crate::ensemble::{FORGOTTEN, MEMORIES};
 use crate::loops::LoopError;
 
 /// Number of simulated loops.
@@ -39,7 +39,7 @@ impl LinearRequest {
         let record = self.timed.timing.record.as_deref();
         let linear = &self.timed.linear;
         let simulation = Simulation { linear, timing: &timing, record, seed: SEED };
-        let before = memory.ceil() as u64;
+        let before = (FORGOTTEN * memory).ceil() as u64;
         let periods = (4.0 * memory).clamp(1000.0, 0.5 * MOST_PERIODS) as u64;
         let size = linear.plant().states.len() as f64;
         let work_of_all = COUNT as f64 * (before + periods) as f64 * TERMS * size * size;

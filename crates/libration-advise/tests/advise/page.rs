@@ -1,5 +1,7 @@
 //! Tests of advice as a page and as JSON.
 
+use std::sync::LazyLock;
+
 use libration_advise as advise;
 use libration_advise::Imperfection;
 use libration_advise::linear::{self, LinearAdvice};
@@ -49,6 +51,10 @@ fn a_tolerated_cost_ends_a_budget_before_stability_does() {
     let rise = at.looped.unwrap().combined.cost_increase.unwrap();
     assert!((rise - 0.5).abs() < 1e-9, "{rise}");
 }
+
+/// The advice on an example that several tests look at.
+static TWO_MASS_DRIVE: LazyLock<LinearAdvice> =
+    LazyLock::new(|| linear_advice(&example("two_mass_drive.toml")));
 
 fn linear_advice(text: &str) -> LinearAdvice {
     let request = linear::parse(text, "loop.toml").unwrap();
@@ -136,13 +142,13 @@ fn an_unstable_loop_has_infinite_deviations_beside_its_infinite_cost() {
 
 #[test]
 fn a_growth_rate_within_rounding_is_zero_on_the_page_and_keeps_its_digits_in_json() {
-    let found = linear_advice(&example("two_mass_drive.toml"));
-    let json = serde_json::to_value(&found).unwrap();
+    let found = &*TWO_MASS_DRIVE;
+    let json = serde_json::to_value(found).unwrap();
     let free = json["plant_modes"][0]["growth_rate"].as_f64().unwrap();
     // n ε ‖A‖ with a norm of 3004 1/s².
     assert!(free != 0.0 && free.abs() < 4.0 * f64::EPSILON * 3004.0, "{free}");
     assert_eq!(found.plant_modes[0].shown, [0.0; 2]);
-    let page = linear::page(&found);
+    let page = linear::page(found);
     let plant = section(&page, "The plant");
     assert!(!plant.contains("10<sup>") && plant.contains(">0<"), "{plant}");
     // The other rates stay.
@@ -171,11 +177,11 @@ fn modes_of_the_plant_and_of_its_lags_and_filters_have_names_of_their_own() {
 
 #[test]
 fn a_missing_phase_or_share_has_its_reason_below_the_table() {
-    let found = linear_advice(&example("two_mass_drive.toml"));
+    let found = &*TWO_MASS_DRIVE;
     for link in &found.chain {
         assert_eq!(link.note.is_some(), link.phase.is_none() || link.share.is_none(), "{link:?}");
     }
-    let page = linear::page(&found);
+    let page = linear::page(found);
     let chain = section(&page, "Where does the latency come from?");
     assert!(
         chain.contains("load angle: no phase and no share, because no limit was found"),

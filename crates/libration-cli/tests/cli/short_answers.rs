@@ -29,10 +29,10 @@ const FORMS: [(&str, &str); 23] = [
         "warning: the loop was not simulated because it decays too slowly",
     ),
     (
-        "advise --system oscillator --tolerance energy=1e-6 --horizon 5",
+        "advise --system oscillator --tolerance energy=1e-5 --horizon 1.5",
         "but does not resolve the motion",
     ),
-    ("advise --system kepler --tolerance trajectory=1e-15 --horizon 1", "No integrator keeps"),
+    ("advise --system kepler --tolerance trajectory=1e-17 --horizon 0.05", "No integrator keeps"),
     ("advise --config examples/loops/two_mass_drive.toml", "Latency fails first"),
     (
         "advise --config examples/loops/furuta_pendulum.toml",
