@@ -9,7 +9,7 @@ use libration_report::Record;
 use libration_report::record::ClaimVerdict::{Conditional, Confirmed, NotReproducible, Refuted};
 use libration_report::record::{ClaimVerdict, Verdict};
 use libration_study::{Config, Effort, Lab, Silent, Spring, Start, Study};
-use libration_study_motion::DriftSettings;
+use libration_study_motion::{DriftSettings, EfficiencySettings};
 
 use crate::default_run::{measured, predicted, records};
 
@@ -195,7 +195,9 @@ fn a_conditional_verdict_says_its_condition_and_no_other_has_one() {
 
 #[test]
 fn findings_agree_for_other_springs_starts_methods_and_steps() {
-    let base = STUDIES.config();
+    // The default run has the longest horizon, whose splitting methods take seconds.
+    let efficiency = EfficiencySettings { periods: vec![10, 1000], ..Default::default() };
+    let base = STUDIES.config().with(efficiency);
     let drift = |dt: &[f64], steps| DriftSettings { dt: dt.to_vec(), steps };
     let all = Method::ALL.to_vec();
     let configs = [
@@ -225,14 +227,12 @@ fn findings_agree_for_other_springs_starts_methods_and_steps() {
         ),
     ];
     let stop = AtomicBool::new(false);
-    // A setting of this study alone.
     let single = base.with(drift(&[1e-6], 1));
     let lab = Lab::new(&single, Effort::Quick, &Silent, &stop);
     all_agree(&[libration_study_motion::Drift.run(&lab).unwrap()], "a single step");
     for (what, config) in &configs {
         let lab = Lab::new(config, Effort::Quick, &Silent, &stop);
-        // What concerns other systems, or one oscillator and no other, does not depend on these. Of `precision` other tests have
-        // such settings.
+        // These concern other systems, or one oscillator and no other; of `precision` other tests have such settings.
         let others = [
             "convergence",
             "nonlinear",
