@@ -30,7 +30,7 @@ pub(super) struct Block<T, C, V, const D: usize> {
     pub(super) delays: [[u32; LANES]; 2],
     /// The first step of the episode.
     pub(super) began: [u64; LANES],
-    /// The smallest of these steps.
+    /// At most the smallest of these steps.
     pub(super) oldest: u64,
     /// The number of the episode.
     pub(super) episode: [u64; LANES],
@@ -116,9 +116,8 @@ pub(super) fn begin<T: Float, E: World<T, O, D>, const O: usize, const D: usize>
     (0..2).for_each(|i| block.delays[i][l] = delays[i]);
     let error_scale = parts.error_scale.draw(episode);
     (0..2).for_each(|i| block.error_scale[i][l] = T::from_f64(error_scale[i]));
-    (block.paid[l], block.banked[l], block.ended[l]) = (T::zero(), 0.0, 0);
-    (block.began[l], block.episode[l]) = (now, episode.number);
     (block.seed[l], block.environment[l]) = (episode.seed, episode.environment);
+    block.renew(l, episode.number, now);
     history.begin(past, l, state.coordinates());
 }
 
@@ -139,6 +138,16 @@ impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {
     pub(super) fn episode(&self, l: usize) -> Episode {
         let (seed, environment) = (self.seed[l], self.environment[l]);
         Episode { seed, environment, number: self.episode[l] }
+    }
+
+    /// Begins episode `number` of the environment of lane `l` with the step `now`, but for what is drawn for it.
+    #[inline(always)]
+    pub(super) fn renew(&mut self, l: usize, number: u64, now: u64)
+    where
+        T: Float,
+    {
+        (self.paid[l], self.banked[l], self.ended[l]) = (T::zero(), 0.0, 0);
+        (self.began[l], self.episode[l]) = (now, number);
     }
 
     /// The next episode of lane `l`.
@@ -179,7 +188,7 @@ impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {
         self.banked[l] + self.paid[l].to_f64()
     }
 
-    /// Updates `oldest` after episodes began.
+    /// Updates `oldest` to the smallest first step.
     pub(super) fn settle(&mut self) {
         self.oldest = self.began.iter().copied().fold(u64::MAX, u64::min);
     }

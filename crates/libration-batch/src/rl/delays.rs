@@ -29,6 +29,11 @@ impl Delays {
         *self == Delays::default()
     }
 
+    /// Whether latencies differ between episodes.
+    pub(super) fn varies(&self) -> bool {
+        [self.observation, self.action].iter().any(|[least, most]| least != most)
+    }
+
     pub(super) fn check(&self) -> Result<(), ControlError> {
         for (name, [least, most]) in
             [("latency of observations", self.observation), ("latency of actions", self.action)]
@@ -43,7 +48,7 @@ impl Delays {
 
     /// The latencies of observations and actions of an episode.
     pub(super) fn draw(&self, episode: Episode) -> [u32; 2] {
-        if [self.observation, self.action].iter().all(|[least, most]| least == most) {
+        if !self.varies() {
             return [self.observation[0], self.action[0]];
         }
         let shares = uniform::shares::<2>(episode, Purpose::Delay, 0);

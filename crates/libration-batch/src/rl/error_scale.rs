@@ -27,6 +27,11 @@ impl Default for ErrorScale {
 }
 
 impl ErrorScale {
+    /// Whether factors differ between episodes.
+    pub(super) fn varies(&self) -> bool {
+        [self.clock, self.sensor].iter().any(|[least, most]| least != most)
+    }
+
     pub(super) fn check<T: Float>(&self) -> Result<(), ControlError> {
         for (name, [least, most]) in
             [("error scale of the clock", self.clock), ("error scale of the sensor", self.sensor)]
@@ -40,7 +45,7 @@ impl ErrorScale {
 
     /// The factors of the clock and of the sensor in an episode.
     pub(super) fn draw(&self, episode: Episode) -> [f64; 2] {
-        if [self.clock, self.sensor].iter().all(|[least, most]| least == most) {
+        if !self.varies() {
             return [self.clock[0], self.sensor[0]];
         }
         // The first two numbers are latencies.

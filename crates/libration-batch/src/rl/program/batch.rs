@@ -232,7 +232,7 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
             });
         }
         let instructions = episodes.execution.instruction_set();
-        let beginning = Beginning { definition, world, history: *history, instructions };
+        let beginning = Beginning::new(definition, world, *history, instructions);
         let horizon = Horizon { beginning, policy, environments: len, step: *step, row };
         let missing = shares.len().saturating_sub(works.len());
         let new = || {

@@ -70,7 +70,7 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
         let ProgramEnvironments { definition, episodes, history, states, past, .. } = self;
         let instructions = episodes.execution.instruction_set();
         let (world, history) = (&episodes.world, *history);
-        let beginning = Beginning { definition, world, history, instructions };
+        let beginning = Beginning::new(definition, world, history, instructions);
         let rows = definition.coordinates();
         let past = &mut past[b * history.len()..][..history.len()];
         beginning.place(&mut states[b * rows..][..rows], past, l, state);
@@ -82,7 +82,7 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
         let ProgramEnvironments { definition, episodes, history, numbers, .. } = self;
         let instructions = episodes.execution.instruction_set();
         let (world, history) = (&episodes.world, *history);
-        let beginning = Beginning { definition, world, history, instructions };
+        let beginning = Beginning::new(definition, world, history, instructions);
         let count = definition.numbers().count();
         let episode = episodes.blocks[b].episode(l);
         beginning.draw(&mut numbers[b * count..][..count], [n, l], episode);

@@ -110,9 +110,9 @@ impl<T: BatchFloat> Horizon<'_, T> {
         let stands = autoreset != Autoreset::SameStep && block.episodes.ended != [0; LANES];
         let stood = stands.then(|| Stood {
             ended: block.episodes.ended,
-            words: self.draws(work).then(|| [0, 1, 2].map(|i| *site.words[i])),
+            words: self.draws(work).then(|| Box::new([0, 1, 2].map(|i| *site.words[i]))),
             held: (autoreset == Autoreset::Disabled)
-                .then(|| (*block.episodes, block.states.to_vec())),
+                .then(|| Box::new((*block.episodes, block.states.to_vec()))),
         });
         let [times, looks, acts] = &mut site.words;
         if is_observed {
@@ -126,6 +126,7 @@ impl<T: BatchFloat> Horizon<'_, T> {
         if let Some(last) = limit.map(|limit| u64::from(limit) - 1)
             && now - block.episodes.oldest >= last
         {
+            block.episodes.settle();
             for (cut, began) in cuts.iter_mut().zip(&block.episodes.began).take(site.count) {
                 *cut = u8::from(now - began >= last);
                 ended |= *cut != 0;
@@ -184,12 +185,11 @@ impl<T: BatchFloat> Horizon<'_, T> {
         let mut touched = stood_ended;
         touched.iter_mut().zip(&ending).for_each(|(touched, ending)| *touched |= ending);
         for l in marked(&touched).take_while(|&l| l < site.count) {
-            let next = block.episodes.next(l);
             if let Some(stood) = stood.filter(|stood| stood.ended[l] != 0) {
                 let flags = if stood.held.is_some() { stood.ended[l] } else { 0 };
                 work.rewards[l] = T::zero();
                 (work.overs[l], cuts[l]) = (flags & TERMINATED, (flags & TRUNCATED) / TRUNCATED);
-                match &stood.held {
+                match stood.held.as_deref() {
                     Some((episodes, states)) => {
                         block.episodes.hold(episodes, l);
                         block.states.iter_mut().zip(states).for_each(|(x, was)| x[l] = was[l]);
@@ -197,7 +197,7 @@ impl<T: BatchFloat> Horizon<'_, T> {
                         let steps = step * substeps..(step + 1) * substeps;
                         work.history.hold(block.past, l, steps, state);
                     }
-                    None => self.beginning.begin(block, [environment + l, l], next, step + 1),
+                    None => self.beginning.begin(block, [environment + l, l], step + 1),
                 }
                 continue;
             }
@@ -217,24 +217,23 @@ impl<T: BatchFloat> Horizon<'_, T> {
             };
             ends.push(end, work.last.iter().map(|row| row[l]));
             match autoreset {
-                Autoreset::SameStep => {
-                    self.beginning.begin(block, [environment + l, l], next, step + 1)
-                }
+                Autoreset::SameStep => self.beginning.begin(block, [environment + l, l], step + 1),
                 Autoreset::NextStep | Autoreset::Disabled => block.episodes.ended[l] = flags,
             }
         }
-        block.episodes.settle();
     }
 }
 
 /// What a block was before a step that some of its environments do not take.
+///
+/// Where episodes are short nearly every step has one: boxes keep it from copying what it rarely holds.
 struct Stood<T: Float> {
     /// Flags of the environments that do not take it.
     ended: [u8; LANES],
     /// The random words, where any are drawn.
-    words: Option<[Streams<LANES>; 3]>,
+    words: Option<Box<[Streams<LANES>; 3]>>,
     /// Episodes and states, where they stay as they were.
-    held: Option<(EpisodeBlock<T>, Vec<Row<T>>)>,
+    held: Option<Box<(EpisodeBlock<T>, Vec<Row<T>>)>>,
 }
 
 /// The lanes whose mark is not zero.

@@ -27,7 +27,7 @@ impl<T: Float> Loop for Settlement<'_, T> {
     #[inline(always)]
     fn run(self) {
         let [rewards, overs] = self.judged;
-        let mut none = *rewards;
+        let Sums(none) = &mut Sums(*rewards);
         none.iter_mut().for_each(|none| *none = *none * T::zero());
         for row in self.finite.into_iter().flatten() {
             for (none, &x) in none.iter_mut().zip(row) {
@@ -43,3 +43,7 @@ impl<T: Float> Loop for Settlement<'_, T> {
         }
     }
 }
+
+/// Sums that are read back as soon as they are written: across two lines of the cache that takes several times as long.
+#[repr(align(64))]
+struct Sums<T>(Row<T>);
