@@ -11,7 +11,7 @@ use super::advise::{ADVISE, json, libration};
 /// Writes a log with a time in whole ms that has no unit.
 fn whole_milliseconds(folder: &Path) -> String {
     let mut text = "t,cmd,q,E\n".to_owned();
-    for i in 0..400_u32 {
+    for i in 0..100_u32 {
         let command = |i: u32| f64::from(i / 10 * 7919 % 31) / 31.0;
         let energy = 1.0 + 1e-3 * f64::from(i * 7919 % 97) / 97.0;
         let _ =

@@ -12,8 +12,12 @@ use super::advise::libration;
 fn verify_recomputes_a_report_and_names_what_differs() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
+    let config = folder.path().join("short.toml");
+    fs::write(&config, "[drift]\nsteps = 20_000\n").unwrap();
+    let config = config.to_str().unwrap();
     let folder = out.to_str().unwrap();
-    libration(&["lab", "spectrum", "drift", "--effort", "quick", "--out", folder]).success();
+    let lab = ["lab", "spectrum", "drift", "--effort", "quick", "--config", config];
+    libration(&[&lab[..], &["--out", folder]].concat()).success();
     libration(&["verify", folder])
         .success()
         .stdout(contains("spectrum: ").and(contains("drift: ")).and(contains("same bits")));
