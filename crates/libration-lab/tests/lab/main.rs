@@ -15,6 +15,7 @@ mod numbers;
 mod other_reports;
 mod own_system;
 mod precision;
+mod repeatability;
 mod report;
 mod rollout;
 mod series;

@@ -9,7 +9,7 @@ use libration_report::Record;
 use libration_report::record::ClaimVerdict::{Conditional, Confirmed, NotReproducible, Refuted};
 use libration_report::record::{ClaimVerdict, Verdict};
 use libration_study::{Config, Effort, Lab, Silent, Spring, Start, Study};
-use libration_study_motion::{DriftSettings, EfficiencySettings};
+use libration_study_motion::{DriftSettings, EfficiencySettings, ErrorSettings, StabilitySettings};
 
 use crate::default_run::{measured, predicted, records};
 
@@ -195,13 +195,19 @@ fn a_conditional_verdict_says_its_condition_and_no_other_has_one() {
 
 #[test]
 fn findings_agree_for_other_springs_starts_methods_and_steps() {
-    // The default run has the longest horizon, whose splitting methods take seconds.
+    // The default run has the longest horizons, which take seconds.
     let efficiency = EfficiencySettings { periods: vec![10, 1000], ..Default::default() };
-    let base = STUDIES.config().with(efficiency);
+    let error = ErrorSettings { steps: 100_000, ..Default::default() };
+    let stability = StabilitySettings { steps: vec![1000, 10_000], ..Default::default() };
+    let base = STUDIES.config().with(efficiency.clone()).with(error).with(stability);
+    let alone = EfficiencySettings { splitting_methods: Vec::new(), ..efficiency };
     let drift = |dt: &[f64], steps| DriftSettings { dt: dt.to_vec(), steps };
     let all = Method::ALL.to_vec();
     let configs = [
-        ("RK4 alone", Config { integrators: vec![Method::Rk4], ..base.clone() }),
+        (
+            "RK4 alone",
+            Config { integrators: vec![Method::Rk4], ..base.clone() }.with(alone.clone()),
+        ),
         (
             "all methods, large steps and a dyadic one",
             Config {
@@ -223,7 +229,8 @@ fn findings_agree_for_other_springs_starts_methods_and_steps() {
         (
             "beyond every limit of stability",
             Config { integrators: all, start: Start { q: 0.0, v: 1.0 }, ..base.clone() }
-                .with(drift(&[0.7, 1.5], 5_000)),
+                .with(drift(&[0.7, 1.5], 5_000))
+                .with(alone),
         ),
     ];
     let stop = AtomicBool::new(false);
@@ -251,50 +258,5 @@ fn findings_agree_for_other_springs_starts_methods_and_steps() {
         let own = STUDIES.studies.iter().filter(|s| !others.contains(&s.name()));
         let records: Vec<Record> = own.map(|study| study.run(&lab).unwrap()).collect();
         all_agree(&records, what);
-    }
-}
-
-#[test]
-fn a_run_repeats_to_the_bit_on_one_thread_and_on_many() {
-    let (config, stop) = (STUDIES.config(), AtomicBool::new(false));
-    let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    for (study, a) in STUDIES.studies.iter().zip(records()) {
-        // That ensembles of loops repeat on any number of threads the engine's tests show, and `determinism`; `throughput`,
-        // `memory`, `rollout` and `storage` measure time.
-        let others = [
-            "latency",
-            "jitter",
-            "asynchrony",
-            "hierarchy",
-            "throughput",
-            "memory",
-            "rollout",
-            "storage",
-        ];
-        if others.contains(&study.name()) {
-            continue;
-        }
-        let b = pool.install(|| study.run(&lab)).unwrap();
-        // The session has added durations, commands and files.
-        let mut a = Record { seconds: b.seconds, figures: vec![], data: vec![], ..a.clone() };
-        a.findings.iter_mut().for_each(|finding| finding.command.clear());
-        if a.name == "efficiency" {
-            // It measures time, which does not repeat; the rest does.
-            let rest = |r: &Record| {
-                let findings = r.findings.iter().filter(|f| !f.id.ends_with(".time"));
-                findings.map(|f| (f.id.clone(), f.measured.to_bits())).collect::<Vec<_>>()
-            };
-            assert_eq!(rest(&a), rest(&b));
-            continue;
-        }
-        assert_eq!(serde_json::to_string(&a).unwrap(), serde_json::to_string(&b).unwrap());
-        // NaN marks what is missing, so columns are compared by their bits.
-        for (a, b) in
-            a.series.iter().zip(&b.series).flat_map(|(a, b)| a.columns.iter().zip(&b.columns))
-        {
-            let bits = |values: &[f64]| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-            assert_eq!(bits(&a.values), bits(&b.values), "{}", a.name);
-        }
     }
 }
