@@ -255,11 +255,11 @@ def test_a_data_set_is_resumed_to_the_same_bytes_and_verified(tmp_path):
         raise Stop
 
     with pytest.raises(Stop):
-        libration.datasets.write(part, {**DATA, "steps": 6400}, format="npy", progress=stop)
+        libration.datasets.write(part, {**DATA, "steps": 1600}, format="npy", progress=stop)
     (flaw,) = libration.datasets.verify(part)
     assert "is unfinished" in flaw.what and "resume=True continues it" in flaw.what
-    full = libration.datasets.write(part, {**DATA, "steps": 6400}, format="npy", resume=True)
-    assert full.transitions == 8 * 6400
+    full = libration.datasets.write(part, {**DATA, "steps": 1600}, format="npy", resume=True)
+    assert full.transitions == 8 * 1600
     assert libration.datasets.verify(part, replay=True) == []
     file = next((tmp_path / "whole").glob("reward/*.npy"))
     raw = bytearray(file.read_bytes())

@@ -304,7 +304,7 @@ def test_a_mechanical_plant_has_the_response_of_its_masses_dampers_and_springs()
     assert other.outputs == ["y1"] and len(other.parts) == 1
     np.testing.assert_array_equal(LinearPlant.mechanical(MASS, D=[[0, 1], [2, 3]]).D, [[0, 1], [2, 3]])
     # The request has the names and the units.
-    advice = advise(plant, LQR([1, 1, 1, 1], [1]), period=0.01, tolerance=("cost", 0.5))
+    advice = advise(plant, LQR([1, 1, 1, 1], [1]), period=0.1)
     assert advice["states"][3] == {"name": "load'", "unit": "rad/s"} and advice.holds
 
 
@@ -330,15 +330,18 @@ def test_a_plant_of_transfer_functions_has_their_response():
 
 def test_an_object_with_numerators_and_denominators_is_a_plant():
     controller = LQG([1] * 5, [1, 1], [0.01, 0.01])
-    wanted = advise(LinearPlant.transfer_function(NUMERATORS, DENOMINATORS), controller, period=0.1)
+    wanted = LinearPlant.transfer_function(NUMERATORS, DENOMINATORS)
     lists = {"num": NUMERATORS, "den": [[np.array(one) for one in row] for row in DENOMINATORS]}
     names = {"input_labels": ["left", "right"], "output_labels": ["a", "b"], "state_labels": []}
     new = {"num_list": lists["num"], "den_list": lists["den"], "num": None, "den": None}
     for given in (lists, new):
         system = types.SimpleNamespace(**given, **names, dt=0, to_ss=lambda: 1 / 0)
-        advice = advise(system, controller, period=0.1)
-        assert [signal["name"] for signal in advice["inputs"]] == ["left", "right"]
-        assert advice.growth == wanted.growth
+        found = plant_of(system)
+        assert (found.inputs, found.outputs, found.dt) == (["left", "right"], ["a", "b"], None)
+        for matrix in "ABCD":
+            np.testing.assert_array_equal(getattr(found, matrix), getattr(wanted, matrix))
+    advice = advise(system, controller, period=0.1)
+    assert [signal["name"] for signal in advice["inputs"]] == ["left", "right"]
     # SciPy's have one input, with a common denominator of several outputs.
     plain = types.SimpleNamespace(num=np.array([1.0, 2.0]), den=np.array([1.0, 3.0, 4.0]), dt=0.1)
     common = types.SimpleNamespace(num=np.array([[0.0, 1.0], [1.0, 2.0]]), den=np.array([1.0, 3.0]), dt=None)
@@ -399,6 +402,8 @@ def test_plants_of_other_forms_name_what_is_wrong(make, error, wanted):
 
 
 def test_a_tolerance_is_a_pair():
+    latency = advise(PENDULUM, StateFeedback([[20.0, 5.0]]), tolerance=("cost", 0.5))["budgets"][0]
+    assert 0 < latency["tolerated_up_to"] < latency["stable_up_to"]
     for tolerance in ({"cost": 0.05}, "cost", ("cost",), (0.05, "cost"), 0.05):
         with pytest.raises(TypeError, match=r"tolerance is .*; expected a pair like \('cost', 0.05\)"):
             advise(PENDULUM, StateFeedback([[20.0, 5.0]]), tolerance=tolerance)
