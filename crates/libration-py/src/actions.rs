@@ -88,5 +88,9 @@ fn commands<T: Float>(given: &Bound<'_, PyAny>, levels: &[f64], len: usize) -> O
         return None;
     }
     let levels: Vec<T> = levels.iter().map(|&level| T::from_f64(level)).collect();
-    Some(chosen.iter().map(|&i| levels[i as usize]).collect())
+    Some(match levels[..] {
+        // Several at once.
+        [low, high] => chosen.iter().map(|&i| if i == 0 { low } else { high }).collect(),
+        _ => chosen.iter().map(|&i| levels[i as usize]).collect(),
+    })
 }
