@@ -111,8 +111,9 @@ impl<T: BatchFloat> Horizon<'_, T> {
         let stood = stands.then(|| Stood {
             ended: block.episodes.ended,
             words: self.draws(work).then(|| Box::new([0, 1, 2].map(|i| *site.words[i]))),
-            held: (autoreset == Autoreset::Disabled)
-                .then(|| Box::new((*block.episodes, block.states.to_vec()))),
+            held: (autoreset == Autoreset::Disabled).then(|| {
+                Box::new(Held { episodes: *block.episodes, states: block.states.to_vec() })
+            }),
         });
         let [times, looks, acts] = &mut site.words;
         if is_observed {
@@ -190,7 +191,7 @@ impl<T: BatchFloat> Horizon<'_, T> {
                 work.rewards[l] = T::zero();
                 (work.overs[l], cuts[l]) = (flags & TERMINATED, (flags & TRUNCATED) / TRUNCATED);
                 match stood.held.as_deref() {
-                    Some((episodes, states)) => {
+                    Some(Held { episodes, states }) => {
                         block.episodes.hold(episodes, l);
                         block.states.iter_mut().zip(states).for_each(|(x, was)| x[l] = was[l]);
                         let state = states.iter().map(|row| row[l]);
@@ -233,7 +234,13 @@ struct Stood<T: Float> {
     /// The random words, where any are drawn.
     words: Option<Box<[Streams<LANES>; 3]>>,
     /// Episodes and states, where they stay as they were.
-    held: Option<Box<(EpisodeBlock<T>, Vec<Row<T>>)>>,
+    held: Option<Box<Held<T>>>,
+}
+
+/// A block to which environments are put back.
+struct Held<T: Float> {
+    episodes: EpisodeBlock<T>,
+    states: Vec<Row<T>>,
 }
 
 /// The lanes whose mark is not zero.
