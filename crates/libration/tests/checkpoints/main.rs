@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod environments;
+mod programs;
 mod trajectories;
 
 use libration::checkpoint::{Checkpoint, ensure_same_traits};

@@ -39,6 +39,8 @@ pub struct ProgramEnvironments<T: Float> {
     pub(super) numbers: Vec<Row<T>>,
     pub(super) history: History,
     pub(super) past: Vec<T>,
+    /// Whether episodes may have begun under another definition.
+    pub(super) is_foreign: bool,
 }
 
 impl<T: BatchFloat> ProgramEnvironments<T> {
@@ -76,6 +78,7 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
             definition: Arc::new(definition),
             episodes,
             history,
+            is_foreign: false,
         };
         (0..len).for_each(|n| all.place(n));
         Ok(all)
@@ -196,7 +199,7 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
         let steps = to.reward.nrows() as u64;
         let each = self.shortest_steps.saturating_add(shortest_steps(policy.operations()));
         let ProgramEnvironments { definition, programs, works, episodes, .. } = self;
-        let ProgramEnvironments { states, numbers, history, past, .. } = self;
+        let ProgramEnvironments { states, numbers, history, past, is_foreign, .. } = self;
         let (coordinates, observations) = (definition.coordinates(), definition.observations());
         let drawn = definition.numbers().count();
         let Episodes { world, blocks, draws: [times, looks, acts], step, .. } = episodes;
@@ -233,6 +236,7 @@ impl<T: BatchFloat> ProgramEnvironments<T> {
         }
         let instructions = episodes.execution.instruction_set();
         let beginning = Beginning::new(definition, world, *history, instructions);
+        let beginning = if *is_foreign { beginning.with_all_draws() } else { beginning };
         let horizon = Horizon { beginning, policy, environments: len, step: *step, row };
         let missing = shares.len().saturating_sub(works.len());
         let new = || {

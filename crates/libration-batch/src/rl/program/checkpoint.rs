@@ -1,8 +1,12 @@
 //! Checkpoints of environments by programs.
 
+use libration_core::control::{Clock, Memory, StartAddress};
+
 use super::ProgramEnvironments;
+use super::environment::World;
 use crate::checkpoint::{Checkpoint, CheckpointError, Reader, Trait};
 use crate::ensemble::BatchFloat;
+use crate::rl::block::ClockMemory;
 use crate::rl::block_size::LANES;
 
 impl<T: BatchFloat> Checkpoint for ProgramEnvironments<T> {
@@ -37,6 +41,20 @@ impl<T: BatchFloat> Checkpoint for ProgramEnvironments<T> {
         from.fill(self.states.as_flattened_mut());
         from.fill(&mut self.past);
         (0..self.len()).for_each(|n| self.draw_numbers(n));
+        self.is_foreign = (0..self.len()).any(|n| self.is_other_episode(n));
         Ok(())
+    }
+}
+
+impl<T: BatchFloat> ProgramEnvironments<T> {
+    /// Whether the episode of environment `n` did not begin with the latencies, the error scales and the clock that are drawn for it.
+    fn is_other_episode(&self, n: usize) -> bool {
+        let (block, l) = (&self.episodes.blocks[n / LANES], n % LANES);
+        let (world, episode) = (&self.episodes.world, block.episode(l));
+        let begin = StartAddress::new(episode.seed, episode.environment, episode.number);
+        let error_scale = world.error_scale.draw(episode).map(T::from_f64);
+        block.delays.map(|row| row[l]) != world.delays.draw(episode)
+            || block.error_scale.map(|row| row[l]) != error_scale
+            || ClockMemory::<T, World, 0, 0>::lane(&block.clock, l) != world.clock.start(begin)
     }
 }

@@ -80,6 +80,11 @@ impl<'a> Beginning<'a> {
         Beginning { definition, world, history, instructions, is_same }
     }
 
+    /// The same, where the episodes before may have been those of another definition.
+    pub(super) fn with_all_draws(self) -> Self {
+        Beginning { is_same: false, ..self }
+    }
+
     /// Begins the next episode of environment `n` in lane `l` of its block, with the step `now`.
     pub(super) fn begin<T: Float>(
         &self,
