@@ -75,9 +75,7 @@ fn an_episode_of_another_definition_goes_on_and_the_next_is_of_their_own() {
     for (i, other) in others.into_iter().enumerate() {
         let (mut restored, mut own) = (environments(|plain| plain), environments(|plain| plain));
         let mut other = environments(other);
-        let mut state = Vec::new();
-        other.save(|bytes| Ok::<_, ()>(state.extend_from_slice(bytes))).unwrap();
-        restored.restore(&state).unwrap();
+        restored.restore(&other.to_bytes()).unwrap();
         // The fourth is the last observation of the episode.
         let [found, wanted] = [&mut restored, &mut own].map(|all| observed(all, 12));
         assert_eq!(found[..4], observed(&mut other, 4), "{i}");
