@@ -6,7 +6,7 @@ use std::path::Path;
 
 use libration_data::read_text_bounded;
 use libration_report::Record;
-use libration_report::record::{Finding, Verdict};
+use libration_report::record::{Agreement, Finding};
 use serde::{Deserialize, Serialize};
 
 use crate::results::SCHEMA;
@@ -63,7 +63,7 @@ pub struct Change {
     /// The tolerance of the second run, if there is one.
     pub tolerance: Option<f64>,
     /// Verdicts of both runs.
-    pub verdicts: [Verdict; 2],
+    pub verdicts: [Agreement; 2],
 }
 
 /// What a comparison needs of a file with results.
@@ -160,7 +160,7 @@ impl ResultsComparison {
                 Some(second) => comparison.add(first, second, noise),
                 None => {
                     comparison.only_before.push(first.id.clone());
-                    if first.verdict != Verdict::Measured && after.should_have(before, first) {
+                    if first.verdict != Agreement::Measured && after.should_have(before, first) {
                         comparison.lost.push(first.id.clone());
                     }
                 }
@@ -168,7 +168,7 @@ impl ResultsComparison {
         }
         for new in after.findings().filter(|finding| !old.contains_key(finding.id.as_str())) {
             comparison.only_after.push(new.id.clone());
-            if verdict(new) == Verdict::Disagrees {
+            if verdict(new) == Agreement::Disagrees {
                 comparison.regressions.push(change(None, new));
             }
         }
@@ -186,16 +186,16 @@ impl ResultsComparison {
         let is_rate = second.unit.ends_with("/s");
         let is_another = first.unit != second.unit || first.relation != second.relation;
         match (verdict(first), verdict(second)) {
-            (Verdict::Agrees, Verdict::Agrees) if is_lost => self.regressions.push(change()),
-            (Verdict::Agrees | Verdict::Measured, Verdict::Disagrees) => {
+            (Agreement::Agrees, Agreement::Agrees) if is_lost => self.regressions.push(change()),
+            (Agreement::Agrees | Agreement::Measured, Agreement::Disagrees) => {
                 self.regressions.push(change())
             }
-            (Verdict::Disagrees, Verdict::Agrees) => self.improvements.push(change()),
+            (Agreement::Disagrees, Agreement::Agrees) => self.improvements.push(change()),
             (before, after) if is_another || before != after => self.changed.push(change()),
             _ if is_equal && first.predicted == second.predicted => self.same += 1,
-            (Verdict::Measured, _) if is_rate && fell => self.regressions.push(change()),
-            (Verdict::Measured, _) if is_rate && rose => self.improvements.push(change()),
-            (Verdict::Measured, _) if !(fell || rose || difference.is_nan()) => self.within += 1,
+            (Agreement::Measured, _) if is_rate && fell => self.regressions.push(change()),
+            (Agreement::Measured, _) if is_rate && rose => self.improvements.push(change()),
+            (Agreement::Measured, _) if !(fell || rose || difference.is_nan()) => self.within += 1,
             _ if is_within(first, second) => self.within += 1,
             _ => self.changed.push(change()),
         }
@@ -211,18 +211,18 @@ fn change(first: Option<&Finding>, second: &Finding) -> Change {
         after: second.measured,
         predicted: second.predicted,
         tolerance: second.tolerance.tolerance,
-        verdicts: [first.map_or(Verdict::Measured, verdict), verdict(second)],
+        verdicts: [first.map_or(Agreement::Measured, verdict), verdict(second)],
     }
 }
 
 /// The verdict that the numbers of a finding give, whatever its file says. Files have no infinities, of which the file alone knows.
-fn verdict(own: &Finding) -> Verdict {
+fn verdict(own: &Finding) -> Agreement {
     match own.predicted.filter(|predicted| predicted.is_finite() && own.measured.is_finite()) {
         Some(predicted)
-            if own.verdict == Verdict::Agrees
+            if own.verdict == Agreement::Agrees
                 && !own.relation.holds(predicted, own.measured, own.tolerance.tolerance) =>
         {
-            Verdict::Disagrees
+            Agreement::Disagrees
         }
         _ => own.verdict,
     }

@@ -7,5 +7,7 @@ pub mod page;
 pub mod record;
 pub mod report;
 pub mod text;
+pub mod verdict;
 
 pub use record::Record;
+pub use verdict::{Outcome, Verdict};

@@ -180,7 +180,7 @@ pub(super) fn aim(
 
 #[cfg(test)]
 mod tests {
-    use libration_report::record::Verdict;
+    use libration_report::record::Agreement;
 
     use super::*;
 
@@ -188,7 +188,7 @@ mod tests {
     fn a_speed_reaches_its_target_or_not_or_is_too_noisy_and_never_disagrees() {
         let judged = |bar, median, spread| {
             let finding = judged("a.b".into(), String::new(), bar, Ratio::new(median, spread, 20));
-            assert_ne!(finding.verdict, Verdict::Disagrees);
+            assert_ne!(finding.verdict, Agreement::Disagrees);
             (finding.agrees(), finding.undecided.map(|reason| reason.to_string()))
         };
         assert_eq!(judged(Some(0.9), 0.95, 0.01), (true, None));

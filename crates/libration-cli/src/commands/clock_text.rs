@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use libration_logs::clock::{
-    Doubt, Drift, Latency, Law, LawFit, Matching, PhaseLag, TopicClock, Verdict,
+    Doubt, Drift, Latency, Law, LawFit, LawVerdict, Matching, PhaseLag, TopicClock,
 };
 
 use super::clock_effect::Effect;
@@ -132,11 +132,11 @@ pub(super) fn verdict_words(fit: &LawFit) -> String {
         })
     };
     match fit.verdict {
-        Verdict::Constant => "all are equal".to_owned(),
-        Verdict::TooFew => "too few for a law".to_owned(),
-        Verdict::Fits => words(""),
-        Verdict::Close => words(", close but rejected"),
-        Verdict::None => "none fits: replay the record (--jitter-file)".to_owned(),
+        LawVerdict::Constant => "all are equal".to_owned(),
+        LawVerdict::TooFew => "too few for a law".to_owned(),
+        LawVerdict::Fits => words(""),
+        LawVerdict::Close => words(", close but rejected"),
+        LawVerdict::None => "none fits: replay the record (--jitter-file)".to_owned(),
     }
 }
 

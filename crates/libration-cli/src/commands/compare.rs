@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use libration_lab::{Change, ComparedResults, ResultsComparison};
-use libration_report::record::Verdict;
+use libration_report::record::Agreement;
 use serde_json::json;
 
 use super::digits::{exact, short};
@@ -81,13 +81,13 @@ fn sentence(change: &Change) -> String {
     let Change { before, after, text, .. } = change;
     let unit = if change.unit == "1" { String::new() } else { format!(" {}", change.unit) };
     let [first, second] = change.verdicts;
-    if second == Verdict::Disagrees {
+    if second == Agreement::Disagrees {
         let number = |x: Option<f64>| x.map_or_else(|| "none".to_owned(), exact);
         let (predicted, tolerance) = (number(change.predicted), number(change.tolerance));
         let before = match first {
-            Verdict::Agrees => format!("agreed with theory at {}, now disagrees", exact(*before)),
-            Verdict::Disagrees => format!("disagreed with theory at {}, as now", exact(*before)),
-            Verdict::Measured => "disagrees with theory".to_owned(),
+            Agreement::Agrees => format!("agreed with theory at {}, now disagrees", exact(*before)),
+            Agreement::Disagrees => format!("disagreed with theory at {}, as now", exact(*before)),
+            Agreement::Measured => "disagrees with theory".to_owned(),
         };
         let after = exact(*after);
         return format!(
@@ -103,9 +103,11 @@ fn sentence(change: &Change) -> String {
         String::new()
     };
     let verdict = match (first, second) {
-        (Verdict::Disagrees, Verdict::Agrees) => "disagreed with theory, now agrees: ",
-        (Verdict::Agrees | Verdict::Disagrees, Verdict::Measured) => "no longer has a prediction: ",
-        (Verdict::Measured, Verdict::Agrees) => "has a prediction now: ",
+        (Agreement::Disagrees, Agreement::Agrees) => "disagreed with theory, now agrees: ",
+        (Agreement::Agrees | Agreement::Disagrees, Agreement::Measured) => {
+            "no longer has a prediction: "
+        }
+        (Agreement::Measured, Agreement::Agrees) => "has a prediction now: ",
         _ => "",
     };
     format!("{verdict}{}, then {}{ratio}; {text}", of(*before), of(*after))

@@ -1,7 +1,7 @@
 //! `libration lab --only`: one finding, recomputed.
 
 use libration_lab::{STUDIES, SystemStudies};
-use libration_report::record::{Finding, Relation, Verdict};
+use libration_report::record::{Agreement, Finding, Relation};
 use libration_settings::suggestions::{nearest, suggest};
 use libration_study::{Config, Lab, Study, StudyError};
 use libration_study_motion::Problem;
@@ -100,11 +100,11 @@ fn describe(finding: &Finding, is_speed: bool) -> String {
     );
     let verdict = match verdict {
         // A speed has a target, not a prediction.
-        Verdict::Agrees if is_speed => "reached".to_owned(),
-        Verdict::Disagrees if is_speed => "not reached".to_owned(),
-        Verdict::Agrees => "agrees".to_owned(),
-        Verdict::Disagrees => "disagrees".to_owned(),
-        Verdict::Measured => undecided
+        Agreement::Agrees if is_speed => "reached".to_owned(),
+        Agreement::Disagrees if is_speed => "not reached".to_owned(),
+        Agreement::Agrees => "agrees".to_owned(),
+        Agreement::Disagrees => "disagrees".to_owned(),
+        Agreement::Measured => undecided
             .as_ref()
             .map_or("no prediction".to_owned(), |why| format!("not judged: {why}")),
     };

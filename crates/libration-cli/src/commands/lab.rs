@@ -7,7 +7,7 @@ use libration_lab::output::{Output, OutputError};
 use libration_lab::results::Results;
 use libration_lab::session::{Cause, SessionError};
 use libration_lab::{STUDIES, SystemStudies, session};
-use libration_report::record::{Record, Verdict};
+use libration_report::record::{Agreement, Record};
 use libration_settings::ConfigCommand;
 use libration_study::{Config, Lab};
 use libration_study_motion::Problem;
@@ -158,7 +158,7 @@ fn summary(results: &Results, report: &Path) -> String {
 
 /// Returns how many findings with a prediction agree.
 fn agreement(record: &Record) -> String {
-    let predicted = record.findings.iter().filter(|f| f.verdict != Verdict::Measured);
+    let predicted = record.findings.iter().filter(|f| f.verdict != Agreement::Measured);
     let agree = record.findings.iter().filter(|f| f.agrees()).count();
     format!("{agree} of {}", predicted.count())
 }

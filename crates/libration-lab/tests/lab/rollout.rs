@@ -1,7 +1,7 @@
 //! The studies of rollouts: what they are to tell is there. How fast a machine is, no test asks.
 
 use libration_report::Record;
-use libration_report::record::Verdict;
+use libration_report::record::Agreement;
 
 use crate::default_run::{measured, predicted, records};
 
@@ -22,7 +22,7 @@ fn every_wanted_share_of_a_fill_that_a_quick_run_can_measure_is_a_finding() {
 #[cfg(debug_assertions)]
 #[test]
 fn a_build_that_is_not_for_speed_is_judged_by_counts_and_by_the_source_alone() {
-    let judged = record().findings.iter().filter(|f| f.verdict != Verdict::Measured);
+    let judged = record().findings.iter().filter(|f| f.verdict != Agreement::Measured);
     let kinds = ["kept", "broken", "stride", "faults", "source"];
     for finding in judged {
         let kind = finding.id.split('.').nth(1).unwrap();

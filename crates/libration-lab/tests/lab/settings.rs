@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use libration::Method;
 use libration_lab::STUDIES;
 use libration_report::Record;
-use libration_report::record::{Finding, Verdict};
+use libration_report::record::{Agreement, Finding};
 use libration_study::{Config, Effort, Lab, Silent, Spring, Study};
 use libration_study_motion::{DriftSettings, Efficiency, EfficiencySettings, SpectrumSettings};
 
@@ -111,7 +111,7 @@ fn what_a_symplectic_step_conserves_strays_by_rounding_alone() {
     for dt in ["dt-0.001", "dt-0.01", "dt-0.1"] {
         for method in ["symplectic-euler", "velocity-verlet"] {
             let finding = record.finding(&format!("drift.{method}.{dt}.invariant")).unwrap();
-            assert_eq!((finding.predicted, finding.verdict), (Some(0.0), Verdict::Agrees));
+            assert_eq!((finding.predicted, finding.verdict), (Some(0.0), Agreement::Agrees));
             let swing = record.finding(&format!("drift.{method}.{dt}.largest")).unwrap().measured;
             assert!(finding.measured > 0.0 && finding.measured < 1e-6 * swing, "{method} {dt}");
         }
@@ -168,7 +168,7 @@ fn verlet_overtakes_rk4_at_the_step_that_its_own_orbit_says() {
         let config = STUDIES.config().with(drift(&[dt], steps));
         let record = agrees(&libration_study_motion::Drift, &config, &format!("Δt = {dt}"));
         let crossover = record.finding(&format!("drift.crossover.dt-{dt}.measured")).unwrap();
-        assert_eq!(crossover.verdict, Verdict::Agrees, "{crossover:?}");
+        assert_eq!(crossover.verdict, Agreement::Agrees, "{crossover:?}");
     }
 }
 

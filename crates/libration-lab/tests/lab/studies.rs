@@ -7,7 +7,7 @@ use libration::Method;
 use libration_lab::STUDIES;
 use libration_report::Record;
 use libration_report::record::ClaimVerdict::{Conditional, Confirmed, NotReproducible, Refuted};
-use libration_report::record::{ClaimVerdict, Verdict};
+use libration_report::record::{Agreement, ClaimVerdict};
 use libration_study::{Config, Effort, Lab, Silent, Spring, Start, Study};
 use libration_study_motion::{DriftSettings, EfficiencySettings, ErrorSettings, StabilitySettings};
 
@@ -35,7 +35,7 @@ fn every_finding_says_where_its_tolerance_comes_from_and_has_a_name_of_its_own()
             assert!(finding.id.starts_with(&format!("{}.", record.name)), "{}", finding.id);
             assert!(seen.insert(&finding.id), "{} twice", finding.id);
             assert!(finding.tolerance.tolerance_reason.len() > 10, "{}", finding.id);
-            assert_eq!(finding.predicted.is_none(), finding.verdict == Verdict::Measured);
+            assert_eq!(finding.predicted.is_none(), finding.verdict == Agreement::Measured);
         }
     }
 }

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use libration_lab::STUDIES;
 use libration_report::Record;
-use libration_report::record::Verdict;
+use libration_report::record::Agreement;
 use libration_study::{Effort, Lab, Silent};
 use libration_study_batch::bench::{BenchFloat, Implementation};
 use libration_study_batch::{Wanted, ladder};
@@ -44,7 +44,7 @@ fn every_row_of_the_table_of_bars_is_a_finding() {
 #[test]
 fn a_build_that_is_not_for_speed_is_not_judged_by_it() {
     // The count of page faults is no speed.
-    let judged = record().findings.iter().filter(|f| f.verdict != Verdict::Measured);
+    let judged = record().findings.iter().filter(|f| f.verdict != Agreement::Measured);
     let judged: Vec<_> = judged.map(|f| f.id.as_str()).collect();
     assert_eq!(judged, ["throughput.faults.fresh"]);
 }

@@ -27,7 +27,7 @@ pub struct Fit {
 /// How well the best law fits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Verdict {
+pub enum LawVerdict {
     /// All values are equal.
     Constant,
     /// The best law is not rejected.
@@ -44,7 +44,7 @@ pub enum Verdict {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LawFit {
     /// The verdict about the first law.
-    pub verdict: Verdict,
+    pub verdict: LawVerdict,
     /// The laws by Akaike's criterion.
     pub fits: Vec<Fit>,
 }
@@ -59,7 +59,7 @@ const FEWEST: usize = 32;
 impl LawFit {
     /// That of values that are equal.
     pub(crate) fn constant() -> Self {
-        LawFit { verdict: Verdict::Constant, fits: Vec::new() }
+        LawFit { verdict: LawVerdict::Constant, fits: Vec::new() }
     }
 
     /// Fits all laws to values in any order.
@@ -71,7 +71,7 @@ impl LawFit {
         let values: Vec<f64> =
             values.iter().copied().step_by(stride).filter(|x| x.is_finite()).collect();
         if values.len() < FEWEST {
-            return LawFit { verdict: Verdict::TooFew, fits: Vec::new() };
+            return LawFit { verdict: LawVerdict::TooFew, fits: Vec::new() };
         }
         let sorted = |values: &mut dyn Iterator<Item = f64>| {
             let mut values: Vec<f64> = values.collect();
@@ -103,9 +103,9 @@ impl LawFit {
         let best = fits.first().map_or(0.0, |fit| fit.aic_above_best);
         fits.iter_mut().for_each(|fit| fit.aic_above_best -= best);
         let verdict = match fits.first() {
-            Some(fit) if fit.p_value >= REJECTED => Verdict::Fits,
-            Some(fit) if fit.distance <= CLOSE => Verdict::Close,
-            _ => Verdict::None,
+            Some(fit) if fit.p_value >= REJECTED => LawVerdict::Fits,
+            Some(fit) if fit.distance <= CLOSE => LawVerdict::Close,
+            _ => LawVerdict::None,
         };
         LawFit { verdict, fits }
     }
@@ -168,7 +168,7 @@ mod tests {
         Law::Gaussian { mean: 0.0, deviation: 1.0 }.probability(gaussian(n))
     }
 
-    fn best(value: impl Fn(u64) -> f64) -> (&'static str, Verdict) {
+    fn best(value: impl Fn(u64) -> f64) -> (&'static str, LawVerdict) {
         let values: Vec<f64> = (0..4000).map(value).collect();
         let fit = LawFit::of(&values);
         (fit.best().map_or("", |fit| fit.name), fit.verdict)
@@ -176,16 +176,16 @@ mod tests {
 
     #[test]
     fn each_law_is_recognised_in_its_own_numbers() {
-        assert_eq!(best(|n| 1.0 + 0.1 * gaussian(n)), ("gaussian", Verdict::Fits));
-        assert_eq!(best(|n| 1.0 + 0.1 * uniform(n)), ("uniform", Verdict::Fits));
-        assert_eq!(best(|n| 1.0 - 0.1 * uniform(n).ln()), ("exponential tail", Verdict::Fits));
+        assert_eq!(best(|n| 1.0 + 0.1 * gaussian(n)), ("gaussian", LawVerdict::Fits));
+        assert_eq!(best(|n| 1.0 + 0.1 * uniform(n)), ("uniform", LawVerdict::Fits));
+        assert_eq!(best(|n| 1.0 - 0.1 * uniform(n).ln()), ("exponential tail", LawVerdict::Fits));
         let two = |n: u64| if n.is_multiple_of(3) { 2.0 } else { 1.0 } + 0.01 * gaussian(n);
-        assert_eq!(best(two), ("two-valued", Verdict::Fits));
+        assert_eq!(best(two), ("two-valued", LawVerdict::Fits));
         let laplace = |n: u64| {
             let u = uniform(n) - 0.5;
             1.0 - 0.1 * u.signum() * (1.0 - 2.0 * u.abs()).ln()
         };
-        assert_eq!(best(laplace), ("exponential tails on both sides", Verdict::Fits));
+        assert_eq!(best(laplace), ("exponential tails on both sides", LawVerdict::Fits));
     }
 
     #[test]
@@ -194,9 +194,9 @@ mod tests {
         let three = |n: u64| {
             [1.0, 1.5, 3.0][(n % 3) as usize] + if n.is_multiple_of(97) { 20.0 } else { 0.0 }
         };
-        assert_eq!(best(three).1, Verdict::None);
-        assert_eq!(best(|_| 1.0).1, Verdict::Constant);
-        assert_eq!(LawFit::of(&[1.0, 2.0]).verdict, Verdict::TooFew);
+        assert_eq!(best(three).1, LawVerdict::None);
+        assert_eq!(best(|_| 1.0).1, LawVerdict::Constant);
+        assert_eq!(LawFit::of(&[1.0, 2.0]).verdict, LawVerdict::TooFew);
     }
 
     #[test]

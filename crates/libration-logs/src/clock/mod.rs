@@ -14,7 +14,7 @@ mod two_values;
 pub use drift::Drift;
 pub use latency::{Doubt, Latency, Matching};
 pub use law::{Law, LawKind};
-pub use law_fit::{Fit, LawFit, Verdict};
+pub use law_fit::{Fit, LawFit, LawVerdict};
 pub use phase::{PhaseLag, phase_lags, rate_of_phase};
 pub use spectrum::{Band, Spectrum};
 pub use statistics::{Lateness, Quantile, Statistics};

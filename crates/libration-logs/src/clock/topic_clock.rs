@@ -200,7 +200,7 @@ mod tests {
 
     use super::*;
     use crate::ReadOptions;
-    use crate::clock::Verdict;
+    use crate::clock::LawVerdict;
 
     #[test]
     fn a_column_without_order_and_a_log_that_begins_again_are_errors() {
@@ -227,7 +227,7 @@ mod tests {
         let log = Log::from_bytes(text.into_bytes(), &ReadOptions::default()).unwrap();
         let clock = TopicClock::of(&log, "time_ns", ClockChoice::Log).unwrap();
         let lateness = clock.lateness.unwrap();
-        assert_eq!(lateness.verdict, Verdict::Fits);
+        assert_eq!(lateness.verdict, LawVerdict::Fits);
         assert_eq!(lateness.fits[0].name, "gaussian");
         assert_eq!(clock.statistics.gaps, 40);
         // A wake-up that is late by up to half a period does not shift the numbers of the others.
@@ -244,6 +244,6 @@ mod tests {
         let worst = found.iter().zip(&late).map(|(x, y)| (x - a - y + b).abs()).fold(0.0, f64::max);
         assert!(worst < 3e-5, "{worst}");
         // Intervals of a few lengths have none of the laws.
-        assert_ne!(clock.law.verdict, Verdict::Fits);
+        assert_ne!(clock.law.verdict, LawVerdict::Fits);
     }
 }

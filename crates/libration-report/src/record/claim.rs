@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Finding, Verdict};
+use super::{Agreement, Finding};
 
 /// The verdict on a claim.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
@@ -103,7 +103,7 @@ impl Claim {
     pub(super) fn new(ruling: &Ruling<'_>, evidence: &[&Finding], judgement: Judgement) -> Self {
         let broken: Vec<&str> = evidence
             .iter()
-            .filter(|f| f.verdict == Verdict::Disagrees)
+            .filter(|f| f.verdict == Agreement::Disagrees)
             .map(|f| f.id.as_str())
             .collect();
         let Judgement { verdict, condition, because } = if broken.is_empty() {

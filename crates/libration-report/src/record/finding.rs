@@ -23,8 +23,8 @@ pub struct Finding {
     /// The allowed difference and its reason.
     #[serde(flatten)]
     pub tolerance: Tolerance,
-    /// Whether they agree.
-    pub verdict: Verdict,
+    /// Whether they agree; the key of the format stays `verdict`.
+    pub verdict: Agreement,
     /// The reason why a measurement could not be judged.
     pub undecided: Option<Undecided>,
     /// The command that recomputes this finding alone; empty outside of results that a run wrote.
@@ -69,7 +69,7 @@ pub enum Relation {
 /// The verdict on a finding.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
-pub enum Verdict {
+pub enum Agreement {
     /// The measurement agrees with the prediction.
     Agrees,
     /// The measurement disagrees with the prediction.
@@ -154,7 +154,7 @@ impl Finding {
             measured,
             relation,
             tolerance,
-            verdict: if agrees { Verdict::Agrees } else { Verdict::Disagrees },
+            verdict: if agrees { Agreement::Agrees } else { Agreement::Disagrees },
             undecided: None,
             command: String::new(),
         }
@@ -179,7 +179,7 @@ impl Finding {
                 tolerance_reason: "no prediction exists".into(),
                 relative: false,
             },
-            verdict: Verdict::Measured,
+            verdict: Agreement::Measured,
             undecided: None,
             command: String::new(),
         }
@@ -193,7 +193,7 @@ impl Finding {
 
     /// Whether the measurement agrees with the prediction.
     pub fn agrees(&self) -> bool {
-        self.verdict == Verdict::Agrees
+        self.verdict == Agreement::Agrees
     }
 
     /// Whether a nonzero prediction agrees but is no larger than its tolerance, so that zero would agree too.
@@ -207,20 +207,20 @@ impl Finding {
 mod tests {
     use super::*;
 
-    fn equal(predicted: f64, measured: f64, tolerance: Tolerance) -> Verdict {
+    fn equal(predicted: f64, measured: f64, tolerance: Tolerance) -> Agreement {
         Finding::predicted("a.b", "", "1", predicted, measured, tolerance).verdict
     }
 
     #[test]
     fn a_relative_tolerance_scales_with_the_prediction() {
-        assert_eq!(equal(200.0, 201.0, Tolerance::relative(0.01, "")), Verdict::Agrees);
-        assert_eq!(equal(2.0, 3.0, Tolerance::relative(0.01, "")), Verdict::Disagrees);
+        assert_eq!(equal(200.0, 201.0, Tolerance::relative(0.01, "")), Agreement::Agrees);
+        assert_eq!(equal(2.0, 3.0, Tolerance::relative(0.01, "")), Agreement::Disagrees);
     }
 
     #[test]
     fn what_is_not_a_number_never_agrees() {
         for (p, m) in [(f64::NAN, 1.0), (1.0, f64::NAN), (f64::INFINITY, f64::INFINITY)] {
-            assert_eq!(equal(p, m, Tolerance::relative(1.0, "")), Verdict::Disagrees);
+            assert_eq!(equal(p, m, Tolerance::relative(1.0, "")), Agreement::Disagrees);
         }
     }
 
@@ -240,7 +240,7 @@ mod tests {
             let none = Tolerance::exact("");
             Finding::related("a.b", "", "1", Relation::AtMost, 1.0, m, none).verdict
         };
-        assert_eq!(at_most(-5.0), Verdict::Agrees);
-        assert_eq!(at_most(1.1), Verdict::Disagrees);
+        assert_eq!(at_most(-5.0), Agreement::Agrees);
+        assert_eq!(at_most(1.1), Agreement::Disagrees);
     }
 }

@@ -11,7 +11,7 @@ use thiserror::Error;
 
 pub use cell::{Cell, Quantity};
 pub use claim::{Claim, ClaimVerdict, Judgement, Ruling};
-pub use finding::{Finding, Relation, Tolerance, Undecided, Verdict};
+pub use finding::{Agreement, Finding, Relation, Tolerance, Undecided};
 pub use series::{Column, Series};
 pub use table::Table;
 
@@ -162,6 +162,6 @@ impl Record {
 
     /// The findings whose measurement contradicts the prediction.
     pub fn disagreements(&self) -> impl Iterator<Item = &Finding> {
-        self.findings.iter().filter(|f| f.verdict == Verdict::Disagrees)
+        self.findings.iter().filter(|f| f.verdict == Agreement::Disagrees)
     }
 }

@@ -4,7 +4,7 @@ use super::first_screen;
 use crate::figure::{self, Figure};
 use crate::notation::number;
 use crate::page::{Bar, Block, Chapter, Highlight, Page};
-use crate::record::{Cell, Finding, Quantity, Table, Verdict};
+use crate::record::{Agreement, Cell, Finding, Quantity, Table};
 use crate::text::{escape, plain, render_html};
 
 /// Renders a chapter: question, evidence, what to do and all findings. The moved figure is on the first screen.
@@ -185,7 +185,7 @@ fn table(table: &Table, digits: usize) -> String {
 
 /// Renders all findings, collapsed.
 fn findings(findings: &[Finding]) -> String {
-    let agree = findings.iter().filter(|f| f.verdict == Verdict::Agrees).count();
+    let agree = findings.iter().filter(|f| f.verdict == Agreement::Agrees).count();
     let predicted = findings.iter().filter(|f| f.predicted.is_some()).count();
     let small = match findings.iter().filter(|f| f.agrees_with_zero()).count() {
         0 => String::new(),
@@ -203,11 +203,11 @@ fn findings(findings: &[Finding]) -> String {
 
 fn finding(finding: &Finding) -> String {
     let (class, verdict) = match finding.verdict {
-        Verdict::Agrees if finding.agrees_with_zero() => ("open", "agrees, but 0 would too"),
-        Verdict::Agrees => ("ok", "agrees"),
-        Verdict::Disagrees => ("bad", "disagrees"),
-        Verdict::Measured if finding.undecided.is_some() => ("open", "not judged"),
-        Verdict::Measured => ("plain", "measured"),
+        Agreement::Agrees if finding.agrees_with_zero() => ("open", "agrees, but 0 would too"),
+        Agreement::Agrees => ("ok", "agrees"),
+        Agreement::Disagrees => ("bad", "disagrees"),
+        Agreement::Measured if finding.undecided.is_some() => ("open", "not judged"),
+        Agreement::Measured => ("plain", "measured"),
     };
     let undecided = finding
         .undecided

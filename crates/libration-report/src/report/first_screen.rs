@@ -6,7 +6,7 @@ use super::{Cover, chapter};
 use crate::figure::{self, Figure};
 use crate::notation::number;
 use crate::page::Chapter;
-use crate::record::{Finding, Relation, Verdict};
+use crate::record::{Agreement, Finding, Relation};
 use crate::text::{escape, render_html};
 
 /// The most answers above the live section.
@@ -47,7 +47,7 @@ fn capitalised(text: &str) -> String {
 /// The numbers of predictions that agree, and of all.
 fn agreement(chapters: &[Chapter]) -> [usize; 2] {
     let findings = || chapters.iter().flat_map(|chapter| &chapter.record.findings);
-    let judged = findings().filter(|finding| finding.verdict != Verdict::Measured).count();
+    let judged = findings().filter(|finding| finding.verdict != Agreement::Measured).count();
     [findings().filter(|finding| finding.agrees()).count(), judged]
 }
 

@@ -4,7 +4,7 @@ mod bounds;
 mod numbers;
 
 use libration_report::notation::{count, list, number};
-use libration_report::record::{Finding, Judgement, Record, Ruling, Verdict};
+use libration_report::record::{Agreement, Finding, Judgement, Record, Ruling};
 
 use crate::source_rollouts::EXAMPLES;
 
@@ -64,7 +64,7 @@ fn bits(record: &mut Record) {
     let mut ids: Vec<&str> = kept.iter().map(String::as_str).collect();
     let changed = |f: &[&Finding]| {
         let names: Vec<&str> = f.iter().filter_map(|f| f.id.rsplit('.').next()).collect();
-        (list(&names), f.iter().all(|f| f.verdict == Verdict::Agrees))
+        (list(&names), f.iter().all(|f| f.verdict == Agreement::Agrees))
     };
     let text = "Rollouts are deterministic.";
     record.judge(Ruling { id: "C58", source: "6.6, 9.5", text, findings: &ids }, |f| {

@@ -160,7 +160,7 @@ fn consistent(record: &mut Record, row: &Row) {
 
 #[cfg(test)]
 mod tests {
-    use libration_report::record::Verdict;
+    use libration_report::record::Agreement;
 
     use super::*;
 
@@ -168,7 +168,7 @@ mod tests {
     fn the_rows_of_the_source_agree_with_themselves_and_are_no_line() {
         let mut record = Record::new("rollout", "?");
         check(&mut record);
-        assert!(record.findings.iter().all(|f| f.verdict != Verdict::Disagrees));
+        assert!(record.findings.iter().all(|f| f.verdict != Agreement::Disagrees));
         let found = |id: &str| record.finding(&format!("rollout.source.{id}")).map(|f| f.measured);
         assert_eq!(found("most"), Ok(90.44));
         // 44.2 ns and 11.1 ns; 17 bytes in 11.06 ns.

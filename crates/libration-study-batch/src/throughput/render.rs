@@ -2,7 +2,7 @@
 
 use libration_report::notation::number;
 use libration_report::page::{Highlight, Page};
-use libration_report::record::{Finding, Record, RecordError, Undecided, Verdict};
+use libration_report::record::{Agreement, Finding, Record, RecordError, Undecided};
 
 use super::figures;
 use crate::bench::Implementation;
@@ -146,7 +146,7 @@ fn fused(record: &Record) -> Option<[f64; 3]> {
 /// Says what was judged, and what the machine was too noisy for.
 fn noise(record: &Record, page: &mut Page) {
     let speeds = || record.findings.iter().filter(|f| f.unit == "1" && !f.id.contains("faults"));
-    let judged = speeds().filter(|f| f.verdict != Verdict::Measured).count();
+    let judged = speeds().filter(|f| f.verdict != Agreement::Measured).count();
     let noisy = |f: &&Finding| matches!(f.undecided, Some(Undecided::Noisy(_)));
     let noisy = speeds().filter(noisy).count();
     page.paragraph(

@@ -8,7 +8,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use libration_env::dataset::DatasetError;
-use libration_report::record::{Finding, Record, Relation, Table, Undecided, Verdict};
+use libration_report::record::{Agreement, Finding, Record, Relation, Table, Undecided};
 use libration_study::{Config, Effort, Lab, Machine, Study, StudyError};
 use libration_study_batch::bench::{BenchFloat, RolloutCase};
 use libration_study_batch::{Rate, Wanted};
@@ -140,9 +140,9 @@ fn report_text(record: &Record) -> String {
 fn ratios(record: &Record) -> Vec<Vec<String>> {
     let head = ["finding", "measured", "at least", "verdict"].map(String::from).to_vec();
     let verdict = |finding: &Finding| match finding.verdict {
-        Verdict::Agrees => Some("reached"),
-        Verdict::Disagrees => Some("missed"),
-        Verdict::Measured => match finding.undecided.as_ref()? {
+        Agreement::Agrees => Some("reached"),
+        Agreement::Disagrees => Some("missed"),
+        Agreement::Measured => match finding.undecided.as_ref()? {
             Undecided::Noisy(_) => Some("too noisy; repeat the run"),
             Undecided::Beyond(_) => Some("not reached"),
         },
