@@ -105,7 +105,7 @@ Examples:
   libration measure-jitter --rate 500        wake-up times of a loop of 500 Hz
   libration list                             all studies, systems and integrators
 
-Exit codes: 0 success; 1 failed run, or measurement outside its tolerance; 2 invalid input;
+Exit codes: 0 all verdicts are good; 1 a bad or unknown verdict, or a failed run; 2 invalid input;
             130 interrupted";
 
 #[derive(Debug, Subcommand)]

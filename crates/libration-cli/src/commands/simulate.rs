@@ -84,6 +84,9 @@ type WriteRows<'a> =
     &'a dyn Fn(&mut (dyn Write + Send), &Watcher) -> Result<Outcome, TrajectoryError>;
 
 /// Writes the rows to the output and says how they ended.
+///
+/// # Errors
+/// [`Failure::Disagreement`] if a state stopped being finite: the rows before it are kept.
 fn write(
     args: &SimulateArgs,
     quiet: bool,
@@ -98,27 +101,27 @@ fn write(
         None => into_stdout(rows, format, &watcher),
     };
     watcher.clear();
-    match outcome? {
-        _ if quiet => {}
-        Outcome::Complete => {}
+    let warning = match outcome? {
+        Outcome::Complete => return Ok(()),
         Outcome::Diverged(Divergence { step, t, reason }) => {
             let last = step - 1;
-            terminal::say(&format!(
-                "note: the last row is step {last}: at step {step} (t = {t} s) {reason}"
-            ));
+            format!("warning: the last row is step {last}: at step {step} (t = {t} s) {reason}")
         }
         Outcome::NotFinite { count, first, reason } => {
             let named: Vec<String> = first.iter().map(usize::to_string).collect();
             let more = if count > first.len() { ", …" } else { "" };
             let are = if count == 1 { "trajectory is" } else { "trajectories are" };
             let why = reason.map_or_else(String::new, |reason| format!(": {reason}"));
-            terminal::say(&format!(
-                "note: {count} {are} not finite in the end: {}{more}{why}",
+            format!(
+                "warning: {count} {are} not finite in the end: {}{more}{why}",
                 named.join(", ")
-            ));
+            )
         }
+    };
+    if !quiet {
+        terminal::say(&warning);
     }
-    Ok(())
+    Err(Failure::Disagreement)
 }
 
 /// Returns the format of `--format` or of the extension of `--output`; both must agree.
