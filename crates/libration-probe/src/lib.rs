@@ -60,7 +60,7 @@ mod summary;
 pub use audit::probe;
 pub use bits::{BitCheck, Bits, Randomness};
 pub use black_box::{BlackBox, BlackBoxError};
-pub use child_process::ChildProcess;
+pub use child_process::{ChildProcess, Environment};
 pub use confirmation::Confirmation;
 pub use convergence::Convergence;
 pub use defects::Defects;

@@ -99,7 +99,7 @@ fn simulator(args: &ProbeArgs, deadline: Instant) -> Result<(Box<dyn BlackBox>, 
     match (&args.command, &args.mujoco, &args.matrices) {
         (Some(words), _, _) => {
             let subject = described(args, &quoted(words.0.clone()))?;
-            let mut child = ChildProcess::start(&words.0, args.timeout)
+            let mut child = ChildProcess::start(&words.0, Vec::new(), args.timeout)
                 .map_err(|error| Failure::usage(format!("{error} (--command)")))?;
             child.set_deadline(deadline);
             Ok((Box::new(child), subject))

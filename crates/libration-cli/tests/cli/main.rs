@@ -20,6 +20,7 @@ mod exit_codes;
 #[cfg(unix)]
 mod first_hour;
 mod forces;
+mod foreign_folder;
 mod identify;
 mod implicit;
 #[cfg(unix)]
