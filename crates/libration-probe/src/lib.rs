@@ -65,7 +65,7 @@ pub use confirmation::Confirmation;
 pub use convergence::Convergence;
 pub use defects::Defects;
 pub use delay_audit::DelayAudit;
-pub use description::{Description, DescriptionError};
+pub use description::{Description, DescriptionError, parse_printable};
 pub use differences::{Jacobian, jacobian};
 pub use driven_velocity::DrivenVelocity;
 pub use energy_drift::{DriftReason, EnergyDrift};

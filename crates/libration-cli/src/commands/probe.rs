@@ -9,6 +9,7 @@ use libration_probe::{
     page, probe,
 };
 use libration_report::notation::plural;
+use libration_report::printable::{printable, toml_string};
 use libration_settings::linear_loop::read_plant;
 
 use super::mujoco;
@@ -206,12 +207,12 @@ fn plant_text(report: &ProbeReport, plant: &Matrices) -> String {
         (0..matrix.rows()).map(row).collect::<String>()
     };
     let names = |names: &[String]| {
-        names.iter().map(|name| format!("{name:?}")).collect::<Vec<_>>().join(", ")
+        names.iter().map(|name| toml_string(name)).collect::<Vec<_>>().join(", ")
     };
     format!(
         "# Deviations from the point of `{}`, in steps of {} s: exact steps of this plant are those of the simulator.\n\
          states = [{}]\ninputs = [{}]\na = [\n{}]\nb = [\n{}]\n",
-        report.title,
+        printable(&report.title),
         report.dt,
         names(&report.states),
         names(&report.inputs),
