@@ -13,6 +13,8 @@ from .equations import EquationSystem
 
 _COSTS = {"position": "position_cost", "velocity": "velocity_cost", "effort": "effort_cost", "bound": "bound"}
 _FLOATS = {"f32": "float32", "f64": "float64"}
+# Bytes of the settings: some thousand, and the text of a system by equations.
+_LONGEST_LINE = 1 << 24
 
 
 def read_settings(folder: str | os.PathLike[str]) -> dict[str, Any]:
@@ -25,9 +27,18 @@ def read_settings(folder: str | os.PathLike[str]) -> dict[str, Any]:
     """
     path = Path(folder) / "manifest.jsonl"
     try:
-        with open(path, encoding="utf-8") as file:
-            return json.loads(file.readline())["data"]
-    except (OSError, ValueError, KeyError, TypeError) as error:
+        if not path.is_file():
+            # To open a named pipe waits for its writer.
+            raise ValueError(f"{path.name} is no file")
+        with open(path, "rb") as file:
+            line = file.readline(_LONGEST_LINE + 1)
+        if len(line) > _LONGEST_LINE:
+            raise ValueError(f"the first line of {path.name} is longer than {_LONGEST_LINE} bytes")
+        settings = json.loads(line.decode("utf-8"))["data"]
+        if not isinstance(settings, dict):
+            raise ValueError(f"the settings are a {type(settings).__name__}")
+        return settings
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         raise ValueError(f"{os.fspath(folder)!r} has no data set ({error}); expected a folder that datasets.write has written") from None
 
 
@@ -37,8 +48,15 @@ def keywords_of_settings(settings: Mapping[str, Any]) -> tuple[str | EquationSys
     Raises
     ------
     ValueError
-        For a system of the catalogue with a task that no environment of the package has.
+        For a system of the catalogue with a task that no environment of the package has, and for settings of another form.
     """
+    try:
+        return _keywords(settings)
+    except (KeyError, TypeError, AttributeError, IndexError, OverflowError, RecursionError) as error:
+        raise ValueError(f"the data set has settings of another form ({type(error).__name__}: {error}); expected those of datasets.write") from None
+
+
+def _keywords(settings: Mapping[str, Any]) -> tuple[str | EquationSystem, dict[str, Any]]:
     [(system, parameters)], [(task, numbers)] = settings["system"].items(), settings["task"].items()
     dt, substeps, delays, noise = settings["dt"], settings["substeps"], settings["delays"], settings["noise"]
     keywords: dict[str, Any] = {

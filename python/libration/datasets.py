@@ -259,4 +259,24 @@ def recover_environment(folder: str | os.PathLike[str], **changed: Any) -> Any:
     """
     import gymnasium
 
-    return gymnasium.make(environment_spec(folder), **changed)
+    spec = environment_spec(folder)
+    try:
+        return gymnasium.make(spec, **changed)
+    except (TypeError, KeyError, AttributeError, IndexError, OverflowError, RecursionError) as error:
+        if changed and _can_be_made(spec):
+            raise
+        raise ValueError(
+            f"{os.fspath(folder)!r} has settings of which no environment can be made ({type(error).__name__}: {error}); "
+            "expected those of datasets.write"
+        ) from None
+
+
+def _can_be_made(spec: Any) -> bool:
+    """Whether an environment can be made without changed keywords."""
+    import gymnasium
+
+    try:
+        gymnasium.make(spec).close()
+    except Exception:
+        return False
+    return True

@@ -81,7 +81,7 @@ impl Failure {
                 ExitCode::from(USAGE)
             }
             Failure::Shown(text) => {
-                terminal::say(&text);
+                terminal::show(&text);
                 ExitCode::from(USAGE)
             }
             Failure::Run(message) => {
@@ -123,6 +123,7 @@ pub(crate) fn is_unusable(error: &DatasetError, folder: &Path) -> bool {
         ErrorKind::ReadOnlyFilesystem,
         ErrorKind::InvalidFilename,
         ErrorKind::FileTooLarge,
+        ErrorKind::InvalidInput,
     ];
     named && kinds.contains(&source.kind())
 }

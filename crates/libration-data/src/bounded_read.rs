@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
+use crate::regular_file::open_regular;
+
 /// All bytes of a file that has at most `limit` of them.
 ///
 /// # Errors
@@ -12,12 +14,31 @@ pub fn read_bounded(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     read_rest(&File::open(path)?, limit)
 }
 
+/// All bytes of a regular file that has at most `limit` of them.
+///
+/// # Errors
+/// As for [`read_bounded`] and [`open_regular`].
+pub fn read_regular(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
+    read_rest(&open_regular(path)?, limit)
+}
+
 /// The text of a file that has at most `limit` bytes.
 ///
 /// # Errors
 /// As for [`read_bounded`]; [`ErrorKind::InvalidData`] if the text is not UTF-8.
 pub fn read_text_bounded(path: &Path, limit: u64) -> io::Result<String> {
-    let bytes = read_bounded(path, limit)?;
+    text_of(read_bounded(path, limit)?)
+}
+
+/// The text of a regular file that has at most `limit` bytes.
+///
+/// # Errors
+/// As for [`read_text_bounded`] and [`open_regular`].
+pub fn read_text_regular(path: &Path, limit: u64) -> io::Result<String> {
+    text_of(read_regular(path, limit)?)
+}
+
+fn text_of(bytes: Vec<u8>) -> io::Result<String> {
     let text = String::from_utf8(bytes);
     text.map_err(|error| io::Error::new(ErrorKind::InvalidData, error.utf8_error()))
 }

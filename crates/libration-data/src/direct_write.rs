@@ -8,6 +8,8 @@ use std::path::Path;
 
 use memmap2::MmapMut;
 
+use crate::regular_file::{create_file, create_with};
+
 /// The alignment of offsets, lengths and memory.
 const BLOCK: usize = 4096;
 /// The size of the buffer for unaligned pieces, in bytes.
@@ -33,8 +35,8 @@ pub(crate) fn create(path: &Path, pieces: &[&[u8]]) -> io::Result<()> {
 fn open(path: &Path) -> Option<File> {
     use std::os::unix::fs::OpenOptionsExt;
     let mut options = File::options();
-    options.write(true).create(true).truncate(true).custom_flags(libc::O_DIRECT);
-    options.open(path).ok()
+    options.write(true).custom_flags(libc::O_DIRECT);
+    create_with(path, &mut options).ok()
 }
 
 #[cfg(not(target_os = "linux"))]
@@ -43,7 +45,7 @@ fn open(_: &Path) -> Option<File> {
 }
 
 fn plain(path: &Path, pieces: &[&[u8]]) -> io::Result<()> {
-    let mut file = File::create(path)?;
+    let mut file = create_file(path)?;
     pieces.iter().try_for_each(|piece| file.write_all(piece))?;
     file.sync_data()
 }

@@ -12,6 +12,7 @@ use crate::bounded_read::read_rest;
 use crate::durable_file::{named, remove_parts, sync_folder};
 use crate::lock::LockedFile;
 use crate::manifest::{LIMIT, NAME};
+use crate::regular_file::ensure_inside;
 use crate::{Chunk, DataError, Manifest, Stored, run_on_threads, write_file};
 
 /// Files that are written at once: to wait for the disk takes as long for one as for all of them.
@@ -189,6 +190,8 @@ impl NewFolders {
     ) -> Result<Self, DataError> {
         let parents: BTreeSet<_> =
             files.flat_map(|file| file.ancestors().skip(1)).map(Reverse).collect();
+        // A link would lead out of the folder.
+        parents.iter().try_for_each(|Reverse(inner)| ensure_inside(folder, inner))?;
         let folders: Vec<_> =
             parents.into_iter().map(|Reverse(inner)| folder.join(inner)).collect();
         for folder in folders.iter().rev() {

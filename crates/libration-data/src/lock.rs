@@ -8,6 +8,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use crate::DataError;
+use crate::regular_file::{ensure_no_link, refuse_links};
 
 /// How long to wait for a lock: a process that was killed holds it until the system has taken it down.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -24,15 +25,17 @@ pub struct LockedFile {
 }
 
 impl LockedFile {
-    /// Opens a file, makes it if there is none, and locks it; waits a moment for a process that holds it.
+    /// Opens a regular file, makes it if there is none, and locks it; waits a moment for a process that holds it.
     ///
     /// # Errors
     /// [`DataError::Locked`] if it is locked, by this process or another; [`DataError::Io`] if the system refuses.
     pub fn open(path: &Path) -> Result<Self, DataError> {
         let mut options = OpenOptions::new();
         options.read(true).write(true).create(true).truncate(false);
+        refuse_links(&mut options);
         let until = Instant::now() + PATIENCE;
         loop {
+            ensure_no_link(path).map_err(DataError::io("write", path))?;
             let file = options.open(path).map_err(DataError::io("write", path))?;
             match LockedFile::lock(file, path) {
                 Err(DataError::Locked(_)) if Instant::now() < until => {

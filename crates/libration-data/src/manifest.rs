@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::DataError;
-use crate::bounded_read::read_bounded;
+use crate::bounded_read::read_regular;
 
 /// Its name in the folder.
 pub(crate) const NAME: &str = "manifest.jsonl";
@@ -54,7 +54,8 @@ pub struct Stored {
 impl Chunk {
     /// Bytes of all its files.
     pub fn bytes(&self) -> u64 {
-        self.files.iter().map(|file| file.bytes).sum()
+        // A manifest of somebody else may have any numbers.
+        self.files.iter().fold(0, |sum, file| file.bytes.saturating_add(sum))
     }
 }
 
@@ -66,7 +67,7 @@ impl Manifest {
 
     /// Bytes of all files of all chunks.
     pub fn bytes(&self) -> u64 {
-        self.chunks.iter().map(Chunk::bytes).sum()
+        self.chunks.iter().fold(0, |sum, chunk| chunk.bytes().saturating_add(sum))
     }
 
     /// Reads the text of one, and how much of it that is: a last line without its end was never written.
@@ -86,6 +87,14 @@ impl Manifest {
         for (i, line) in lines.enumerate() {
             let chunk: Chunk = serde_json::from_slice(line)
                 .map_err(|error| wrong(i + 1, format!("is not a chunk: {error}")))?;
+            // They would be part of messages.
+            let paths = chunk.files.iter().map(|file| file.path.as_os_str().to_string_lossy());
+            if paths
+                .chain([chunk.chunk.as_str().into()])
+                .any(|name| name.contains(char::is_control))
+            {
+                return Err(wrong(i + 1, "has a name with a control character".to_owned()));
+            }
             let plain = |path: &Path| path.components().all(|c| matches!(c, Component::Normal(_)));
             let mut paths = HashSet::new();
             if let Some(file) = chunk.files.iter().find(|file| !paths.insert(&file.path)) {
@@ -94,6 +103,9 @@ impl Manifest {
             if let Some(file) = chunk.files.iter().find(|file| !plain(&file.path)) {
                 let what = format!("names `{}`, which is not in the folder", file.path.display());
                 return Err(wrong(i + 1, what));
+            }
+            if let Some(file) = chunk.files.iter().find(|file| file.path == Path::new(NAME)) {
+                return Err(wrong(i + 1, format!("names `{}` itself", file.path.display())));
             }
             if !names.insert(chunk.chunk.clone()) {
                 return Err(wrong(i + 1, format!("repeats chunk {}", chunk.chunk)));
@@ -113,7 +125,7 @@ impl Manifest {
     /// If there is none, or what there is is none.
     pub fn read(folder: &Path) -> Result<Self, DataError> {
         let path = folder.join(NAME);
-        let text = match read_bounded(&path, LIMIT) {
+        let text = match read_regular(&path, LIMIT) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 return Err(DataError::Missing(folder.to_owned()));

@@ -13,6 +13,7 @@ use memmap2::MmapMut;
 use crate::DataError;
 use crate::durable_file::make;
 use crate::lock::LockedFile;
+use crate::regular_file::create_with;
 
 /// A replay buffer in a memory-mapped file, locked for this process. If the process dies, completed insertions are kept. After a
 /// loss of power, only a buffer that was [flushed](Self::flush) after its last change is intact, because the system writes pages
@@ -39,8 +40,7 @@ impl<T: Float + Pod> ReplayFile<T> {
             return Err(DataError::io("create", path)(error));
         }
         let (file, replay) = make(path, |part| {
-            let file =
-                OpenOptions::new().read(true).write(true).create(true).truncate(true).open(part)?;
+            let file = create_with(part, OpenOptions::new().read(true).write(true))?;
             let file = LockedFile::try_lock(file)?;
             fill(&file, bytes)?;
             let map = map(&file)?;

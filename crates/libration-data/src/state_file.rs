@@ -1,7 +1,6 @@
 //! State files: checkpoints with a note and a checksum.
 
 use std::convert::Infallible;
-use std::fs::File;
 use std::io::{BufWriter, IntoInnerError, Write};
 use std::path::Path;
 
@@ -10,9 +9,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::DataError;
-use crate::bounded_read::read_bounded;
+use crate::bounded_read::read_regular;
 use crate::checksum::{ChecksumWriter, checksum_at_once};
 use crate::durable_file::{make, named, sync_folder};
+use crate::regular_file::create_file;
 
 /// The first bytes of a state file.
 const MAGIC: &[u8; 8] = b"LIBRTNCP";
@@ -81,7 +81,7 @@ pub fn save_state(
         serde_json::to_vec(&head).map_err(|error| DataError::io("write", path)(error.into()))?;
     // Through the system's cache: who goes on from a state often does so soon.
     make(path, |part| {
-        let mut file = BufWriter::with_capacity(GATHERED, ChecksumWriter::new(File::create(part)?));
+        let mut file = BufWriter::with_capacity(GATHERED, ChecksumWriter::new(create_file(part)?));
         for piece in [&MAGIC[..], &(head.len() as u64).to_le_bytes(), &head] {
             file.write_all(piece)?;
         }
@@ -103,7 +103,7 @@ pub fn save_state(
 /// # Errors
 /// If the file cannot be read, is of another version or damaged, or its state does not match. The object is then unchanged.
 pub fn load_state(path: &Path, into: &mut impl Checkpoint) -> Result<Value, DataError> {
-    let bytes = read_bounded(path, LIMIT).map_err(DataError::io("read", path))?;
+    let bytes = read_regular(path, LIMIT).map_err(DataError::io("read", path))?;
     let damaged = |what: &str| DataError::Damaged { path: path.to_owned(), what: what.to_owned() };
     if !bytes.starts_with(MAGIC) {
         return Err(damaged("it is not a state file"));

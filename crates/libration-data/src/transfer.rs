@@ -4,7 +4,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use crate::bounded_read::read_bounded;
+use crate::bounded_read::read_regular;
 use crate::folder::{AT_ONCE, NewFolders};
 use crate::{DataError, Stored, checksum, run_on_threads, write_file};
 
@@ -14,7 +14,7 @@ pub enum Transfer {
     /// Each is read, compared with its checksum, and written.
     #[default]
     Copy,
-    /// Each gets a second name (a hard link) and is not read, where the file system can; otherwise it is copied.
+    /// Each regular file gets a second name (a hard link) and is not read, where the file system can; others and links are copied.
     Link,
 }
 
@@ -33,12 +33,17 @@ pub fn transfer_files(
     let done = run_on_threads(at_once, files.len(), |i| {
         let [old, new] = [from, to].map(|folder| folder.join(&files[i].path));
         match transfer {
-            Transfer::Link if link(&old, &new).is_ok() => Ok(()),
+            // A second name of a link would be a link, which leads elsewhere from another folder.
+            Transfer::Link if is_regular(&old) && link(&old, &new).is_ok() => Ok(()),
             _ => copy(&old, &new, &files[i]),
         }
     });
     done.into_iter().collect::<Result<(), _>>()?;
     folders.sync(at_once)
+}
+
+fn is_regular(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok_and(|found| found.is_file())
 }
 
 /// Gives a file a second name, which an interrupted transfer may have given to another one.
@@ -53,7 +58,7 @@ fn link(old: &Path, new: &Path) -> io::Result<()> {
 }
 
 fn copy(old: &Path, new: &Path, file: &Stored) -> Result<(), DataError> {
-    let bytes = read_bounded(old, file.bytes).map_err(DataError::io("read", old))?;
+    let bytes = read_regular(old, file.bytes).map_err(DataError::io("read", old))?;
     let sum = checksum([&*bytes]);
     if sum != file.blake3 {
         let what = format!("it has the checksum {sum}; the manifest says {}", file.blake3);

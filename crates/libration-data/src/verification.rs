@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::checksum::checksum_of;
 use crate::manifest::NAME;
+use crate::regular_file::{linked_folder, open_regular};
 use crate::{DataError, Manifest, Stored};
 
 /// A file that differs from the manifest.
@@ -47,7 +48,7 @@ pub fn verify(
                 flaws.push(Flaw { chunk, path, what, broken });
             }
         }
-        bytes += chunk.bytes();
+        bytes = chunk.bytes().saturating_add(bytes);
         if !go_on(bytes) {
             break;
         }
@@ -86,6 +87,11 @@ pub fn find_unlisted(folder: &Path, manifest: &Manifest) -> Result<Vec<PathBuf>,
 /// The problem, and whether a new file can replace it: a folder cannot be replaced by renaming.
 fn sound(folder: &Path, file: &Stored, comparison: Comparison) -> Result<(), (String, bool)> {
     let path = folder.join(&file.path);
+    let parent = file.path.parent().unwrap_or(Path::new(""));
+    if let Some(link) = linked_folder(folder, parent) {
+        let link = link.display();
+        return Err((format!("is in `{link}`, which is a link; expected a folder"), false));
+    }
     if fs::symlink_metadata(&path).is_ok_and(|found| found.is_dir()) {
         return Err(("is a folder; expected a file".to_owned(), false));
     }
@@ -108,7 +114,7 @@ fn same(path: &Path, file: &Stored, comparison: Comparison) -> Result<(), String
         return Ok(());
     }
     let limited = |found: File| checksum_of(found.take(file.bytes.saturating_add(1)));
-    let (sum, bytes) = File::open(path).and_then(limited).map_err(unreadable)?;
+    let (sum, bytes) = open_regular(path).and_then(limited).map_err(unreadable)?;
     if bytes != file.bytes {
         return Err(length(bytes));
     }

@@ -3,6 +3,7 @@
 use core::fmt::Write as _;
 
 use libration_report::notation::number;
+use libration_report::printable::printable;
 
 use crate::identification::{Identification, StateSpace};
 use crate::parameters::Estimated;
@@ -15,7 +16,8 @@ pub fn loop_file(found: &Identification) -> String {
         found.responses
     );
     for warning in &found.warnings {
-        let _ = writeln!(file, "# Warning: {warning}.");
+        // Warnings have names of the recording; a new line would end the comment.
+        let _ = writeln!(file, "# Warning: {}.", printable(warning));
     }
     let row = |values: &[f64]| {
         format!("[{}]", values.iter().map(|x| text(*x)).collect::<Vec<_>>().join(", "))

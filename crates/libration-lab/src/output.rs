@@ -1,10 +1,10 @@
 //! The output folder of a run.
 
 use std::fs;
-use std::io::{self, ErrorKind};
+use std::io::{self, ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
-use libration_data::{DataError, LockedFile};
+use libration_data::{DataError, LockedFile, create_file};
 use thiserror::Error;
 
 use crate::run_manifest::RunManifest;
@@ -146,7 +146,8 @@ impl Output {
             // A folder of it may be a link to another disk.
             Err(error) if error.kind() == ErrorKind::CrossesDevices => {
                 let part = part(&to);
-                let copied = fs::copy(&from, &part).and_then(|_| fs::rename(&part, &to));
+                let copy = || io::copy(&mut fs::File::open(&from)?, &mut create_file(&part)?);
+                let copied = copy().and_then(|_| fs::rename(&part, &to));
                 copied.and_then(|()| fs::remove_file(&from)).map_err(failed(&to))
             }
             outcome => absent_is_fine(outcome).map_err(failed(&to)),
@@ -160,7 +161,8 @@ fn write(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
         fs::create_dir_all(parent).map_err(failed(path))?;
     }
     let part = part(path);
-    let written = fs::write(&part, bytes).and_then(|()| fs::rename(&part, path));
+    let create = || create_file(&part)?.write_all(bytes);
+    let written = create().and_then(|()| fs::rename(&part, path));
     written.map_err(failed(path))
 }
 

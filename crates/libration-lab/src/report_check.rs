@@ -5,10 +5,11 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use libration_data::{read_bounded, read_text_bounded};
+use libration_data::{read_regular, read_text_regular};
+use libration_report::notation::plural;
 use libration_report::page::Page;
 use libration_report::record::{DataFile, FigureFile};
-use libration_report::{Record, figure};
+use libration_report::{Outcome, Record, Verdict, figure};
 use libration_study::{Config, Lab, Study, StudyError};
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -70,7 +71,7 @@ impl ReportCheck {
         let file = folder.join("results.json");
         let named = |reason: String| format!("`{}`: {reason}", file.display());
         let text =
-            read_text_bounded(&file, MOST_BYTES).map_err(|error| named(error.to_string()))?;
+            read_text_regular(&file, MOST_BYTES).map_err(|error| named(error.to_string()))?;
         let stored: Stored =
             serde_json::from_str(&text).map_err(|error| named(error.to_string()))?;
         if stored.schema != SCHEMA {
@@ -111,16 +112,45 @@ impl ReportCheck {
         &self.config
     }
 
-    /// The studies that can be recomputed, and the names of those that measure the machine.
-    pub fn studies(&self) -> (Vec<&'static dyn Study>, Vec<&str>) {
-        let (mut studies, mut others) = (Vec::new(), Vec::new());
-        for stored in &self.studies {
-            match STUDIES.by_name(&stored.name) {
-                Some(study) if !study.measures_the_machine() => studies.push(study),
-                _ => others.push(stored.name.as_str()),
+    /// The studies that can be recomputed, and why each of the others cannot.
+    pub fn studies(&self) -> (Vec<&'static dyn Study>, Vec<String>) {
+        let (mut studies, mut others) = (Vec::<&'static dyn Study>::new(), Vec::new());
+        for StoredStudy { name, .. } in &self.studies {
+            match STUDIES.by_name(name) {
+                None => others.push(format!("`{name}` is no study of this version")),
+                Some(study) if study.measures_the_machine() => {
+                    others.push(format!("`{name}` measures the machine"));
+                }
+                // Only the first of a name is compared.
+                Some(_) if studies.iter().any(|own| own.name() == name) => {
+                    others.push(format!("`{name}` is in the report twice"));
+                }
+                Some(study) => studies.push(study),
             }
         }
         (studies, others)
+    }
+
+    /// What a verification says, with the numbers of findings and files that were compared. Parts of a report that cannot be recomputed
+    /// are no evidence.
+    pub fn verdict(&self, findings: usize, files: usize, differences: usize) -> Verdict {
+        let (studies, others) = self.studies();
+        let compared = format!("{}, {}", plural(findings, "finding"), plural(files, "file"));
+        let verdict = match (differences, others.as_slice()) {
+            (0, []) if studies.is_empty() => Verdict::unknown("the report has no study"),
+            (0, []) => Verdict::new(Outcome::NoFault, format!("{compared}: same bits")),
+            (0, _) => Verdict::unknown(format!("not recomputed: {}", others.join(", "))),
+            (n, _) => {
+                let what = plural(n, "difference");
+                Verdict::new(Outcome::Fault, format!("{what} in {compared}"))
+            }
+        };
+        let unknown = self.unknown_files();
+        let verdict = unknown.into_iter().fold(verdict, |verdict, file| {
+            verdict.without(format!("`{file}`, which the results do not name"))
+        });
+        let verdict = verdict.without("the page `report.html`");
+        verdict.without("claims, tables, machine and times in `results.json`")
     }
 
     /// Recomputes a study and compares all findings but times, and all data files.
@@ -164,6 +194,11 @@ fn compare(
     let computed: Vec<Value> =
         record.findings.iter().filter_map(|finding| serde_json::to_value(finding).ok()).collect();
     let mut findings = 0;
+    for old in stored.findings.iter().filter(|old| is_time(&id(old))) {
+        if !computed.iter().any(|new| id(new) == id(old)) {
+            differences.push(format!("the finding `{}` is not computed any more", id(old)));
+        }
+    }
     for old in stored.findings.iter().filter(|old| !is_time(&id(old))) {
         // Only a run knows it.
         let mut old = old.clone();
@@ -187,12 +222,22 @@ fn compare(
     }
     // A study that also measures times has them in its data.
     let timed = stored.findings.iter().any(|finding| is_time(&id(finding)));
+    for series in record.series.iter().filter(|_| !timed) {
+        if !stored.data.iter().any(|own| own.name == series.name) {
+            differences.push(format!("the data `{}` are not in the report", series.name));
+        }
+    }
     let data = stored.data.iter().map(|DataFile { name, file }| {
         let series = record.series.iter().find(|series| series.name == *name);
         (file, series.and_then(|series| series_to_parquet(series).ok()))
     });
     let mut page = Page::default();
     let rendered = study.render(record, &mut page).is_ok();
+    for figure in page.figures().filter(|_| rendered && !timed) {
+        if !stored.figures.iter().any(|own| own.id == figure.id) {
+            differences.push(format!("the figure `{}` is not in the report", figure.id));
+        }
+    }
     let figures = stored.figures.iter().map(|FigureFile { id, file }| {
         let figure = page.figures().filter(|_| rendered).find(|figure| figure.id == *id);
         (file, figure.map(|figure| figure::svg::standalone(figure).into_bytes()))
@@ -202,7 +247,7 @@ fn compare(
         files += 1;
         // A longer file differs, and a device has no end.
         let most = new.as_ref().map_or(0, |new| new.len() as u64);
-        match (read_bounded(&folder.join(file), most), new) {
+        match (read_regular(&folder.join(file), most), new) {
             (Ok(old), Some(new)) if old == new => {}
             (Err(error), _) if error.kind() == ErrorKind::FileTooLarge => {
                 differences.push(format!("the file `{file}` differs"));

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 
-use libration_data::read_bounded;
+use libration_data::read_regular;
 use serde::Deserialize;
 
 use crate::results::SCHEMA;
@@ -37,7 +37,7 @@ struct ManifestFile {
 impl RunManifest {
     /// Reads the `results.json` of a folder, if this program wrote it.
     pub(crate) fn read(folder: &Path) -> Option<Self> {
-        let bytes = read_bounded(&folder.join("results.json"), LIMIT).ok()?;
+        let bytes = read_regular(&folder.join("results.json"), LIMIT).ok()?;
         let written: RunManifest = serde_json::from_slice(&bytes).ok()?;
         (written.schema == SCHEMA).then_some(written)
     }

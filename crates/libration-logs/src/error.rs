@@ -31,6 +31,16 @@ pub enum LogError {
         /// The largest allowed value.
         limit: u64,
     },
+    /// The file is compressed, and unpacks to far more than recordings do.
+    #[error(
+        "the file unpacks to more than {most} bytes; expected at most {times} times its own size"
+    )]
+    Unpacked {
+        /// The largest allowed number of unpacked bytes.
+        most: u64,
+        /// The same as a multiple of the file.
+        times: u64,
+    },
     /// The file has no such signal, topic or column of time.
     #[error("{}", unknown(what, name, known))]
     Unknown {

@@ -26,6 +26,14 @@ impl Input {
         })
     }
 
+    /// The number of bytes.
+    pub(crate) fn len(&self) -> io::Result<u64> {
+        Ok(match self {
+            Input::File(path) => fs::metadata(path)?.len(),
+            Input::Memory(bytes) => bytes.len() as u64,
+        })
+    }
+
     /// Reads from the beginning.
     pub(crate) fn reader(&self) -> io::Result<Box<dyn BufRead>> {
         Ok(match self {

@@ -34,6 +34,7 @@ mod text_line;
 mod time_stamps;
 mod time_unit;
 mod ulog;
+mod unpack_budget;
 
 pub use clock::{Band, Lateness, Quantile, Spectrum, Statistics};
 pub use error::LogError;

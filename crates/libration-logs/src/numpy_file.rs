@@ -7,6 +7,7 @@ use crate::error::LogError;
 use crate::input::Input;
 use crate::read_options::ReadOptions;
 use crate::table::Table;
+use crate::unpack_budget::most_unpacked;
 
 /// Largest file, and largest sum of the arrays in it.
 const LIMIT: usize = 1 << 31;
@@ -19,8 +20,9 @@ pub(crate) fn open(input: &Input, options: &ReadOptions) -> Result<Table, LogErr
 }
 
 fn table(bytes: &[u8], options: &ReadOptions) -> Result<Table, LogError> {
+    let most = usize::try_from(most_unpacked(bytes.len() as u64)).unwrap_or(LIMIT).min(LIMIT);
     let (format, arrays) = match bytes.starts_with(b"PK") {
-        true => ("NumPy archive", read_npz(bytes, LIMIT).map_err(LogError::Damaged)?),
+        true => ("NumPy archive", read_npz(bytes, most).map_err(LogError::Damaged)?),
         false => {
             let records = parse_npy_records(bytes).map_err(LogError::Damaged)?;
             let alone = || {

@@ -21,6 +21,10 @@ use crate::table::Table;
 const BATCH: usize = 1 << 16;
 /// Largest number of cells in memory: 2 GiB of numbers.
 const MOST_CELLS: u64 = 1 << 28;
+/// Cells that any file may have.
+const LEAST_CELLS: u64 = 1 << 20;
+/// Most cells for each byte of a file: one number that repeats takes nearly no bytes, but a recording has others beside it.
+const CELLS_OF_BYTE: u64 = 32;
 
 impl From<ParquetError> for LogError {
     fn from(error: ParquetError) -> Self {
@@ -34,10 +38,11 @@ pub const PARQUET_THREAD: &str = "parquet";
 
 /// Reads the columns of numbers. Lists and text are left out.
 pub(crate) fn open(input: &Input, options: &ReadOptions) -> Result<Table, LogError> {
+    let most = input.len()?.saturating_mul(CELLS_OF_BYTE).clamp(LEAST_CELLS, MOST_CELLS);
     let (input, options) = (input.clone(), options.clone());
     let reading = move || match input {
-        Input::File(path) => read(&SerializedFileReader::new(File::open(path)?)?, &options),
-        Input::Memory(bytes) => read(&SerializedFileReader::new(bytes)?, &options),
+        Input::File(path) => read(&SerializedFileReader::new(File::open(path)?)?, most, &options),
+        Input::Memory(bytes) => read(&SerializedFileReader::new(bytes)?, most, &options),
     };
     let thread = Builder::new().name(PARQUET_THREAD.to_owned()).spawn(reading)?;
     thread.join().unwrap_or_else(|_| {
@@ -45,11 +50,11 @@ pub(crate) fn open(input: &Input, options: &ReadOptions) -> Result<Table, LogErr
     })
 }
 
-fn read(reader: &dyn FileReader, options: &ReadOptions) -> Result<Table, LogError> {
+fn read(reader: &dyn FileReader, most: u64, options: &ReadOptions) -> Result<Table, LogError> {
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     let units = units(reader);
     let durations = metadata(reader, "ARROW:schema").map_or_else(Vec::new, arrow_schema::durations);
-    let (mut columns, mut ignored, mut cells) = (Vec::new(), Vec::new(), 0);
+    let (mut columns, mut ignored, mut cells) = (Vec::new(), Vec::new(), Cells { count: 0, most });
     let mut empty = Vec::new();
     for (index, descriptor) in schema.columns().iter().enumerate() {
         let name = descriptor.path().string();
@@ -101,12 +106,32 @@ fn per_second(descriptor: &ColumnDescriptor) -> Option<f64> {
     })
 }
 
+/// The cells so far.
+struct Cells {
+    count: u64,
+    most: u64,
+}
+
+impl Cells {
+    fn add(&mut self, count: u64) -> Result<(), LogError> {
+        self.count = self.count.saturating_add(count);
+        match self.count > self.most {
+            true => Err(LogError::TooLarge {
+                what: "number of cells of a file of this size",
+                value: self.count,
+                limit: self.most,
+            }),
+            false => Ok(()),
+        }
+    }
+}
+
 /// The values of a column in all row groups; none if they are no numbers.
 fn values(
     reader: &dyn FileReader,
     index: usize,
     descriptor: &ColumnDescriptor,
-    cells: &mut u64,
+    cells: &mut Cells,
 ) -> Result<Option<Values>, LogError> {
     let level = descriptor.max_def_level();
     let unsigned = matches!(descriptor.logical_type_ref(), Some(LogicalType::Integer(integer)) if !integer.is_signed);
@@ -151,7 +176,7 @@ fn values(
 fn collect<D: DataType, T: Copy>(
     mut reader: ColumnReaderImpl<D>,
     level: i16,
-    cells: &mut u64,
+    cells: &mut Cells,
     out: &mut Vec<T>,
     absent: T,
     convert: impl Fn(D::T) -> T,
@@ -163,14 +188,7 @@ fn collect<D: DataType, T: Copy>(
         if records == 0 {
             return Ok(());
         }
-        *cells = cells.saturating_add(records as u64);
-        if *cells > MOST_CELLS {
-            return Err(LogError::TooLarge {
-                what: "number of cells",
-                value: *cells,
-                limit: MOST_CELLS,
-            });
-        }
+        cells.add(records as u64)?;
         let mut values = values.into_iter();
         match level {
             0 => out.extend(values.map(&convert)),

@@ -13,6 +13,7 @@ use crate::bag::{Channel, Decoder, Event, Message, MessageStream};
 use crate::error::LogError;
 use crate::input::Input;
 use crate::ros::{RosDecoder, Wire};
+use crate::unpack_budget::UnpackBudget;
 
 /// The first bytes of a file.
 pub(crate) const MAGIC: &[u8] = b"#ROSBAG V2.0\n";
@@ -48,6 +49,7 @@ impl MessageStream for Rosbag {
         let mut file = self.input.reader()?;
         let mut magic = Vec::new();
         (&mut file).take(MAGIC.len() as u64).read_to_end(&mut magic)?;
+        let budget = UnpackBudget::of(&self.input)?;
         let mut reading = Reading::new(visit);
         let mut notes = Vec::new();
         let mut damaged = 0_usize;
@@ -64,14 +66,15 @@ impl MessageStream for Rosbag {
                     damaged += usize::from(!reading.records(&mut body))
                 }
                 (CHUNK, Some(b"lz4")) => {
-                    damaged += usize::from(!reading.records(&mut FrameDecoder::new(&mut body)));
+                    let mut unpacked = budget.reader(FrameDecoder::new(&mut body));
+                    damaged += usize::from(!reading.records(&mut unpacked));
                 }
                 (CHUNK, Some(b"bz2")) => {
                     // A few bytes of bzip2 can be many zeros, so that the header limits them.
                     let size = header.field("size").and_then(|bytes| bytes.first_chunk());
                     let size = size.map_or(0, |bytes| u64::from(u32::from_le_bytes(*bytes)));
-                    damaged +=
-                        usize::from(!reading.records(&mut BzDecoder::new(&mut body).take(size)));
+                    let unpacked = budget.reader(BzDecoder::new(&mut body));
+                    damaged += usize::from(!reading.records(&mut unpacked.take(size)));
                 }
                 (CHUNK, Some(_)) => unknown += 1,
                 _ => damaged += usize::from(reading.record(&header, &mut body).is_err()),
@@ -79,6 +82,7 @@ impl MessageStream for Rosbag {
             if reading.stopped {
                 return Ok(Vec::new());
             }
+            budget.check()?;
             let left = body.limit();
             if io::copy(&mut (&mut file).take(left), &mut io::sink()).ok() != Some(left) {
                 break true;

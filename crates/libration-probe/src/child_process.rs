@@ -1,5 +1,6 @@
 //! A simulator that is another program: numbers on its standard input and output.
 
+use std::ffi::OsString;
 use std::io::{BufReader, Write};
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel, sync_channel};
@@ -26,6 +27,7 @@ const MOST_LINES: usize = 4;
 #[derive(Debug)]
 pub struct ChildProcess {
     words: Vec<String>,
+    environment: Environment,
     patience: Duration,
     /// The end of the audit.
     deadline: Option<Instant>,
@@ -35,6 +37,9 @@ pub struct ChildProcess {
     answered: u64,
     reads_description: bool,
 }
+
+/// Environment variables of a program that differ from those of this process; without a value, it does not have them.
+pub type Environment = Vec<(&'static str, Option<OsString>)>;
 
 #[derive(Debug)]
 struct Running {
@@ -59,7 +64,7 @@ impl Drop for Running {
 }
 
 impl Running {
-    fn start(words: &[String]) -> Result<Self, BlackBoxError> {
+    fn start(words: &[String], environment: &Environment) -> Result<Self, BlackBoxError> {
         let failed = |why: &dyn core::fmt::Display| {
             let program = words.first().map_or("", String::as_str);
             BlackBoxError::Failed(format!("cannot start `{program}`: {why}"))
@@ -67,6 +72,12 @@ impl Running {
         let (program, arguments) = words.split_first().ok_or_else(|| failed(&"no program"))?;
         let mut command = Command::new(program);
         command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        for (name, value) in environment {
+            match value {
+                Some(value) => command.env(name, value),
+                None => command.env_remove(name),
+            };
+        }
         let (mut child, group) =
             ProcessGroup::start(&mut command).map_err(|error| failed(&error))?;
         let (input, output) = (child.stdin.take(), child.stdout.take());
@@ -117,12 +128,17 @@ impl ChildProcess {
     ///
     /// # Errors
     /// The program does not start.
-    pub fn start(words: &[String], patience: Duration) -> Result<Self, BlackBoxError> {
+    pub fn start(
+        words: &[String],
+        environment: Environment,
+        patience: Duration,
+    ) -> Result<Self, BlackBoxError> {
         Ok(ChildProcess {
             words: words.to_vec(),
             patience,
             deadline: None,
-            running: Running::start(words)?,
+            running: Running::start(words, &environment)?,
+            environment,
             has_energy: false,
             answered: 0,
             reads_description: false,
@@ -271,7 +287,7 @@ impl BlackBox for ChildProcess {
     }
 
     fn restart(&mut self) -> Result<bool, BlackBoxError> {
-        self.running = Running::start(&self.words)?;
+        self.running = Running::start(&self.words, &self.environment)?;
         self.answered = 0;
         if self.reads_description {
             self.next_line()?;

@@ -3,16 +3,26 @@
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::process::{ChildStderr, ChildStdout};
 
+use libration_report::printable::printable_lines;
+
 /// Bytes of a reply: 100 numbers need 2.5 kB, a description of a large model with its matrices some hundred.
 const MOST_BYTES: u64 = 4 << 20;
 /// Bytes of its standard error that are shown.
 const MOST_MESSAGES: u64 = 64 << 10;
 
 /// Shows the first messages of a program, and reads the others, so that it does not wait for a reader.
-pub(crate) fn show_messages(mut errors: ChildStderr) {
-    let shown = io::copy(&mut errors.by_ref().take(MOST_MESSAGES), &mut io::stderr());
+pub(crate) fn show_messages(errors: ChildStderr) {
+    let mut errors = BufReader::new(errors);
+    let mut shown = errors.by_ref().take(MOST_MESSAGES);
+    let mut line = Vec::new();
+    while shown.read_until(b'\n', &mut line).is_ok_and(|count| count > 0) {
+        // A program quotes text of files, which must not act on the terminal.
+        let text = String::from_utf8_lossy(&line).replace("\r\n", "\n");
+        let _ = io::stderr().write_all(printable_lines(&text).as_bytes());
+        line.clear();
+    }
     let rest = io::copy(&mut errors, &mut io::sink());
-    if shown.is_ok() && rest.is_ok_and(|bytes| bytes > 0) {
+    if rest.is_ok_and(|bytes| bytes > 0) {
         let _ = writeln!(io::stderr(), "\n(more messages of the program are left out)");
     }
 }

@@ -1,7 +1,10 @@
 //! A subject as JSON, as simulators in other processes and languages describe themselves.
 
 use libration::linear::{Matrix, Signal};
+use libration_report::printable::printable;
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
 use thiserror::Error;
 
 use crate::{Recording, Reference, Subject, SubjectError};
@@ -69,13 +72,32 @@ pub enum DescriptionError {
     Subject(#[from] SubjectError),
 }
 
+/// Parses JSON whose strings are names and notes of somebody else's file: they become text within a line of output.
+///
+/// # Errors
+/// It is no JSON, or a key is wrong.
+pub fn parse_printable<T: DeserializeOwned>(text: &str) -> Result<T, serde_json::Error> {
+    let mut value: Value = serde_json::from_str(text)?;
+    make_printable(&mut value);
+    serde_json::from_value(value)
+}
+
+fn make_printable(value: &mut Value) {
+    match value {
+        Value::String(text) => *text = printable(text).into_owned(),
+        Value::Array(values) => values.iter_mut().for_each(make_printable),
+        Value::Object(values) => values.values_mut().for_each(make_printable),
+        Value::Null | Value::Bool(_) | Value::Number(_) => {}
+    }
+}
+
 impl Description {
     /// Reads a description.
     ///
     /// # Errors
     /// It is no JSON, or a key is wrong.
     pub fn parse(text: &str) -> Result<Self, DescriptionError> {
-        Ok(serde_json::from_str(text)?)
+        Ok(parse_printable(text)?)
     }
 
     /// The subject.

@@ -4,6 +4,7 @@ pub mod figure;
 pub mod live;
 pub mod notation;
 pub mod page;
+pub mod printable;
 pub mod record;
 pub mod report;
 pub mod text;

@@ -15,6 +15,7 @@ import fmpy
 from fmpy.simulation import settable_in_initialization_mode, settable_in_instantiated
 
 from .._settings import nearest
+from ._fmu_archive import check_archive
 
 KINDS = ("CoSimulation", "ModelExchange")
 _FLOATS = ("Real", "Float64")
@@ -136,6 +137,7 @@ def describe(path: str | os.PathLike[str], kind: str | None) -> Description:
         raise ValueError(f"path is {str(path)!r}, and there is no such file; expected the path of an FMU")
     if kind is not None and kind not in KINDS:
         raise ValueError(f"kind is {kind!r}: {nearest(str(kind), KINDS)}")
+    check_archive(file)
     try:
         model = fmpy.read_model_description(file)
     except Exception as error:

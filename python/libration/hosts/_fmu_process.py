@@ -18,7 +18,7 @@ _DISCARD = 2
 # Times in s that the process has at least to load the FMU, and to free it.
 _LOAD, _FREE = 60.0, 2.0
 # The child has the search path of its parent; a program that is run by its path would search in its own folder first.
-_PROGRAM = "import sys, runpy; sys.path[:] = sys.argv[2:]; runpy.run_path(sys.argv[1], run_name='__main__')"
+_PROGRAM = "import sys; sys.path[:] = sys.argv[2:]; import runpy; runpy.run_path(sys.argv[1], run_name='__main__')"
 
 
 class FmuProcess:

@@ -2,6 +2,7 @@
 
 use libration::number::TwoFloat;
 use libration::{Elementary, Float, Scalar};
+use libration_work::Work;
 
 use super::ComparisonError;
 use crate::reference_flow::{Point, Rates, piece};
@@ -84,8 +85,9 @@ impl DenseReference {
     /// Pieces are at most `longest` seconds long. `sizes` are about the largest of the states in the motion.
     ///
     /// # Errors
-    /// [`ComparisonError::NotFinite`], [`ComparisonError::NotSmooth`] and [`ComparisonError::TooLong`].
+    /// [`ComparisonError::NotFinite`], [`ComparisonError::NotSmooth`], [`ComparisonError::TooLong`], and [`ComparisonError::Interrupted`].
     pub(super) fn new(
+        work: &Work<'_>,
         rates: &mut Rates<'_, TwoFloat>,
         start: &[f64],
         sizes: &[f64],
@@ -99,6 +101,7 @@ impl DenseReference {
         let mut lost = vec![0.0; start.len()];
         let (mut pieces, mut time, mut length) = (Vec::new(), 0.0, longest);
         while time < horizon {
+            work.check()?;
             let is_last = time + length >= horizon * (1.0 - 1e-12);
             let own = if is_last { horizon - time } else { length };
             let trial = attempt(&nodes, rates, &state, own);

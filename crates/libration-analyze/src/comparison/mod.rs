@@ -91,7 +91,7 @@ pub fn compare(
 ) -> Result<Comparison, ComparisonError> {
     error::check(request)?;
     let is_positional = request.dynamics.is_positional();
-    let motion = work.part("reference", || Motion::new(request))?;
+    let motion = work.part("reference", || Motion::new(work, request))?;
     let is_compared = |method: &Method| is_positional || !method.supposes_positional_forces();
     let methods: Vec<Method> = Method::all().filter(is_compared).collect();
     let search = Search::new(work, &motion, is_positional)?;

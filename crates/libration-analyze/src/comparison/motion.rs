@@ -3,6 +3,7 @@
 use libration::Method;
 use libration::equations::StepProgram;
 use libration::number::TwoFloat;
+use libration_work::Work;
 
 use super::dense_reference::DenseReference;
 use super::{ComparisonError, ComparisonRequest};
@@ -34,18 +35,22 @@ fn sizes(request: &ComparisonRequest) -> Vec<f64> {
 
 /// A motion with its exact states.
 pub(super) struct Motion<'r> {
+    work: Work<'r>,
     pub(super) request: &'r ComparisonRequest,
     reference: DenseReference,
 }
 
 impl<'r> Motion<'r> {
-    pub(super) fn new(request: &'r ComparisonRequest) -> Result<Self, ComparisonError> {
+    pub(super) fn new(
+        work: &Work<'r>,
+        request: &'r ComparisonRequest,
+    ) -> Result<Self, ComparisonError> {
         let ComparisonRequest { horizon, tolerance, ref start, .. } = *request;
         let mut rates = Rates::<TwoFloat>::new(&request.dynamics);
         let sizes = sizes(request);
         let is_smooth = request.dynamics.accelerations().is_smooth();
         let mut follow = |longest: f64| {
-            DenseReference::new(&mut rates, start, &sizes, horizon, tolerance, longest)
+            DenseReference::new(work, &mut rates, start, &sizes, horizon, tolerance, longest)
         };
         let mut reference = follow(if is_smooth { horizon / 8.0 } else { horizon / PIECES })?;
         if !is_smooth {
@@ -63,7 +68,7 @@ impl<'r> Motion<'r> {
         if reference.rests_at(start) {
             return Err(ComparisonError::AtRest);
         }
-        Ok(Motion { request, reference })
+        Ok(Motion { work: *work, request, reference })
     }
 
     pub(super) fn reference_error(&self) -> f64 {
@@ -140,7 +145,7 @@ impl<'r> Motion<'r> {
         })
     }
 
-    /// Shows the state after each step. Returns whether all were finite.
+    /// Shows the state after each step. Returns whether all were finite; false as well after an interrupt, for which the caller checks.
     fn follow(&self, step: &StepProgram, steps: u64, mut show: impl FnMut(u64, &[f64])) -> bool {
         let ComparisonRequest { dynamics, start, horizon, .. } = self.request;
         let mut stepper = ProgramStepper::<f64>::new(step, dynamics, start);
@@ -148,7 +153,8 @@ impl<'r> Motion<'r> {
         for number in 1..=steps {
             let state = stepper.step(dt);
             // A state that is not finite stays so.
-            if number % 64 == 0 && !state.iter().all(|x| x.is_finite()) {
+            let is_finite = || state.iter().all(|x| x.is_finite());
+            if number % 64 == 0 && !(is_finite() && self.work.check().is_ok()) {
                 return false;
             }
             show(number, state);

@@ -74,11 +74,14 @@ impl<'m> Search<'m> {
             energy_error: None,
         };
         let (steps, error) = self.fewest_steps(work, &step, stages)?;
+        // An interrupted motion has an infinite error.
+        work.check()?;
         found.error = error.is_finite().then_some(error);
         if let Some(steps) = steps {
             found.dt = Some(self.motion.request.horizon / steps as f64);
             found.evaluations = Some(steps as f64 * stages as f64);
             found.energy_error = self.motion.energy_error(&step, steps);
+            work.check()?;
         }
         Ok(found)
     }

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use libration_logs::clock::{
     Doubt, Drift, Latency, Law, LawFit, LawVerdict, Matching, PhaseLag, TopicClock,
 };
+use libration_report::printable::printable;
 
 use super::clock_effect::Effect;
 use super::clock_report::ClockReport;
@@ -17,7 +18,7 @@ pub(super) const CUT: &str =
 /// Returns the report as text.
 pub(super) fn describe(report: &ClockReport) -> String {
     let mut text = format!("{}: {}\n", report.file, report.format);
-    for note in &report.notes {
+    for note in report.notes.iter().map(|note| printable(note)) {
         let _ = match note.starts_with("warning: ") {
             true => writeln!(text, "{note}"),
             false => writeln!(text, "note: {note}"),
@@ -40,7 +41,8 @@ pub(super) fn describe(report: &ClockReport) -> String {
     for topic in &report.topics {
         let rate = topic.rate.map_or_else(|| "-".to_owned(), |rate| format!("{rate:.3} Hz"));
         let clocks = topic.clocks.join(", ");
-        let (name, count, kind) = (&topic.name, topic.count, &topic.message_type);
+        let [name, kind] = [&topic.name, &topic.message_type].map(|text| printable(text));
+        let count = topic.count;
         let _ = writeln!(text, "{name:<width$} {count:>9} {rate:>12}  {clocks:<20} {kind}");
     }
     match &report.clock {

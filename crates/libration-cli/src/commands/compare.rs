@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use libration_lab::{Change, ComparedResults, ResultsComparison};
+use libration_report::printable::printable;
 use libration_report::record::Agreement;
 use serde_json::json;
 
@@ -57,7 +58,8 @@ fn describe(comparison: &ResultsComparison) -> String {
         format!("{same} findings are the same, {within} within their tolerance or noise\n");
     for condition in conditions {
         let (key, before, after) = (&condition.key, &condition.before, &condition.after);
-        let _ = writeln!(text, "{key} differs: {before}, then {after}");
+        let line = format!("{key} differs: {before}, then {after}");
+        let _ = writeln!(text, "{}", printable(&line));
     }
     for (title, changes) in
         [("worse", regressions), ("better", improvements), ("different", changed)]
@@ -66,12 +68,13 @@ fn describe(comparison: &ResultsComparison) -> String {
             let _ = writeln!(text, "\n{title}");
         }
         for change in changes {
-            let _ = writeln!(text, "  {}\n    {}", change.id, sentence(change));
+            let sentence = sentence(change);
+            let _ = writeln!(text, "  {}\n    {}", printable(&change.id), printable(&sentence));
         }
     }
     for (title, ids) in [("first", &comparison.only_before), ("second", &comparison.only_after)] {
         if !ids.is_empty() {
-            let _ = writeln!(text, "\nonly in the {title}: {}", listed(ids));
+            let _ = writeln!(text, "\nonly in the {title}: {}", printable(&listed(ids)));
         }
     }
     text

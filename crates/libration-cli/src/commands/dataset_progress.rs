@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use libration::rl::EnvironmentError;
 use libration_env::dataset::{DataError, DatasetError, Flaw, Monitor};
+use libration_report::printable::printable;
 
 use crate::error::{Failure, is_unusable};
 use crate::{interrupt, progress, terminal};
@@ -17,7 +18,8 @@ pub(super) fn shown(flaw: &Flaw, folder: &Path) -> String {
         "" => String::new(),
         chunk => format!("chunk {chunk}: "),
     };
-    format!("{whose}{} {}", folder.join(&flaw.path).display(), flaw.what)
+    let path = folder.join(&flaw.path).display().to_string();
+    printable(&format!("{whose}{path} {}", flaw.what)).into_owned()
 }
 
 /// Converts an error: wrong input is known before any work, all other errors occur during the run.

@@ -2,7 +2,9 @@
 
 use std::fmt::Write as _;
 
-use libration_probe::{GainReport, ServoIntegrator, ServosDescription, gains, gains_page};
+use libration_probe::{
+    GainReport, ServoIntegrator, ServosDescription, gains, gains_page, parse_printable,
+};
 use libration_report::notation::number;
 use serde_json::json;
 
@@ -48,9 +50,8 @@ pub(crate) fn run(args: &GainsArgs) -> Result<(), Failure> {
 fn described(args: &GainsArgs) -> Result<ServosDescription, Failure> {
     let numbers =
         |given: &Option<Coordinates>| given.as_ref().map(|numbers| numbers.values().to_vec());
-    let parse = |text: &str| {
-        serde_json::from_str::<ServosDescription>(text).map_err(|error| error.to_string())
-    };
+    let parse =
+        |text: &str| parse_printable::<ServosDescription>(text).map_err(|error| error.to_string());
     if let Some(path) = &args.mujoco {
         let mut words = vec!["--gains".to_owned()];
         if let Some(keyframe) = &args.keyframe {

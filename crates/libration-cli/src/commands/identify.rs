@@ -21,12 +21,13 @@ use crate::{interrupt, terminal};
 
 /// Identifies a loop from a log and prints its numbers.
 pub(crate) fn run(args: &IdentifyArgs, quiet: bool) -> Result<(), Failure> {
-    let stop = interrupt::listen();
     check(args)?;
     let request = request(args)?;
     let (recording, warnings) = recording(args)?;
     let page_file = ResultFile::create("--page", args.page.as_deref())?;
     let saved = ResultFile::create("--save-loop", args.save_loop.as_deref())?;
+    // Before this line there is nothing to keep: a signal ends the process while it reads.
+    let stop = interrupt::listen();
     let reporter = Reporter::new(quiet);
     let found = identify(&recording, &request, &Work::new(&reporter, stop));
     reporter.clear();

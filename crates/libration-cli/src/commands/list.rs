@@ -5,6 +5,7 @@ use libration::catalog::{ENTRIES, Entry};
 use libration::integrator::Exact;
 use libration_analyze::equation_analysis::{EquationSummary, SummaryTask};
 use libration_lab::STUDIES;
+use libration_report::printable::printable;
 use libration_settings::EquationExample;
 use libration_settings::equations::EquationSystem;
 use libration_study::Study;
@@ -149,29 +150,39 @@ fn line(label: &str, text: &str) -> String {
     lines + "\n"
 }
 
+/// The largest number of characters of names, as far as a line has room.
+fn widest<'a>(names: impl Iterator<Item = &'a str>) -> usize {
+    names.map(|name| name.chars().count()).max().unwrap_or_default().min(COLUMN)
+}
+
+/// Largest width of a column. A format has room for widths of 16 bits only.
+const COLUMN: usize = 60;
+
 /// Returns the properties of a system by equations.
 fn summary_text(summary: &EquationSummary) -> String {
     let EquationSummary { name, description, states, parameters, inputs, .. } = summary;
     let mut text = match description.is_empty() {
-        true => format!("{name}\n"),
-        false => line(&format!("{name}: "), description),
+        true => format!("{}\n", printable(name)),
+        false => line(&format!("{}: ", printable(name)), description),
     };
     text += "\nStates at the start\n";
-    let width = states.iter().map(|state| state.name.chars().count()).max().unwrap_or_default();
+    let width = widest(states.iter().map(|state| state.name.as_str()));
     for state in states {
-        let line = format!("  {:width$}  {} {}", state.name, state.start, state.unit);
+        let [name, unit] = [&state.name, &state.unit].map(|text| printable(text));
+        let line = format!("  {name:width$}  {} {unit}", state.start);
         text += &format!("{}\n", line.trim_end());
     }
     if !parameters.is_empty() {
         text += "\nParameters\n";
-        let width = parameters.iter().map(|p| p.name.len()).max().unwrap_or_default();
+        let width = widest(parameters.iter().map(|p| p.name.as_str()));
         for p in parameters {
-            let row = format!("  {:width$}  {} {}", p.name, p.value, p.unit);
+            let [name, unit] = [&p.name, &p.unit].map(|text| printable(text));
+            let row = format!("  {name:width$}  {} {unit}", p.value);
             text += &format!("{}\n", row.trim_end());
         }
     }
     if !inputs.is_empty() {
-        text += &format!("\nInputs: {}\n", inputs.join(", "));
+        text += &format!("\nInputs: {}\n", printable(&inputs.join(", ")));
     }
     let forces = match summary.positional {
         true => "depend on positions only",

@@ -36,6 +36,7 @@ mod log_warnings;
 mod measure_jitter;
 mod mode_text;
 mod mujoco;
+mod page_server;
 mod presets;
 mod probe;
 mod probe_text;

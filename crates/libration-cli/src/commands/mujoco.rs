@@ -1,11 +1,38 @@
 //! MuJoCo models, which a Python program reads and steps.
 
+use std::env;
+use std::ffi::OsString;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use libration_probe::{BlackBoxError, ChildProcess};
 
 use crate::error::Failure;
+
+/// Python before 3.11 does not know `PYTHONSAFEPATH`, and searches modules of `-c` in the current folder: nothing is imported before it is
+/// off the search path.
+const PROGRAM: &str = "\
+import sys
+sys.path[:] = [folder for folder in sys.path if folder not in ('', '.')]
+try:
+    from libration.hosts.__main__ import main
+except ModuleNotFoundError as error:
+    help = f\"pip install 'libration[mujoco]' for this interpreter, {sys.executable}\"
+    print(f'error: {error}; help: {help}', flush=True)
+    sys.exit(2)
+sys.exit(main())
+";
+
+/// `PYTHONPATH` without the current folder, which an empty or a relative entry stands for: Python also runs a `sitecustomize` from there.
+fn search_path() -> Option<OsString> {
+    let given = env::var_os("PYTHONPATH")?;
+    let here = env::current_dir().and_then(|folder| folder.canonicalize()).ok();
+    let elsewhere = |folder: &Path| {
+        folder.is_absolute() && (here.is_none() || folder.canonicalize().ok() != here)
+    };
+    let kept = env::join_paths(env::split_paths(&given).filter(|folder| elsewhere(folder))).ok()?;
+    Some(kept).filter(|kept| !kept.is_empty())
+}
 
 /// Starts the program for a model, and returns it with the first line of its output.
 pub(super) fn start(
@@ -21,11 +48,14 @@ pub(super) fn start(
             path.display()
         )));
     }
-    let mut words: Vec<String> =
-        [python, "-m", "libration.hosts", "mujoco"].map(str::to_owned).into();
-    words.push(path.display().to_string());
+    // A model is often in a folder that somebody downloaded, whose files are no modules.
+    let mut words: Vec<String> = [python, "-c", PROGRAM, "mujoco"].map(str::to_owned).into();
+    let file = path.display().to_string();
+    words.push(if file.starts_with('-') { format!("./{file}") } else { file });
     words.extend_from_slice(options);
-    let mut child = ChildProcess::start(&words, patience).map_err(|error| {
+    let environment =
+        vec![("PYTHONSAFEPATH", Some(OsString::from("1"))), ("PYTHONPATH", search_path())];
+    let mut child = ChildProcess::start(&words, environment, patience).map_err(|error| {
         Failure::usage(format!("{error}; expected --python with the packages libration and mujoco"))
     })?;
     if let Some(deadline) = deadline {

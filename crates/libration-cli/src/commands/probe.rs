@@ -9,6 +9,7 @@ use libration_probe::{
     page, probe,
 };
 use libration_report::notation::plural;
+use libration_report::printable::{printable, toml_string};
 use libration_settings::linear_loop::read_plant;
 
 use super::mujoco;
@@ -99,7 +100,7 @@ fn simulator(args: &ProbeArgs, deadline: Instant) -> Result<(Box<dyn BlackBox>, 
     match (&args.command, &args.mujoco, &args.matrices) {
         (Some(words), _, _) => {
             let subject = described(args, &quoted(words.0.clone()))?;
-            let mut child = ChildProcess::start(&words.0, args.timeout)
+            let mut child = ChildProcess::start(&words.0, Vec::new(), args.timeout)
                 .map_err(|error| Failure::usage(format!("{error} (--command)")))?;
             child.set_deadline(deadline);
             Ok((Box::new(child), subject))
@@ -206,12 +207,12 @@ fn plant_text(report: &ProbeReport, plant: &Matrices) -> String {
         (0..matrix.rows()).map(row).collect::<String>()
     };
     let names = |names: &[String]| {
-        names.iter().map(|name| format!("{name:?}")).collect::<Vec<_>>().join(", ")
+        names.iter().map(|name| toml_string(name)).collect::<Vec<_>>().join(", ")
     };
     format!(
         "# Deviations from the point of `{}`, in steps of {} s: exact steps of this plant are those of the simulator.\n\
          states = [{}]\ninputs = [{}]\na = [\n{}]\nb = [\n{}]\n",
-        report.title,
+        printable(&report.title),
         report.dt,
         names(&report.states),
         names(&report.inputs),

@@ -20,6 +20,10 @@ mod exit_codes;
 #[cfg(unix)]
 mod first_hour;
 mod forces;
+#[cfg(unix)]
+mod foreign_dataset;
+#[cfg(unix)]
+mod foreign_folder;
 mod identify;
 mod implicit;
 #[cfg(unix)]
@@ -64,5 +68,7 @@ mod system_advice;
 mod system_lab;
 mod system_loops;
 mod temperature;
+#[cfg(unix)]
+mod terminal_text;
 mod timing;
 mod verify;

@@ -18,9 +18,9 @@ fn verify_recomputes_a_report_and_names_what_differs() {
     let folder = out.to_str().unwrap();
     let lab = ["lab", "spectrum", "drift", "--effort", "quick", "--config", config];
     libration(&[&lab[..], &["--out", folder]].concat()).success();
-    libration(&["verify", folder])
-        .success()
-        .stdout(contains("spectrum: ").and(contains("drift: ")).and(contains("same bits")));
+    libration(&["verify", folder]).success().stdout(
+        contains("The report is verified: ").and(contains("spectrum: ")).and(contains("same bits")),
+    );
     let file = out.join("results.json");
     let mut results: Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
     let measured = &mut results["studies"][1]["findings"][0]["measured"];
@@ -39,7 +39,8 @@ fn verify_recomputes_a_report_and_names_what_differs() {
     fs::write(out.join("data/mine.csv"), "1").unwrap();
     libration(&["verify", folder])
         .code(1)
-        .stdout(contains("3 differences").and(contains("`data/mine.csv`, which the results do")))
+        .stdout(contains("not verified: fault: 3 differences"))
+        .stdout(contains("`data/mine.csv`, which the results do"))
         .stderr(contains(format!("the file `{figure}` differs")))
         .stderr(contains(format!("the finding `{id}` differs: measured {other:?}, recomputed")))
         .stderr(contains(format!("the file `{series}` differs")));
@@ -63,4 +64,57 @@ fn only_recomputes_one_finding_with_all_digits_and_writes_no_report() {
         .code(2)
         .stderr(contains("did you mean `stability.velocity-verlet.window-1-to`?"));
     lab("stabilty.x").code(2).stderr(contains("did you mean `stability`?"));
+}
+
+/// The results of a short report, and its folder.
+fn report(folder: &std::path::Path, studies: &[&str]) -> (std::path::PathBuf, Value) {
+    let out = folder.join("out");
+    let config = folder.join("short.toml");
+    fs::write(&config, "[drift]\nsteps = 20_000\n").unwrap();
+    let options = ["--effort", "quick", "--config", config.to_str().unwrap()];
+    let words = [&["lab"], studies, &options, &["--out", out.to_str().unwrap()]].concat();
+    libration(&words).success();
+    let file = out.join("results.json");
+    let results = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
+    (file, results)
+}
+
+#[test]
+fn a_report_with_a_part_that_cannot_be_recomputed_is_not_verified() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, results) = report(folder.path(), &["drift"]);
+    let out = file.parent().unwrap().to_str().unwrap().to_owned();
+    let forge = |study: &mut Value| study["findings"][0]["measured"] = 1e9.into();
+    let verify = |change: &dyn Fn(&mut Vec<Value>), said: &str| {
+        let mut results = results.clone();
+        change(results["studies"].as_array_mut().unwrap());
+        fs::write(&file, results.to_string()).unwrap();
+        libration(&["verify", &out, "--quiet"])
+            .code(1)
+            .stdout(contains("is not verified: "))
+            .stdout(contains(said).and(contains("verified: no fault").not()));
+    };
+    let renamed = |name: &'static str| {
+        move |studies: &mut Vec<Value>| {
+            forge(&mut studies[0]);
+            studies[0]["name"] = name.into();
+        }
+    };
+    verify(&renamed("drifts"), "unknown: not recomputed: `drifts` is no study of this version");
+    verify(&renamed("throughput"), "`throughput` measures the machine");
+    verify(&renamed("a\u{1b}[2Jb\nerror: c"), "`a\\u001b[2Jb\\u000aerror: c` is no study");
+    let twice = |studies: &mut Vec<Value>| {
+        studies.push(studies[0].clone());
+        forge(&mut studies[1]);
+    };
+    verify(&twice, "`drift` is in the report twice");
+    verify(&|studies| studies.clear(), "unknown: the report has no study");
+    let timed = |studies: &mut Vec<Value>| {
+        let mut own = studies[0]["findings"][0].clone();
+        own["id"] = "drift.forged.time".into();
+        studies[0]["findings"].as_array_mut().unwrap().push(own);
+    };
+    verify(&timed, "fault: 1 difference");
+    verify(&|studies| studies[0]["data"] = serde_json::json!([]), "fault: ");
+    verify(&|studies| studies[0]["figures"] = serde_json::json!([]), "fault: ");
 }

@@ -60,6 +60,16 @@ pub fn join(job: &JoinJob<'_>, monitor: &dyn Monitor) -> Result<Manifest, Datase
     if let Some(what) = find_misplaced(&folder.manifest().chunks, all, dataset.chunks()) {
         return Err(DatasetError::Order { folder: job.out.to_owned(), what });
     }
+    let of_parts = parts.iter().flat_map(|part| &part.manifest.chunks);
+    let other = folder.manifest().chunks.iter().zip(of_parts).position(|(own, part)| own != part);
+    if let Some(i) = other {
+        // The first line has the settings.
+        let what = format!(
+            "line {} is not that of the shards; help: delete it and all lines after it, then run with --resume",
+            i + 2
+        );
+        return Err(DatasetError::Order { folder: job.out.to_owned(), what });
+    }
     let transitions =
         |chunk: &Chunk| chunk.holds.get("transitions").and_then(Value::as_u64).unwrap_or(0);
     let mut there = folder.manifest().chunks.len();
@@ -114,6 +124,7 @@ fn parts_in_order(
         )?;
         let part = Part { folder, manifest, groups };
         part.ensure_finished(first.chunks())?;
+        part.ensure_contents(first, *first_format)?;
         parts.push(part);
     }
     let Some((dataset, format)) = whole else {
@@ -154,6 +165,26 @@ fn missing_groups(first: usize, end: usize) -> DatasetError {
 impl Part<'_> {
     fn unusable(&self, what: String) -> DatasetError {
         DatasetError::Part { folder: self.folder.to_owned(), what }
+    }
+
+    /// Checks that the manifest says of each chunk what the settings say.
+    fn ensure_contents(&self, dataset: &Dataset, format: DataFormat) -> Result<(), DatasetError> {
+        let [first, _] = self.groups;
+        let mut before = [0, 0];
+        for (i, chunk) in self.manifest.chunks.iter().enumerate() {
+            let number = first + i / dataset.chunks() as usize;
+            let step = i as u64 % dataset.chunks();
+            let found = dataset.misstated(number, step, format, &mut before, &chunk.holds);
+            if let Some(key) = found {
+                // The first line has the settings.
+                let what = format!(
+                    "line {} of its manifest has another `{key}` than the settings; help: write the shard again",
+                    i + 2
+                );
+                return Err(self.unusable(what));
+            }
+        }
+        Ok(())
     }
 
     /// Checks that each group has `chunks` chunks, in order.

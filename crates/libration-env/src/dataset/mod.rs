@@ -19,6 +19,7 @@ mod monitor;
 mod repair;
 mod resume_state;
 mod settings;
+mod stated_contents;
 mod system_tables;
 mod table_conversion;
 mod tables;

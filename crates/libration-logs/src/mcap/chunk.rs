@@ -7,6 +7,7 @@ use lz4_flex::frame::FrameDecoder;
 
 use super::record::{discard, read_header};
 use super::{ChunkEnd, Reading};
+use crate::unpack_budget::UnpackBudget;
 
 /// Logarithm of the longest window of Zstandard that is decompressed, in bytes: 128 MiB, as the library's own limit.
 const WINDOW: u32 = 27;
@@ -16,6 +17,7 @@ const LIMIT: u64 = 1 << 36;
 /// Reads the records of a chunk, whose body is the rest of `body`.
 pub(super) fn read(
     body: &mut impl Read,
+    budget: &UnpackBudget,
     reading: &mut Reading<'_>,
     messages: &mut usize,
 ) -> ChunkEnd {
@@ -33,11 +35,17 @@ pub(super) fn read(
                             Ok(decoder)
                         });
                     match decoder {
-                        Ok(decoder) => records(BufReader::new(decoder), &head, reading, messages),
+                        Ok(decoder) => {
+                            let unpacked = BufReader::new(budget.reader(decoder));
+                            records(unpacked, &head, reading, messages)
+                        }
                         Err(error) => ChunkEnd::Damaged(error.to_string()),
                     }
                 }
-                b"lz4" => records(FrameDecoder::new(packed), &head, reading, messages),
+                b"lz4" => {
+                    let unpacked = budget.reader(FrameDecoder::new(packed));
+                    records(unpacked, &head, reading, messages)
+                }
                 other => {
                     let name: String = String::from_utf8_lossy(other).chars().take(20).collect();
                     ChunkEnd::Damaged(format!("compression `{name}`; expected zstd, lz4 or none"))

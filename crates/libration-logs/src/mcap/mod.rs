@@ -13,6 +13,7 @@ use record::{Channels, Record, discard, read_header};
 use crate::bag::{Event, Message, MessageStream};
 use crate::error::LogError;
 use crate::input::Input;
+use crate::unpack_budget::UnpackBudget;
 
 /// A file.
 pub(crate) struct Mcap {
@@ -37,6 +38,7 @@ impl MessageStream for Mcap {
         let mut file = self.input.reader()?;
         file.read_exact(&mut [0; MAGIC])?;
         let mut reading = Reading { channels: Channels::default(), visit, stopped: false };
+        let budget = UnpackBudget::of(&self.input)?;
         let mut damage = Damage::default();
         let mut messages = 0;
         loop {
@@ -52,11 +54,12 @@ impl MessageStream for Mcap {
             }
             if code == record::CHUNK {
                 let mut body = (&mut file).take(length);
-                damage.count(chunk::read(&mut body, &mut reading, &mut messages));
+                damage.count(chunk::read(&mut body, &budget, &mut reading, &mut messages));
                 let left = body.limit();
                 if reading.stopped {
                     return Ok(Vec::new());
                 }
+                budget.check()?;
                 damage.truncated = discard(&mut file, left).is_err();
             } else {
                 let mut body = (&mut file).take(length);

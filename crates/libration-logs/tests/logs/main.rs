@@ -5,6 +5,7 @@ mod mutations;
 mod other_bags;
 mod sqlite_bags;
 mod tables;
+mod unpacked;
 
 use std::path::PathBuf;
 

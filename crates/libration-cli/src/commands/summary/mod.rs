@@ -19,6 +19,8 @@ pub(super) use linear_plant::of_plant;
 pub(super) use step::of_step;
 pub(super) use temperature::of_temperatures;
 
+use libration_report::printable::printable;
+
 use super::digits::significant;
 use super::repeat_command::with_option;
 use crate::args::AdviseArgs;
@@ -75,14 +77,15 @@ impl Summary {
         let heads = || columns.iter().map(|column| column.head.to_owned()).collect::<Vec<_>>();
         let widths: Vec<usize> = (0..columns.len())
             .map(|i| rows.iter().map(|row| &row[i]).chain([&heads()[i]]).map(width).max())
-            .map(Option::unwrap_or_default)
+            // A format has room for widths of 16 bits only.
+            .map(|wide| wide.unwrap_or_default().min(COLUMNS))
             .collect();
         for row in [heads()].iter().chain(rows) {
             let cells = columns.iter().zip(row).zip(&widths).map(|((column, cell), wide)| {
                 if column.left { format!("{cell:<wide$}") } else { format!("{cell:>wide$}") }
             });
             let line = cells.collect::<Vec<_>>().join("  ");
-            self.text += &shortened(line.trim_end(), COLUMNS);
+            self.text += &shortened(printable(line.trim_end()).as_ref(), COLUMNS);
             self.text.push('\n');
         }
     }

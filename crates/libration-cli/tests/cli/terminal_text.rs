@@ -1,0 +1,131 @@
+//! Text of files on a terminal, which must not change it.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
+
+use super::advise::libration;
+
+/// Text that acts on a terminal, or turns the direction of writing.
+const ACTING: [&str; 6] =
+    ["\u{1b}]0;owned\u{7}", "\u{1b}[2J", "\u{9b}31m", "\u{202e}gnp", "\u{2066}x\u{2069}", "\u{7f}\u{8}"];
+
+/// The output of the program on a terminal: of both streams.
+fn on_terminal(folder: &Path, words: &[&str]) -> String {
+    let program = assert_cmd::cargo::cargo_bin("libration");
+    let run = "import os, pty, sys; sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))";
+    let output = Command::new("python3")
+        .args(["-I", "-c", run])
+        .arg(program)
+        .args(words)
+        .current_dir(folder)
+        // Bars move the cursor.
+        .env("TERM", "dumb")
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Checks that nothing of a file acts on the terminal.
+fn check(text: &str, what: &str) {
+    for acting in ACTING {
+        for c in acting.chars().filter(|c| c.is_control() && *c != '\u{1b}' || *c >= '\u{2000}') {
+            assert!(!text.contains(c), "{what}: {c:?} in {text:?}");
+        }
+    }
+    for (at, _) in text.match_indices('\u{1b}') {
+        let rest = text[at..].trim_start_matches('\u{1b}').trim_start_matches('[');
+        let end = rest.trim_start_matches(|c: char| c.is_ascii_digit() || c == ';');
+        assert!(end.starts_with('m'), "{what}: {:?}", &text[at..].chars().take(20).collect::<String>());
+    }
+    let forged = text.lines().filter(|line| line.contains("forged"));
+    for line in forged {
+        assert!(!line.starts_with("error") && !line.starts_with("\u{1b}"), "{what}: {line:?}");
+    }
+}
+
+#[test]
+fn text_of_files_does_not_act_on_a_terminal() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    // As TOML and JSON write them.
+    let acting = ACTING.concat() + "\r\nerror: forged";
+    let escaped: String =
+        acting.encode_utf16().map(|unit| format!("\\u{unit:04x}")).collect();
+    let pendulum = "[acceleration]\nq = \"-k*q\"\n[parameters]\nk = 9.0\n[start]\nq = 1.0\n";
+    write("system.toml", &format!("name = \"a{escaped}\"\ndescription = \"b{escaped}\"\n{pendulum}"));
+    write("key.toml", &format!("\"c{escaped}\" = 1\n{pendulum}"));
+    write("log.csv", &format!("time,\"d{acting}\"\n0,1\n0.01,2\n0.02,3\n0.03,1\n"));
+    write("bare.toml", &format!("name = \"{}\"\n{pendulum}", ACTING.concat()));
+    let record = |id: &str| {
+        format!(
+            "{{\"schema\": \"{}\", \"config\": {{\"x\": \"{escaped}\"}}, \"studies\": [], \"machine\": {{\"{id}\": 1}}}}",
+            "libration.results/1"
+        )
+    };
+    write("old.json", &record(&escaped));
+    write("new.json", &record("other"));
+    fs::create_dir(folder.path().join("set")).unwrap();
+    write("set/manifest.jsonl", &format!("{{\"version\": \"{escaped}\"}}\n"));
+    write("servos.json", &format!("{{\"mass\": [[1.0]], \"kp\": [1.0], \"kv\": [1.0], \"names\": [\"{escaped}\"]}}"));
+    for words in [
+        &["list", "--system", "system.toml"][..],
+        &["list", "--system", "system.toml", "--json"],
+        &["analyze", "--system", "system.toml", "--integrator", "rk4", "--dt", "0.01"],
+        &["analyze", "--system", "system.toml", "--integrator", "rk4", "--dt", "0.01", "--json"],
+        &["analyze", "--system", "key.toml", "--integrator", "rk4", "--dt", "0.01"],
+        &["analyze", "--system", "bare.toml", "--integrator", "rk4", "--dt", "0.01"],
+        &["clock", "log.csv"],
+        &["clock", "log.csv", "--json"],
+        &["clock", "log.csv", "--topic", "nosuch"],
+        &["compare", "old.json", "new.json"],
+        &["compare", "old.json", "new.json", "--json"],
+        &["verify", "set"],
+        &["join", "set", "--out", "joined"],
+        &["gains", "--matrices", "servos.json", "--dt", "0.01"],
+        &["probe", "--command", "printf '\\033]0;owned\\007\\r\\nerror: forged\\n'", "--state", "0", "--dt", "1"],
+        &["probe", "--command", "sh -c \"printf '\\033]0;owned\\007' >&2\"", "--state", "0", "--dt", "1"],
+    ] {
+        let text = on_terminal(folder.path(), words);
+        assert!(!text.trim().is_empty(), "{words:?}");
+        check(&text, &words.join(" "));
+    }
+}
+
+#[test]
+fn json_keeps_the_text_of_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("system.toml");
+    let name = "a\u{9b}\u{202e}b\u{7f}";
+    let pendulum = "[acceleration]\nq = \"-k*q\"\n[parameters]\nk = 9.0\n[start]\nq = 1.0\n";
+    fs::write(&file, format!("name = \"a\\u009b\\u202eb\\u007f\"\n{pendulum}")).unwrap();
+    let output = libration(&["list", "--system", file.to_str().unwrap(), "--json"]).success();
+    let value: Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
+    assert_eq!(value["name"], name);
+}
+
+#[test]
+fn names_of_any_length_are_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("system.toml");
+    for length in [65_535, 65_536, 70_000, 200_000] {
+        let name = "x".repeat(length);
+        fs::write(
+            &file,
+            format!("[acceleration]\nq = \"-{name}*q\"\n[parameters]\n{name} = 9.0\n[units]\nq = \"{name}\"\n[start]\nq = 1.0\n"),
+        )
+        .unwrap();
+        let file = file.to_str().unwrap();
+        for words in [
+            &["list", "--system", file][..],
+            &["analyze", "--system", file, "--integrator", "rk4", "--dt", "0.01"],
+        ] {
+            let output = libration(words).get_output().clone();
+            let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(!errors.contains("this is a bug"), "{length}: {errors:.300}");
+        }
+    }
+}
