@@ -34,6 +34,8 @@ pub(crate) struct Window<'a> {
     pub(crate) recording: &'a Recording,
     /// The first response.
     pub(crate) first: usize,
+    /// Whether the plant rests at the first command, so that its initial states are known.
+    pub(crate) is_at_rest: bool,
     pub(crate) hold: Hold,
     /// The median interval of the responses, in s.
     pub(crate) interval: f64,
@@ -66,10 +68,15 @@ pub(crate) fn whiten(
     dead_time: f64,
     noise: Noise,
 ) -> Whitened {
-    let Window { recording, first, hold, interval } = window;
+    let Window { recording, first, is_at_rest, hold, interval } = window;
     let (times, values) = (&recording.command_times[..], &recording.commands[..]);
     let mut steps = PlantSteps::new(plant, noise.disturbance > 0.0);
     let mut filter = Filter::new(plant, noise, &mut steps, interval);
+    let mut now = recording.response_times[first];
+    if is_at_rest {
+        filter.rest(values[0]);
+        now = now.min(times[0]);
+    }
     let count = recording.responses.len() - first;
     let columns = filter.width - 1;
     let mut whitened = Whitened {
@@ -78,7 +85,6 @@ pub(crate) fn whiten(
         responses: Vec::with_capacity(count),
         scales: Vec::with_capacity(count),
     };
-    let mut now = recording.response_times[first];
     // The command that acts now.
     let mut active = times.partition_point(|time| time + dead_time <= now).saturating_sub(1);
     for sample in first..recording.responses.len() {
@@ -140,6 +146,17 @@ impl<'a> Filter<'a> {
             innovations: vec![0.0; width],
             gains: vec![0.0; states],
             has_covariance: is_coloured || noise.moves_plant(),
+        }
+    }
+
+    /// Begins at rest under a command: the initial states are no unknowns.
+    fn rest(&mut self, command: f64) {
+        for (i, rest) in self.plant.rest().into_iter().enumerate() {
+            if let Some(rest) = rest {
+                let row = i * self.width;
+                self.means[row + LOAD + 1 + i] = 0.0;
+                (self.means[row + COMMAND], self.means[row + LOAD]) = (rest * command, rest);
+            }
         }
     }
 
