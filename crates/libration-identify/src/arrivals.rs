@@ -73,7 +73,11 @@ pub(crate) struct ArrivalSearch<'a> {
 
 impl<'a> ArrivalSearch<'a> {
     /// A search from a fit in which all commands arrive; `None` if its plant has too many states.
-    pub(crate) fn new(law: ArrivalLaw, base: &Estimate<'a>, recording: &'a Recording) -> Option<Self> {
+    pub(crate) fn new(
+        law: ArrivalLaw,
+        base: &Estimate<'a>,
+        recording: &'a Recording,
+    ) -> Option<Self> {
         let model = Model { noise: NoiseKind::White, ..base.model.clone() };
         let states = base.initial_states(recording);
         if states.len() > MOST_STATES {

@@ -134,7 +134,8 @@ pub fn identify(
     if window.first > 0 {
         let dropped = plural(window.first, "response");
         let dead_time = summary::seconds(largest);
-        not_examined.push(format!("the first {dropped}, up to the largest dead time of {dead_time}"));
+        not_examined
+            .push(format!("the first {dropped}, up to the largest dead time of {dead_time}"));
     }
     found.verdict = verdict(&found, &dependence, &context, not_examined);
     found.answer = summary::answer(&found);

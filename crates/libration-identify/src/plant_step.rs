@@ -179,8 +179,13 @@ mod tests {
             c: vec![1.0, 0.0],
             d: 0.0,
         };
-        let plants =
-            [oscillator(20.0, 0.3), oscillator(3.0, 1.0), oscillator(50.0, 4.0), falling, integrator];
+        let plants = [
+            oscillator(20.0, 0.3),
+            oscillator(3.0, 1.0),
+            oscillator(50.0, 4.0),
+            falling,
+            integrator,
+        ];
         for plant in &plants {
             for h in [1e-5, 3e-3, 0.02, 0.3] {
                 let one = PlantStep::new(plant, h, true);
@@ -193,7 +198,8 @@ mod tests {
                 ] {
                     let size = any.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
                     // Up to ten doublings, each of which doubles an error of a few roundings.
-                    let off = one.iter().zip(any).fold(0.0_f64, |most, (x, y)| most.max((x - y).abs()));
+                    let off =
+                        one.iter().zip(any).fold(0.0_f64, |most, (x, y)| most.max((x - y).abs()));
                     assert!(off <= 1e-12 * size, "{h}: {one:?} {any:?}");
                 }
             }

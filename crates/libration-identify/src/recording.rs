@@ -59,7 +59,7 @@ pub enum RecordingError {
     },
     /// The command never changes.
     #[error(
-        "the command is {0} throughout; expected a command that changes, since nothing else shows a latency; help: state the command before the recording, if that was another"
+        "the command is {0} throughout; expected a command that changes, since nothing else shows a latency; help: if another command acted before the recording, state it"
     )]
     ConstantCommand(f64),
     /// The response never changes.
@@ -225,7 +225,8 @@ impl Recording {
         let period = period(command_times).or_else(|| period(response_times)).unwrap_or(0.0);
         let first = command_times.first().map(|first| first - period);
         let times: Vec<f64> = first.into_iter().chain(command_times.iter().copied()).collect();
-        let values: Vec<f64> = first.map(|_| before).into_iter().chain(commands.iter().copied()).collect();
+        let values: Vec<f64> =
+            first.map(|_| before).into_iter().chain(commands.iter().copied()).collect();
         Recording::new(&times, &values, response_times, responses)
     }
 

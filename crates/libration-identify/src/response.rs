@@ -182,9 +182,8 @@ impl UnitPlant {
         match solve_matrix(&self.a, &b).filter(|_| is_stable) {
             Some(rest) => (0..n).map(|i| Some(rest[(i, 0)])).collect(),
             None => {
-                let is_lag = |i: usize| {
-                    i + 1 == n && a(i, i) < 0.0 && (0..i).all(|j| a(i, j) == 0.0)
-                };
+                let is_lag =
+                    |i: usize| i + 1 == n && a(i, i) < 0.0 && (0..i).all(|j| a(i, j) == 0.0);
                 (0..n).map(|i| is_lag(i).then(|| -self.b[i] / a(i, i))).collect()
             }
         }

@@ -9,6 +9,18 @@ use crate::residuals::CONTRADICTION;
 use crate::summary::seconds;
 use crate::warnings::{Context, is_controller};
 
+/// Fewest responses behind the first change of a command that tell a form of response from others.
+const FEWEST_FOLLOWERS: usize = 10;
+
+/// The responses behind the first change of the command, after the dead time.
+fn followers(context: &Context<'_>) -> usize {
+    let recording = context.recording;
+    let changes = recording.commands.windows(2).zip(&recording.command_times[1..]);
+    let first = changes.filter(|(pair, _)| pair[0] != pair[1]).map(|(_, time)| *time).next();
+    let since = first.unwrap_or(f64::INFINITY) + context.estimate.point.shape[0];
+    recording.response_times.iter().filter(|&&time| time >= since).count()
+}
+
 /// The verdict, with its evidence and what was not examined.
 pub(crate) fn verdict(
     found: &Identification,
@@ -61,6 +73,17 @@ fn judged(found: &Identification, dependence: &Dependence, context: &Context<'_>
     if is_controller(context.recording) {
         return Verdict::unknown("the command is a function of the response");
     }
+    let followers = followers(context);
+    if followers < FEWEST_FOLLOWERS {
+        return Verdict::unknown(format!(
+            "only {} the first change of the command after the dead time",
+            if followers == 1 {
+                "one response follows".to_owned()
+            } else {
+                format!("{followers} responses follow")
+            }
+        ));
+    }
     let model = &context.estimate.model;
     if model.known[0].is_none() && context.estimate.point.shape[0] > 0.98 * model.longest {
         return Verdict::unknown(format!(
@@ -70,6 +93,8 @@ fn judged(found: &Identification, dependence: &Dependence, context: &Context<'_>
     }
     Verdict::new(
         Outcome::NoFault,
-        format!("the residuals do not contradict the model at p = {CONTRADICTION} ({probabilities})"),
+        format!(
+            "the residuals do not contradict the model at p = {CONTRADICTION} ({probabilities})"
+        ),
     )
 }

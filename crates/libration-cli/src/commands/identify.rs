@@ -3,11 +3,12 @@
 use std::fmt::Write as _;
 
 use libration_identify::{
-    Identification, IdentifyError, KnownPlant, Recording, Request, ResponseKind, identify,
-    interval, loop_file, page, with_unit,
+    Identification, IdentifyError, KnownPlant, Recording, RecordingError, Request, ResponseKind,
+    identify, interval, loop_file, page, with_unit,
 };
 use libration_logs::{Log, ReadOptions};
 use libration_report::notation::number;
+use libration_report::verdict;
 use libration_settings::linear_loop::read_plant;
 use libration_work::Work;
 
@@ -40,8 +41,17 @@ pub(crate) fn run(args: &IdentifyArgs, quiet: bool) -> Result<(), Failure> {
         false => text,
     };
     terminal::print(&text)?;
-    saved.write(|| loop_file(&found))?;
-    page_file.write(|| page(&found))
+    if found.depends_on_command {
+        saved.write(|| loop_file(&found))?;
+    } else if let Some(path) = &args.save_loop {
+        let path = path.display();
+        terminal::warn(&format!("`{path}` (--save-loop) is not written: there is no model"));
+    }
+    page_file.write(|| page(&found))?;
+    match verdict::exit_code([&found.verdict]) {
+        verdict::GOOD => Ok(()),
+        _ => Err(Failure::Disagreement),
+    }
 }
 
 /// Fails for options that contradict each other.
@@ -85,6 +95,7 @@ fn check(args: &IdentifyArgs) -> Result<(), Failure> {
 fn failure(error: IdentifyError) -> Failure {
     match error {
         IdentifyError::Interrupted(_) => Failure::Interrupted("interrupted".into()),
+        error @ IdentifyError::Budget(_) => Failure::run(error),
         IdentifyError::Value { name, value, expected } => {
             let option = format!("--{}", name.replace(' ', "-"));
             Failure::usage(format!("{option} is {value}; expected {expected}"))
@@ -106,6 +117,12 @@ fn request(args: &IdentifyArgs) -> Result<Request, Failure> {
         lag: args.lag,
         gain: args.gain,
         largest_dead_time: args.largest_dead_time,
+        // All of them are the default.
+        start: match &args.start.0[..] {
+            [start] => Some(*start),
+            _ => None,
+        },
+        budget: args.budget,
         arrivals: !args.certain_arrivals,
         details: true,
         bootstrap: args.bootstrap,
@@ -126,9 +143,21 @@ fn recording(args: &IdentifyArgs) -> Result<(Recording, Vec<String>), Failure> {
     };
     let command = series("--command", &args.command)?;
     let response = series("--response", &args.response)?;
-    Recording::new(&command.time, &command.values, &response.time, &response.values)
-        .map(|recording| (recording, warnings))
-        .map_err(|error| Failure::usage(format!("`{path}`: {error}")))
+    let [times, commands] = [&command.time, &command.values];
+    let [response_times, responses] = [&response.time, &response.values];
+    let recording = match args.command_before {
+        Some(before) => Recording::behind(before, times, commands, response_times, responses),
+        None => Recording::new(times, commands, response_times, responses),
+    };
+    recording.map(|recording| (recording, warnings)).map_err(|error| {
+        let option = match error {
+            RecordingError::ConstantCommand(_) if args.command_before.is_none() => {
+                " with --command-before"
+            }
+            _ => "",
+        };
+        Failure::usage(format!("`{path}`: {error}{option}"))
+    })
 }
 
 /// The channel of the plant of the options.
@@ -177,6 +206,12 @@ fn describe(found: &Identification) -> String {
     let mut text = format!("{}\n", found.answer);
     for warning in &found.warnings {
         let _ = writeln!(text, "warning: {warning}");
+    }
+    let _ = writeln!(text, "verdict: {}", found.verdict);
+    // Numbers of a response that does not depend on the command mean nothing.
+    if !found.depends_on_command {
+        let _ = writeln!(text, "repeat with: {}", found.repeat_command);
+        return text;
     }
     let _ = writeln!(text, "\n{:<32} {:>14}   95 % interval", "number", "estimate");
     for parameter in &found.parameters {
