@@ -172,7 +172,7 @@ def identify(
         The largest dead time to try in s (default: an eighth of the recording, up to 1 s or 50 responses).
     start:
         What is assumed before the first response: ``"rest"``, ``"held"`` (the first command acts, and the loop moves), ``"unknown"``, or
-        ``"auto"``: rest if the recording begins with a long hold of the command, or has nearly all changes early, unless the responses
+        ``"auto"``: rest if the recording begins with a long hold of the command, or has nearly all of a few changes early, unless the responses
         contradict it.
     command_before:
         The command before the recording (default: the first one).

@@ -4,7 +4,6 @@ use libration_report::notation::number;
 
 use crate::arrivals::spread;
 use crate::estimate::Estimate;
-use crate::information::information;
 use crate::model::Model;
 use crate::recording::Recording;
 use crate::simulation::SimulatedLoop;
@@ -26,6 +25,8 @@ pub(crate) enum Dependence {
 const BY_CHANCE: f64 = 9.8;
 /// Least share of the squares of all changes of a command that a response could show.
 const LEAST_SHOWN: f64 = 0.5;
+/// A command whose whole effect raises the sum of squares by less than this part cannot be told from a load.
+const UNSEEN: f64 = 1e-9;
 /// The largest share of the variance of a response which is no dependence.
 const LARGEST_SHARE: f64 = 0.1;
 
@@ -39,7 +40,9 @@ impl Dependence {
         if let Some(reason) = unseen {
             return Dependence::Undecided(reason);
         }
-        let shares = fits.iter().filter_map(|fit| largest_share(fit, recording));
+        // A random disturbance explains what any slow command does: the bound is that under the noise of the best fit.
+        let alike = fits.iter().filter(|fit| fit.model.noise == best.model.noise);
+        let shares = alike.filter_map(|fit| largest_share(fit, recording));
         match shares.reduce(f64::max) {
             Some(share) if share <= LARGEST_SHARE => Dependence::Excluded(share),
             Some(share) => Dependence::Undecided(format!(
@@ -100,11 +103,6 @@ fn largest_share(fit: &Estimate<'_>, recording: &Recording) -> Option<f64> {
     if fit.model.gain.is_some() {
         return None;
     }
-    let found = information(fit, recording)?;
-    let place = found.coefficients.iter().position(|&column| column == 0)?;
-    let place = fit.model.coordinates() + place;
-    let error = found.covariance[(place, place)].sqrt();
-    let gain = fit.regression.coefficients[0].abs() + 2.0 * error;
     let first = fit.model.window(recording).first;
     let part = Recording {
         response_times: recording.response_times[first..].to_vec(),
@@ -119,6 +117,17 @@ fn largest_share(fit: &Estimate<'_>, recording: &Recording) -> Option<f64> {
         ..SimulatedLoop::new(fit.model.response.clone(), &fit.point.shape)
     };
     let effect = spread(&unit.responses(&part, 0, 0));
-    let share = (gain * effect / spread(&part.responses)).powi(2);
+    let own = spread(&part.responses);
+    // The sum of squares is quadratic in the gain: its curvature is the information about the gain, with the same dynamics.
+    let gain = fit.regression.coefficients[0];
+    let at = |gain: f64| {
+        let model = Model { gain: Some(gain), ..fit.model.clone() };
+        model.regression(model.window(recording), &fit.point).sum_of_squares
+    };
+    let step = own / effect;
+    let risen = at(gain + step) - at(gain);
+    let error = (risen > UNSEEN * at(gain)).then(|| step * (fit.variance() / risen).sqrt())?;
+    let largest = gain.abs() + 2.0 * error;
+    let share = (largest * effect / own).powi(2);
     share.is_finite().then_some(share)
 }

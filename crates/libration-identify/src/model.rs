@@ -7,7 +7,7 @@ use crate::recording::Recording;
 use crate::regression::Regression;
 use crate::response::ResponseKind;
 use crate::start::Start;
-use crate::whitening::{Whitened, Window, whiten};
+use crate::whitening::{COMMAND, LOAD, Whitened, Window, whiten};
 
 /// A form of the response and of its noise, with what is known of them.
 #[derive(Clone, Debug)]
@@ -146,7 +146,12 @@ impl<'w> Model<'w> {
 
     /// The regression of a window at a point.
     pub(crate) fn regression(&self, window: Window<'_>, point: &Point) -> Regression {
-        Regression::new(&self.whitened(window, point), self.gain)
+        let mut found = Regression::new(&self.whitened(window, point), self.gain);
+        if window.is_at_rest && self.response.dynamics(&point.shape[1..]).integrates() {
+            // An integral rests where the load balances the first command.
+            found.coefficients[LOAD] = -found.coefficients[COMMAND] * window.recording.commands[0];
+        }
+        found
     }
 
     /// The negative log likelihood at these coordinates, infinite outside of the model.

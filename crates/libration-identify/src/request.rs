@@ -29,7 +29,7 @@ pub struct Request {
     /// The largest dead time in s. Default: an eighth of the recording, at most 1 s or 50 intervals of the responses.
     pub largest_dead_time: Option<f64>,
     /// What is assumed before the first response. Default: [`Start::Rest`] if the recording begins with a long hold of the command, or if
-    /// nearly all of its changes would be lost with the responses up to the largest dead time, unless the responses contradict it; else
+    /// nearly all of a few changes would be lost with the responses up to the largest dead time, unless the responses contradict it; else
     /// [`Start::Unknown`].
     pub start: Option<Start>,
     /// The number of evaluations of the likelihood that the search of a model may take. Default: 2000 to 20,000, fewer for long recordings.

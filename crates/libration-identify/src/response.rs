@@ -168,6 +168,12 @@ impl UnitPlant {
         self.b.len()
     }
 
+    /// Whether a constant input has no state at rest, unless it is zero.
+    pub(crate) fn integrates(&self) -> bool {
+        let n = self.states();
+        n > 0 && solve_matrix(&self.a, &Matrix::from_fn(n, 1, |i, _| self.b[i])).is_none()
+    }
+
     /// The states in which the plant rests under a command of one; of a plant that does not come to rest, that of the lag on its input.
     pub(crate) fn rest(&self) -> Vec<Option<f64>> {
         let n = self.states();

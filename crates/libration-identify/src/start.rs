@@ -34,12 +34,14 @@ impl Start {
 
 /// Fewest changes of a command that suffice behind the largest dead time, and their least share of the squares of all changes.
 const ENOUGH_CHANGES: (usize, f64) = (3, 0.5);
+/// A command that changes as often as this in a recording did so before it too.
+const MANY_CHANGES: usize = 10;
 
 /// A first hold of a command that is this many times as long as each later one is a rest.
 const LONG_HOLD: f64 = 2.0;
 
-/// The start of a recording, which a fit has to confirm: at rest if it begins with a long hold, or if nearly all changes of the command would
-/// be lost with the responses up to the largest dead time.
+/// The start of a recording, which a fit has to confirm: at rest if it begins with a long hold, or if nearly all of a few changes of the command
+/// would be lost with the responses up to the largest dead time.
 pub(crate) fn likely_start(recording: &Recording, largest: f64) -> Start {
     let changes: Vec<(f64, f64)> = recording
         .commands
@@ -55,7 +57,7 @@ pub(crate) fn likely_start(recording: &Recording, largest: f64) -> Start {
     let is_little = late().count() < ENOUGH_CHANGES.0 || left < ENOUGH_CHANGES.1 * total;
     let longest = changes.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(0.0, f64::max);
     let before = first - recording.command_times[0];
-    match is_little || before >= LONG_HOLD * longest {
+    match (is_little && changes.len() < MANY_CHANGES) || before >= LONG_HOLD * longest {
         true => Start::Rest,
         false => Start::Unknown,
     }

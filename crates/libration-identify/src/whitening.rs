@@ -59,6 +59,8 @@ struct Filter<'a> {
     /// States.
     gains: Vec<f64>,
     has_covariance: bool,
+    /// The command and the load are those beyond a balance of both, in which an integral rests: its load is no unknown.
+    balance: Option<f64>,
 }
 
 /// The innovations of a recording behind a dead time.
@@ -77,6 +79,7 @@ pub(crate) fn whiten(
         filter.rest(values[0]);
         now = now.min(times[0]);
     }
+    let input = |active: usize, time: f64| hold.at(times, values, active, time - dead_time);
     let count = recording.responses.len() - first;
     let columns = filter.width - 1;
     let mut whitened = Whitened {
@@ -94,18 +97,14 @@ pub(crate) fn whiten(
             // An equal command changes nothing, and a step is not divided for it.
             let rises = hold.slope(times, values, active) != hold.slope(times, values, active + 1);
             if values[active + 1] != values[active] || rises {
-                filter.advance(
-                    &mut steps,
-                    arrival - now,
-                    hold.at(times, values, active, now - dead_time),
-                );
+                filter.advance(&mut steps, arrival - now, input(active, now));
                 now = arrival;
             }
             active += 1;
         }
-        filter.advance(&mut steps, end - now, hold.at(times, values, active, now - dead_time));
+        filter.advance(&mut steps, end - now, input(active, now));
         now = end;
-        let (command, _) = hold.at(times, values, active, now - dead_time);
+        let (command, _) = input(active, now);
         filter.measure(command, recording.responses[sample], &mut whitened);
     }
     whitened
@@ -146,22 +145,32 @@ impl<'a> Filter<'a> {
             innovations: vec![0.0; width],
             gains: vec![0.0; states],
             has_covariance: is_coloured || noise.moves_plant(),
+            balance: None,
         }
     }
 
     /// Begins at rest under a command: the initial states are no unknowns.
     fn rest(&mut self, command: f64) {
+        self.balance = self.plant.integrates().then_some(command);
+        let command = self.beyond_balance(command);
         for (i, rest) in self.plant.rest().into_iter().enumerate() {
             if let Some(rest) = rest {
                 let row = i * self.width;
                 self.means[row + LOAD + 1 + i] = 0.0;
-                (self.means[row + COMMAND], self.means[row + LOAD]) = (rest * command, rest);
+                self.means[row + COMMAND] = rest * command;
+                self.means[row + LOAD] = if self.balance.is_none() { rest } else { 0.0 };
             }
         }
     }
 
+    fn beyond_balance(&self, command: f64) -> f64 {
+        command - self.balance.unwrap_or(0.0)
+    }
+
     /// Moves on by `h` seconds under a command and its slope.
     fn advance(&mut self, steps: &mut PlantSteps<'_>, h: f64, (command, slope): (f64, f64)) {
+        let command = self.beyond_balance(command);
+        let load = f64::from(u8::from(self.balance.is_none()));
         if h <= 0.0 || h.is_nan() {
             return;
         }
@@ -179,7 +188,7 @@ impl<'a> Filter<'a> {
                 }
                 self.scratch[i * width + COMMAND] +=
                     step.gamma[i] * command + step.slope[i] * slope;
-                self.scratch[i * width + LOAD] += step.gamma[i];
+                self.scratch[i * width + LOAD] += step.gamma[i] * load;
             }
             self.means[..n * width].copy_from_slice(&self.scratch[..n * width]);
             if self.has_covariance && self.noise.moves_plant() {
@@ -238,8 +247,10 @@ impl<'a> Filter<'a> {
             let means = &self.means[i * width..(i + 1) * width];
             innovations.iter_mut().zip(means).for_each(|(sum, mean)| *sum += c(i) * mean);
         }
-        innovations[COMMAND] += self.plant.d * command;
-        innovations[LOAD] += self.plant.d;
+        if self.plant.d != 0.0 {
+            innovations[COMMAND] += self.plant.d * (command - self.balance.unwrap_or(0.0));
+            innovations[LOAD] += if self.balance.is_none() { self.plant.d } else { 0.0 };
+        }
         innovations[width - 1] = response - innovations[width - 1];
         let mut scale = self.noise.white;
         if self.has_covariance {

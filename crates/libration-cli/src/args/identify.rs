@@ -61,7 +61,7 @@ pub(crate) struct IdentifyArgs {
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = time)]
     pub(crate) largest_dead_time: Option<f64>,
     /// What is assumed before the first response: rest, held (the first command acts, the loop moves), or unknown [default: rest if the
-    /// log begins with a long hold, or holds nearly all changes of the command early]
+    /// log begins with a long hold, or has nearly all of a few changes of the command early]
     #[arg(long, value_name = "STATE", default_value = "auto", value_parser = starts)]
     pub(crate) start: Choice<Start>,
     /// Command before the log, if it was another than the first

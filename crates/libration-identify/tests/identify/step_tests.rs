@@ -89,8 +89,8 @@ fn assert_near(found: &Identification, truths: &[(&str, f64)]) {
         let width = high - interval.low;
         let is_inside = (interval.low - width..=high + width).contains(&truth);
         assert!(is_inside, "{key} {truth}: {}", found.answer);
-        // A step test knows its numbers: to a fifth.
-        assert!(width < 0.2 * truth.abs(), "{key} {truth}: {}", found.answer);
+        // A step test knows its numbers: to a third.
+        assert!(width < 0.3 * truth.abs(), "{key} {truth}: {}", found.answer);
     }
 }
 
@@ -121,8 +121,9 @@ fn the_gain_of_a_slow_step_test_is_known_from_its_rest() {
     assert_eq!(found.response, "lag", "{}", found.answer);
     assert_near(&found, &[("dead_time", 2.0), ("lag", 10.0), ("gain", 2.0)]);
     let gain = found.parameter("gain").and_then(|gain| gain.interval).expect("an interval");
-    // 86 s behind the step, of which the lag costs about 20 s: the mean of 130 responses is known to 0.05/√130 = 0.0044, four of them wide.
-    assert!(gain.high.expect("an end") - gain.low < 0.04, "{gain:?}");
+    // The level before the step is known to 0.05/√28 of 28 responses, that behind the lag to 0.05/√130: together to 0.0104. An interval is
+    // four of these wide, and the errors of the lag add little.
+    assert!(gain.high.expect("an end") - gain.low < 0.06, "{gain:?}");
 }
 
 #[test]
@@ -176,9 +177,11 @@ fn other_step_tests_are_read_as_well() {
 fn the_integral_of_a_step_from_rest_has_its_rate() {
     // y = s − T (1 − e^(−s/T)) with s from the arrival on.
     let (dead_time, lag, gain) = (0.03, 0.05, 2.0);
+    // A motor rests under a command of 4, against a load: only what is beyond it moves.
+    let rest = 4.0;
     let mut draws = Draws(11);
     let times: Vec<f64> = (0..200).map(|i| f64::from(i) * 0.01).collect();
-    let commands: Vec<f64> = times.iter().map(|&t| f64::from(u8::from(t > 0.095))).collect();
+    let commands: Vec<f64> = times.iter().map(|&t| rest + f64::from(u8::from(t > 0.095))).collect();
     let response = |t: &f64| {
         let s = (t - 0.1 - dead_time).max(0.0);
         gain * (s - lag * (1.0 - (-s / lag).exp())) + 0.001 * draws.normal()
@@ -188,6 +191,10 @@ fn the_integral_of_a_step_from_rest_has_its_rate() {
     let request = Request { responses: vec![ResponseKind::IntegratedLag], ..lag_alone() };
     let found = identified(&recording, &request);
     assert_near(&found, &[("dead_time", dead_time), ("lag", lag), ("gain", gain)]);
+    assert!((value(&found, "load") + gain * rest).abs() < 0.05, "{:?}", found.parameters);
+    // Among the others it is not taken for a lag of hours.
+    let found = identified(&recording, &Request { noises: vec![NoiseKind::White], ..all() });
+    assert_eq!(found.response, "integrated-lag", "{}", found.answer);
 }
 
 #[test]
