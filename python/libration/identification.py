@@ -44,6 +44,12 @@ class Identification:
         return str(self.results["answer"])
 
     @property
+    def verdict(self) -> dict[str, Any]:
+        """Whether the residuals contradict the model: ``outcome`` (``"no-fault"``, ``"fault"``, ``"unknown"``), ``evidence``, and what was
+        ``not_examined``."""
+        return dict(self.results["verdict"])
+
+    @property
     def warnings(self) -> list[str]:
         """What restricts the answer."""
         return [str(warning) for warning in self.results["warnings"]]
@@ -133,6 +139,9 @@ def identify(
     lag: float | None = None,
     gain: float | None = None,
     largest_dead_time: float | None = None,
+    start: str = "auto",
+    command_before: float | None = None,
+    budget: int | None = None,
     random_arrivals: bool = True,
     bootstrap: int = 100,
     seed: int = 0,
@@ -161,6 +170,14 @@ def identify(
         Those that are known.
     largest_dead_time:
         The largest dead time to try in s (default: an eighth of the recording, up to 1 s or 50 responses).
+    start:
+        What is assumed before the first response: ``"rest"``, ``"held"`` (the first command acts, and the loop moves), ``"unknown"``, or
+        ``"auto"``: rest if the recording begins with a long hold of the command, or has nearly all of a few changes early, unless the responses
+        contradict it.
+    command_before:
+        The command before the recording (default: the first one).
+    budget:
+        Most evaluations of the likelihood in the search of a model (default: 2000 to 20,000, fewer for long recordings).
     random_arrivals:
         Whether losses, jitter and two dead times are looked for.
     bootstrap:
@@ -184,14 +201,16 @@ def identify(
         "seed": count("seed", seed, 0, 2**64 - 1),
         "random_arrivals": bool(random_arrivals),
     }
-    for name, text in (("model", model), ("noise", noise), ("hold", hold)):
+    for name, text in (("model", model), ("noise", noise), ("hold", hold), ("start", start)):
         if not isinstance(text, str):
             raise TypeError(f"{name} must be a string, not {type(text).__name__}")
         options[name] = text
-    given = (("dead_time", dead_time), ("lag", lag), ("gain", gain), ("largest_dead_time", largest_dead_time))
+    given = (("dead_time", dead_time), ("lag", lag), ("gain", gain), ("largest_dead_time", largest_dead_time), ("command_before", command_before))
     for name, value in given:
         if value is not None:
             options[name] = number(name, value, "finite")
+    if budget is not None:
+        options["budget"] = count("budget", budget, 100, 1_000_000_000)
     if plant is not None:
         options["plant"] = text_of("plant", plant)
     contiguous = [np.ascontiguousarray(array) for array in arrays]

@@ -108,3 +108,25 @@ def test_invalid_values_are_refused_by_name():
         identify(t, u, u, dead_time=-1.0)
     with pytest.raises(TypeError, match="bootstraps"):
         identify(t, u, u, bootstraps=3)
+
+
+def test_a_step_within_the_largest_dead_time_is_read_from_rest_and_nothing_is_said_without_evidence():
+    t = 0.01 * np.arange(200)
+    draws = np.random.default_rng(3)
+    late = np.clip(t - 0.13, 0, None)
+    y = 1 - np.exp(-late / 0.05) + 0.002 * draws.standard_normal(200)
+    u = (t > 0.095).astype(float)
+    options = {"model": "lag", "noise": "white", "hold": "zero", "bootstrap": 0}
+    found = identify(t, u, y, **options)
+    assert found.results["start"] == "rest" and found.verdict["outcome"] == "no-fault"
+    # 2 mV/V beside a slope of 20/s: 0.1 ms for one response on it, of which there are ten.
+    assert found.dead_time == pytest.approx(0.03, abs=1e-3) and found.lag == pytest.approx(0.05, abs=2e-3)
+    # The step in the first row.
+    found = identify(t[10:], u[10:], y[10:], command_before=0.0, **options)
+    assert found.dead_time == pytest.approx(0.03, abs=1e-3)
+    found = identify(t, u, y, start="unknown", **options)
+    assert found.verdict["outcome"] == "unknown" and "0 of 1 changes" in found.answer
+    with pytest.raises(ValueError, match="unknown start `resting`"):
+        identify(t, u, y, start="resting")
+    with pytest.raises(ValueError, match="budget"):
+        identify(t, u, y, budget=5)

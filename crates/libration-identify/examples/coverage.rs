@@ -19,10 +19,12 @@ struct Case {
     simulated: fn(SimulatedLoop) -> SimulatedLoop,
     /// Noise that no model has.
     foreign: fn(f64, u64) -> f64,
+    /// The time of a single step, in place of random ones, in s.
+    step: Option<f64>,
 }
 
 /// Dead times are those of the middle of a period, of a whole number of periods, and of a lag that is short for the samples.
-const CASES: [Case; 7] = [
+const CASES: [Case; 9] = [
     Case {
         name: "white, part of a period",
         noise: NoiseKind::White,
@@ -30,6 +32,7 @@ const CASES: [Case; 7] = [
         lag: 0.05,
         simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
         foreign: |_, _| 0.0,
+        step: None,
     },
     Case {
         name: "white, whole periods",
@@ -38,6 +41,7 @@ const CASES: [Case; 7] = [
         lag: 0.05,
         simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
         foreign: |_, _| 0.0,
+        step: None,
     },
     Case {
         name: "white, short lag",
@@ -46,6 +50,7 @@ const CASES: [Case; 7] = [
         lag: 0.005,
         simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
         foreign: |_, _| 0.0,
+        step: None,
     },
     Case {
         name: "coloured",
@@ -54,6 +59,7 @@ const CASES: [Case; 7] = [
         lag: 0.05,
         simulated: |plain| SimulatedLoop { white: 0.05, coloured: (0.05, 0.04), ..plain },
         foreign: |_, _| 0.0,
+        step: None,
     },
     Case {
         name: "disturbance",
@@ -62,6 +68,7 @@ const CASES: [Case; 7] = [
         lag: 0.05,
         simulated: |plain| SimulatedLoop { white: 0.02, disturbance: 0.03, ..plain },
         foreign: |_, _| 0.0,
+        step: None,
     },
     Case {
         name: "coloured, fitted as white",
@@ -70,6 +77,7 @@ const CASES: [Case; 7] = [
         lag: 0.05,
         simulated: |plain| SimulatedLoop { white: 0.03, coloured: (0.06, 0.04), ..plain },
         foreign: |_, _| 0.0,
+        step: None,
     },
     Case {
         name: "hum of 7 Hz, which no model has",
@@ -78,6 +86,25 @@ const CASES: [Case; 7] = [
         lag: 0.05,
         simulated: |plain| SimulatedLoop { white: 0.03, ..plain },
         foreign: |time, seed| 0.08 * (44.0 * time + seed as f64).sin(),
+        step: None,
+    },
+    Case {
+        name: "white, a step at 0.1 s",
+        noise: NoiseKind::White,
+        dead_time: 0.0334,
+        lag: 0.05,
+        simulated: |plain| SimulatedLoop { white: 0.02, load: 0.0, ..plain },
+        foreign: |_, _| 0.0,
+        step: Some(0.1),
+    },
+    Case {
+        name: "white, a step at 1 s",
+        noise: NoiseKind::White,
+        dead_time: 0.03,
+        lag: 0.05,
+        simulated: |plain| SimulatedLoop { white: 0.02, load: 0.0, ..plain },
+        foreign: |_, _| 0.0,
+        step: Some(1.0),
     },
 ];
 
@@ -138,6 +165,9 @@ fn identified(case: &Case, trajectory: u64) -> Result<Identification, IdentifyEr
         }
         commands.push(if word >> 63 == 0 { 1.0 } else { -1.0 });
     }
+    if let Some(step) = case.step {
+        commands = times.iter().map(|&time| if time < step - 1e-9 { 0.0 } else { 1.0 }).collect();
+    }
     let blank = vec![0.0; times.len()];
     let blank = Recording {
         command_times: times.clone(),
@@ -159,7 +189,7 @@ fn identified(case: &Case, trajectory: u64) -> Result<Identification, IdentifyEr
         responses: vec![ResponseKind::Lag],
         noises: vec![case.noise],
         holds: vec![Hold::Zero],
-        largest_dead_time: Some(0.2),
+        largest_dead_time: if case.step.is_some() { None } else { Some(0.2) },
         arrivals: false,
         details: false,
         bootstrap: 0,

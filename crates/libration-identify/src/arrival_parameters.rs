@@ -11,7 +11,7 @@ use crate::quantiles::{LEVEL, normal_quantile};
 /// All parameters, with normal intervals by the curvature of the likelihood.
 pub(crate) fn arrival_parameters(
     fit: &ArrivalFit,
-    model: &Model,
+    model: &Model<'_>,
     covariance: Option<&Matrix>,
 ) -> Vec<Estimated> {
     let error = |i: usize| {

@@ -59,7 +59,7 @@ const SEARCHED: usize = 500;
 
 /// What is fixed during a search.
 pub(crate) struct ArrivalSearch<'a> {
-    pub(crate) model: Model,
+    pub(crate) model: Model<'a>,
     pub(crate) recording: &'a Recording,
     law: ArrivalLaw,
     start: Start,
@@ -73,9 +73,13 @@ pub(crate) struct ArrivalSearch<'a> {
 
 impl<'a> ArrivalSearch<'a> {
     /// A search from a fit in which all commands arrive; `None` if its plant has too many states.
-    pub(crate) fn new(law: ArrivalLaw, base: &Estimate, recording: &'a Recording) -> Option<Self> {
+    pub(crate) fn new(
+        law: ArrivalLaw,
+        base: &Estimate<'a>,
+        recording: &'a Recording,
+    ) -> Option<Self> {
         let model = Model { noise: NoiseKind::White, ..base.model.clone() };
-        let states = base.regression.coefficients[2..].to_vec();
+        let states = base.initial_states(recording);
         if states.len() > MOST_STATES {
             return None;
         }
@@ -226,11 +230,15 @@ impl<'a> ArrivalSearch<'a> {
 
     /// The negative log likelihood of the first responses.
     fn cost_of(&self, coordinates: &[f64], responses: usize) -> f64 {
-        self.arrival_model(coordinates).map_or(f64::INFINITY, |model| {
-            let plant = self.model.response.dynamics(&model.shape[1..]);
-            let start = Start { responses, ..self.start.clone() };
-            -log_likelihood(self.recording, &plant, &model, &start, None)
-        })
+        let model = self.arrival_model(coordinates);
+        model.filter(|_| self.model.effort.spend(responses.min(self.count()))).map_or(
+            f64::INFINITY,
+            |model| {
+                let plant = self.model.response.dynamics(&model.shape[1..]);
+                let start = Start { responses, ..self.start.clone() };
+                -log_likelihood(self.recording, &plant, &model, &start, None)
+            },
+        )
     }
 
     /// What the responses leave behind at these coordinates; `None` outside of the model.

@@ -25,13 +25,13 @@ pub struct BootstrapRow {
 
 /// Estimates of simulated recordings: for each recording the parameters of the response and the gain.
 pub(crate) fn bootstrap(
-    estimate: &Estimate,
+    estimate: &Estimate<'_>,
     recording: &Recording,
     count: usize,
     seed: u64,
     work: &Work<'_>,
 ) -> Result<Vec<Vec<f64>>, Interrupted> {
-    let simulated = simulated(estimate);
+    let simulated = simulated(estimate, recording);
     let window = estimate.model.window(recording);
     // Simulated from the start of the window, whose initial state is known.
     let late = Recording {
@@ -44,7 +44,9 @@ pub(crate) fn bootstrap(
         let responses = simulated.responses(&late, seed, trajectory);
         let repeated = late.with_responses(responses);
         let step = 0.1 * estimate.model.interval;
-        let fit = Estimate::from_start(&estimate.model, &repeated, &estimate.coordinates, step);
+        let model = estimate.model.with_effort(estimate.model.effort.renewed(1));
+        let fit = Estimate::from_start(&model, &repeated, &estimate.coordinates, step)
+            .filter(|_| !model.effort.is_exhausted());
         Ok::<_, Interrupted>(fit.map(|fit| {
             let mut values = fit.point.shape.clone();
             values.push(fit.regression.coefficients[0]);
@@ -55,12 +57,12 @@ pub(crate) fn bootstrap(
 }
 
 /// The loop of an estimate.
-pub(crate) fn simulated(estimate: &Estimate) -> SimulatedLoop {
+pub(crate) fn simulated(estimate: &Estimate<'_>, recording: &Recording) -> SimulatedLoop {
     let coefficients = &estimate.regression.coefficients;
     let plain = SimulatedLoop {
         gain: coefficients[0],
         load: coefficients[1],
-        start: coefficients[2..].to_vec(),
+        start: estimate.initial_states(recording),
         hold: estimate.model.hold,
         ..SimulatedLoop::new(estimate.model.response.clone(), &estimate.point.shape)
     };

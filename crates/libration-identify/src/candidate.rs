@@ -32,7 +32,7 @@ pub struct CandidateRow {
 
 impl CandidateRow {
     /// The row of a model in which all commands arrive.
-    pub(crate) fn certain(estimate: &Estimate) -> Self {
+    pub(crate) fn certain(estimate: &Estimate<'_>) -> Self {
         CandidateRow {
             response: estimate.model.response.name(),
             hold: estimate.model.hold,
@@ -47,7 +47,7 @@ impl CandidateRow {
     }
 
     /// The row of a law of arrivals, by its gain over `certain` arrivals in the same filter.
-    pub(crate) fn random(base: &Estimate, fit: &ArrivalFit, certain: &ArrivalFit) -> Self {
+    pub(crate) fn random(base: &Estimate<'_>, fit: &ArrivalFit, certain: &ArrivalFit) -> Self {
         let count = base.regression.residuals.len();
         let gained = certain.criterion(count) - fit.criterion(count);
         CandidateRow {

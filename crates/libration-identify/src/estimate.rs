@@ -1,5 +1,6 @@
 //! The point of greatest likelihood.
 
+use crate::effort::Effort;
 use crate::minimum::simplex;
 use crate::model::{Model, Point};
 use crate::recording::Recording;
@@ -8,8 +9,8 @@ use crate::whitening::Window;
 
 /// A fit of a model to a recording.
 #[derive(Clone, Debug)]
-pub(crate) struct Estimate {
-    pub(crate) model: Model,
+pub(crate) struct Estimate<'w> {
+    pub(crate) model: Model<'w>,
     /// The coordinates of the point.
     pub(crate) coordinates: Vec<f64>,
     pub(crate) point: Point,
@@ -26,9 +27,9 @@ const STARTS: usize = 3;
 /// The log likelihood is known to this.
 pub(crate) const TOLERANCE: f64 = 1e-7;
 
-impl Estimate {
+impl<'w> Estimate<'w> {
     /// The fit from a search over the whole range of the parameters, with the noise at its start.
-    pub(crate) fn search(model: &Model, recording: &Recording) -> Option<Estimate> {
+    pub(crate) fn search(model: &Model<'w>, recording: &Recording) -> Option<Self> {
         let window = model.window(recording);
         let first = busiest(recording, window.first, SEARCHED);
         let end = recording.responses.len().min(first + SEARCHED);
@@ -80,11 +81,11 @@ impl Estimate {
 
     /// The fit near these coordinates.
     pub(crate) fn from_start(
-        model: &Model,
+        model: &Model<'w>,
         recording: &Recording,
         start: &[f64],
         step: f64,
-    ) -> Option<Estimate> {
+    ) -> Option<Self> {
         let window = model.window(recording);
         let point = model.point(start)?;
         let mut scales = model.shape_scales(&point.shape, step);
@@ -103,10 +104,10 @@ impl Estimate {
 
     /// The fit at these coordinates.
     pub(crate) fn at(
-        model: &Model,
+        model: &Model<'w>,
         recording: &Recording,
         coordinates: &[f64],
-    ) -> Option<Estimate> {
+    ) -> Option<Self> {
         let point = model.point(coordinates)?;
         let regression = model.regression(model.window(recording), &point);
         let log_likelihood = regression.log_likelihood();
@@ -120,8 +121,19 @@ impl Estimate {
     }
 
     /// The fit of the same response with another noise, from this one.
-    pub(crate) fn extended(&self, model: &Model, recording: &Recording) -> Option<Estimate> {
+    pub(crate) fn extended(&self, model: &Model<'w>, recording: &Recording) -> Option<Self> {
         Self::from_start(model, recording, &model.start(&self.point.shape), 0.2 * model.interval)
+    }
+
+    /// The same fit, for further searches of another effort.
+    pub(crate) fn with_effort<'v>(&self, effort: Effort<'v>) -> Estimate<'v> {
+        Estimate {
+            model: self.model.with_effort(effort),
+            coordinates: self.coordinates.clone(),
+            point: self.point.clone(),
+            regression: self.regression.clone(),
+            log_likelihood: self.log_likelihood,
+        }
     }
 
     /// The number of estimated numbers: coordinates, coefficients, and the variance of the noise.
@@ -172,15 +184,18 @@ pub(crate) fn busiest(recording: &Recording, first: usize, count: usize) -> usiz
             sum
         })
         .collect();
-    let change = |i: &usize| sums[i + count - 1] - sums[*i];
-    (first..=times.len() - count)
-        .rev()
-        .max_by(|i, j| change(i).total_cmp(&change(j)))
-        .unwrap_or(first)
+    let change = |i: usize| sums[i + count - 1] - sums[i];
+    let starts = first..times.len() - count + 1;
+    let most = starts.clone().map(change).fold(0.0, f64::max);
+    let mut busiest = starts.filter(|&i| change(i) >= (1.0 - 1e-9) * most);
+    let earliest = busiest.next().unwrap_or(first);
+    // Of windows with the same changes, as of a single step, one that has the responses before them and three times as many behind them.
+    let latest = busiest.last().unwrap_or(earliest);
+    latest - (latest - earliest) / 4
 }
 
 /// Parameters behind the dead time with which a search begins.
-fn shapes(model: &Model, recording: &Recording) -> Vec<Vec<f64>> {
+fn shapes(model: &Model<'_>, recording: &Recording) -> Vec<Vec<f64>> {
     let (interval, span) = (model.interval, recording.span());
     // From less than an interval to a part of the recording, four per decade.
     let per_decade = if model.known.len() > 2 { 3.0 } else { 4.0 };

@@ -26,7 +26,7 @@ pub struct ExcitationRow {
 const DWELLS: [usize; 6] = [1, 2, 4, 8, 16, 64];
 
 /// Rows for the recording itself and for random steps of the same size.
-pub(crate) fn excitations(estimate: &Estimate, recording: &Recording) -> Vec<ExcitationRow> {
+pub(crate) fn excitations(estimate: &Estimate<'_>, recording: &Recording) -> Vec<ExcitationRow> {
     let mut rows = vec![row(estimate, recording, "that of the recording".to_owned(), None)];
     let interval = estimate.model.interval;
     let size = spread(&recording.commands);
@@ -50,7 +50,7 @@ pub(crate) fn excitations(estimate: &Estimate, recording: &Recording) -> Vec<Exc
 }
 
 fn row(
-    estimate: &Estimate,
+    estimate: &Estimate<'_>,
     recording: &Recording,
     command: String,
     dwell: Option<f64>,

@@ -1,5 +1,6 @@
 //! The result of an identification.
 
+use libration_report::Verdict;
 use serde::Serialize;
 
 use crate::bootstrap::BootstrapRow;
@@ -10,6 +11,7 @@ use crate::likelihood_map::LikelihoodMap;
 use crate::noise::NoiseKind;
 use crate::parameters::Estimated;
 use crate::residuals::ResidualTests;
+use crate::start::Start;
 
 /// How the response follows the command over time.
 #[derive(Clone, Debug, Serialize)]
@@ -29,6 +31,8 @@ pub struct FitSeries {
 pub struct Identification {
     /// The answer in words.
     pub answer: String,
+    /// Whether the residuals contradict the model, with the evidence and what was not examined.
+    pub verdict: Verdict,
     /// What restricts it.
     pub warnings: Vec<String>,
     /// The name of the form of the response.
@@ -39,6 +43,8 @@ pub struct Identification {
     pub noise: NoiseKind,
     /// How commands arrive: `certain`, `jitter`, `loss` or `two-delays`.
     pub arrivals: &'static str,
+    /// What is assumed before the first response.
+    pub start: Start,
     /// Dead time, lag, their sum, gain, load and noise.
     pub parameters: Vec<Estimated>,
     /// The correlation of the errors of dead time and lag; `null` without a lag.
@@ -74,6 +80,8 @@ pub struct Identification {
     pub interval: f64,
     /// The largest dead time that was tried, in s.
     pub largest_dead_time: f64,
+    /// Evaluations of the likelihood that the search of a model may take.
+    pub budget: u64,
     /// A command that repeats this identification.
     pub repeat_command: String,
     /// The version of Libration.

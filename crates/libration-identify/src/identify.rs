@@ -1,10 +1,14 @@
 //! Identification of a loop.
 
+use libration_report::Verdict;
+use libration_report::notation::plural;
 use libration_work::Work;
 
 use crate::arrival_parameters::arrival_parameters;
 use crate::arrivals::{ArrivalFit, ArrivalLaw, ArrivalSearch, median_period};
 use crate::bootstrap::{self, BootstrapRow};
+use crate::dependence::Dependence;
+use crate::effort::{Effort, default_evaluations};
 use crate::estimate::{Estimate, busiest};
 use crate::excitation::excitations;
 use crate::identification::{FitSeries, Identification, StateSpace};
@@ -15,7 +19,9 @@ use crate::parameters::{Estimated, certain_parameters};
 use crate::recording::Recording;
 use crate::request::{IdentifyError, Request};
 use crate::residuals::ResidualTests;
-use crate::selection::{Selection, select};
+use crate::selection::{Selection, Task, select};
+use crate::start::{Start, likely_start};
+use crate::verdict::verdict;
 use crate::{summary, warnings};
 
 /// Most responses of a fit: of a longer recording, those during which the command changes most.
@@ -36,19 +42,27 @@ pub fn identify(
     request: &Request,
     work: &Work<'_>,
 ) -> Result<Identification, IdentifyError> {
-    let largest = request.check(recording)?;
-    let excerpt = (recording.responses.len() > MOST_USED).then(|| {
-        let first = busiest(recording, 0, MOST_USED);
-        recording.excerpt(first, MOST_USED)
-    });
+    let (largest, mut start) = request.check(recording)?;
     let all = recording.responses.len();
+    let first = busiest(recording, 0, MOST_USED);
+    let excerpt = (all > MOST_USED).then(|| recording.excerpt(first, MOST_USED, largest));
+    let is_free = request.start.is_none_or(|start| start == Start::Rest);
+    if let Some(excerpt) = excerpt.as_ref().filter(|_| first > 0 && is_free) {
+        // The whole recording has the commands before its excerpt.
+        start = likely_start(excerpt, largest);
+    }
     let recording = excerpt.as_ref().unwrap_or(recording);
-    let Selection { estimate, arrivals, candidates, lag, depends } =
-        select(recording, request, largest, work)?;
+    let evaluations = request
+        .budget
+        .map_or_else(|| default_evaluations(recording.responses.len()), |budget| budget as u64);
+    let task = Task { recording, request, largest, evaluations, work: *work };
+    let Selection { estimate, arrivals, candidates, lag, dependence, mut not_examined } =
+        select(task, start)?;
     let window = estimate.model.window(recording);
+    let unlimited = estimate.with_effort(Effort::unlimited(*work));
     let search = arrivals
         .as_ref()
-        .and_then(|fit| Some((fit, ArrivalSearch::new(fit.law, &estimate, recording)?)));
+        .and_then(|fit| Some((fit, ArrivalSearch::new(fit.law, &unlimited, recording)?)));
     let information = information(&estimate, recording);
     let (parameters, residuals, correlation, bootstrap) = match &search {
         Some((fit, search)) => {
@@ -58,7 +72,7 @@ pub fn identify(
             (parameters, tests, None, Vec::new())
         }
         None => {
-            let parameters = certain_parameters(&estimate, recording, information.as_ref());
+            let parameters = certain_parameters(&estimate, recording, information.as_ref(), work)?;
             let tests = ResidualTests::of(&estimate, recording);
             let count = request.bootstrap;
             let repeats = bootstrap::bootstrap(&estimate, recording, count, request.seed, work)?;
@@ -66,14 +80,17 @@ pub fn identify(
             (parameters, tests, correlation(&estimate, information.as_ref()), bootstrap)
         }
     };
+    work.check()?;
     let is_detailed = request.details && search.is_none();
     let mut found = Identification {
         answer: String::new(),
+        verdict: Verdict::unknown(""),
         warnings: Vec::new(),
         response: estimate.model.response.name(),
         hold: estimate.model.hold,
         noise: estimate.model.noise,
         arrivals: arrivals.as_ref().map_or(ArrivalLaw::Certain, |fit| fit.law).name(),
+        start: estimate.model.assumed_start(),
         correlation,
         is_contradicted: residuals.contradict() || lacks_commands(recording),
         residuals,
@@ -88,12 +105,13 @@ pub fn identify(
         parameters,
         commands: recording.commands.len(),
         responses: estimate.regression.residuals.len(),
-        depends_on_command: depends,
+        depends_on_command: dependence == Dependence::Shown,
         delay_range: None,
         state_space: state_space(&estimate, arrivals.as_ref()),
         period: median_period(recording),
         interval: estimate.model.interval,
         largest_dead_time: largest,
+        budget: evaluations,
         repeat_command: String::new(),
         libration_version: env!("CARGO_PKG_VERSION"),
     };
@@ -102,17 +120,32 @@ pub fn identify(
         _ => None,
     };
     let lead = lead(&estimate, recording);
+    work.check()?;
     let context = warnings::Context { estimate: &estimate, recording, all, longest_lag, lead };
     found.warnings = warnings::warnings(&found, &context);
-    found.delay_range = found.dead_times(estimate.model.known[0]);
+    if found.depends_on_command {
+        found.delay_range = found.dead_times(estimate.model.known[0]);
+    }
+    let unprofiled = found.parameters.iter().filter(|parameter| parameter.is_unprofiled);
+    not_examined.extend(unprofiled.map(|parameter| {
+        let name = &parameter.name;
+        format!("the likelihood over the {name} (budget of {evaluations} evaluations)")
+    }));
+    if window.first > 0 {
+        let dropped = plural(window.first, "response");
+        let dead_time = summary::seconds(largest);
+        not_examined
+            .push(format!("the first {dropped}, up to the largest dead time of {dead_time}"));
+    }
+    found.verdict = verdict(&found, &dependence, &context, not_examined);
     found.answer = summary::answer(&found);
     Ok(found)
 }
 
 /// The longest lag that a recording of a dead time alone does not exclude.
-fn longest_lag(fit: &Estimate, recording: &Recording) -> Option<f64> {
+fn longest_lag(fit: &Estimate<'_>, recording: &Recording) -> Option<f64> {
     let place = fit.coordinates.len().checked_sub(1).filter(|_| fit.model.known[1].is_none())?;
-    profile_interval(fit, recording, Functional::Coordinate(place), None).high
+    profile_interval(fit, recording, Functional::Coordinate(place), None)?.high
 }
 
 /// Whether so many commands are missing from the log that no model can be right.
@@ -121,7 +154,7 @@ fn lacks_commands(recording: &Recording) -> bool {
 }
 
 /// By how much the response leads the command, in s, if a dead time of zero is not early enough.
-fn lead(estimate: &Estimate, recording: &Recording) -> Option<f64> {
+fn lead(estimate: &Estimate<'_>, recording: &Recording) -> Option<f64> {
     let model = &estimate.model;
     let is_at_zero = estimate.point.shape[0] < 0.02 * model.interval;
     if !is_at_zero || model.known[0].is_some() {
@@ -133,14 +166,15 @@ fn lead(estimate: &Estimate, recording: &Recording) -> Option<f64> {
         response_times: recording.response_times.iter().map(|time| time + later).collect(),
         ..recording.clone()
     };
+    let model = &model.with_effort(model.effort.renewed(1));
     let fit = Estimate::search(model, &shifted)?;
-    let interval = profile_interval(&fit, &shifted, Functional::Coordinate(0), None);
+    let interval = profile_interval(&fit, &shifted, Functional::Coordinate(0), None)?;
     let lead = later - fit.point.shape[0];
     interval.high.filter(|&high| high < later - 0.1 * model.interval).map(|_| lead)
 }
 
 /// The matrices of the plant behind the dead time, with its gain.
-fn state_space(estimate: &Estimate, arrivals: Option<&ArrivalFit>) -> StateSpace {
+fn state_space(estimate: &Estimate<'_>, arrivals: Option<&ArrivalFit>) -> StateSpace {
     let (shape, gain) = match arrivals {
         Some(fit) => (&fit.model.shape, fit.model.gain),
         None => (&estimate.point.shape, estimate.regression.coefficients[0]),
@@ -154,7 +188,7 @@ fn state_space(estimate: &Estimate, arrivals: Option<&ArrivalFit>) -> StateSpace
     }
 }
 
-fn correlation(estimate: &Estimate, information: Option<&Information>) -> Option<f64> {
+fn correlation(estimate: &Estimate<'_>, information: Option<&Information>) -> Option<f64> {
     if estimate.model.free_shape() < 2 || estimate.model.known[0].is_some() {
         return None;
     }
@@ -164,7 +198,7 @@ fn correlation(estimate: &Estimate, information: Option<&Information>) -> Option
 }
 
 fn bootstrap_rows(
-    estimate: &Estimate,
+    estimate: &Estimate<'_>,
     repeats: &[Vec<f64>],
     parameters: &[Estimated],
 ) -> Vec<BootstrapRow> {
@@ -184,7 +218,7 @@ fn bootstrap_rows(
 
 /// The likelihood around the intervals of the first two parameters, if both are free.
 fn map(
-    estimate: &Estimate,
+    estimate: &Estimate<'_>,
     recording: &Recording,
     parameters: &[Estimated],
 ) -> Option<LikelihoodMap> {
@@ -200,7 +234,7 @@ fn map(
     Some(likelihood_map(estimate, recording, [range(&parameters[0])?, range(&parameters[1])?]))
 }
 
-fn fit(estimate: &Estimate, recording: &Recording, scores: Option<&[f64]>) -> FitSeries {
+fn fit(estimate: &Estimate<'_>, recording: &Recording, scores: Option<&[f64]>) -> FitSeries {
     let window = estimate.model.window(recording);
     let count = (recording.responses.len() - window.first).min(MOST_SHOWN);
     let end = window.first + count;
@@ -209,7 +243,7 @@ fn fit(estimate: &Estimate, recording: &Recording, scores: Option<&[f64]>) -> Fi
         responses: recording.responses[window.first..end].to_vec(),
         ..recording.clone()
     };
-    let quiet = bootstrap::simulated(estimate).without_noise();
+    let quiet = bootstrap::simulated(estimate, recording).without_noise();
     let deviation = estimate.variance().sqrt();
     let own: Vec<f64> = estimate.regression.residuals.iter().map(|x| x / deviation).collect();
     FitSeries {

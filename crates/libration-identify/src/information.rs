@@ -26,7 +26,7 @@ const LEAST_OF_NOISE: f64 = 1e-6;
 /// With independent errors `ν` of variance `v`: `Σ ∂ν∂νᵀ/v + ½ Σ ∂ln v ∂ln vᵀ` (Fisher's information of Gaussian variables; B. Porat,
 /// *Digital Processing of Random Signals*, 1994, section 3.3). Derivatives are central differences: a response that follows steps has a
 /// kink in its dead time wherever an arrival meets a sample, and there they are the mean of both sides.
-pub(crate) fn information(estimate: &Estimate, recording: &Recording) -> Option<Information> {
+pub(crate) fn information(estimate: &Estimate<'_>, recording: &Recording) -> Option<Information> {
     let model = &estimate.model;
     let window = model.window(recording);
     let coefficients = &estimate.regression.coefficients;

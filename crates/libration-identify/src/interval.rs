@@ -25,6 +25,9 @@ impl Interval {
     }
 }
 
+/// The effort of a profile, over that of the search of a model.
+const EFFORTS: u64 = 3;
+
 /// What an interval is of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Functional {
@@ -40,13 +43,15 @@ pub(crate) enum Functional {
 /// Student's quantile in place of the normal one for short recordings.
 ///
 /// It needs no smooth likelihood: with commands in steps, the likelihood has a kink in the dead time wherever an arrival meets a sample, and
-/// simulators put it right there.
+/// simulators put it right there. `None` if the effort ends before the profile.
 pub(crate) fn profile_interval(
-    estimate: &Estimate,
+    estimate: &Estimate<'_>,
     recording: &Recording,
     of: Functional,
     deviation: Option<f64>,
-) -> Interval {
+) -> Option<Interval> {
+    let effort = estimate.model.effort.renewed(EFFORTS);
+    let estimate = &estimate.with_effort(effort);
     let count = estimate.regression.residuals.len() as f64;
     let freedom = (count - estimate.parameters() as f64).max(1.0);
     let threshold = 0.5 * count * (student(freedom).powi(2) / freedom).ln_1p();
@@ -60,12 +65,13 @@ pub(crate) fn profile_interval(
     let low = end(estimate, recording, of, value, -first, threshold);
     let high = end(estimate, recording, of, value, first, threshold);
     let lowest = if of == Functional::Gain { f64::NEG_INFINITY } else { 0.0 };
-    Interval { low: low.unwrap_or(lowest), high }
+    let found = Interval { low: low.unwrap_or(lowest), high };
+    (!estimate.model.effort.is_exhausted()).then_some(found)
 }
 
 /// The end of an interval on the side of `step`; `None` if it has none.
 fn end(
-    estimate: &Estimate,
+    estimate: &Estimate<'_>,
     recording: &Recording,
     of: Functional,
     centre: f64,
@@ -145,7 +151,7 @@ fn others(coordinates: &[f64], of: Functional) -> Vec<f64> {
 
 /// The least cost with the functional at `at`, and the other coordinates there.
 pub(crate) fn constrained(
-    estimate: &Estimate,
+    estimate: &Estimate<'_>,
     recording: &Recording,
     of: Functional,
     at: f64,

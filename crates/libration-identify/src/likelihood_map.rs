@@ -24,7 +24,7 @@ const POINTS: usize = 41;
 
 /// The map over these ranges. Gain, load, initial state and the variance of the noise are those of greatest likelihood at each point.
 pub(crate) fn likelihood_map(
-    estimate: &Estimate,
+    estimate: &Estimate<'_>,
     recording: &Recording,
     ranges: [(f64, f64); 2],
 ) -> LikelihoodMap {
@@ -32,6 +32,7 @@ pub(crate) fn likelihood_map(
         (0..POINTS).map(|i| low + (high - low) * i as f64 / (POINTS - 1) as f64).collect()
     };
     let [dead_times, seconds] = ranges.map(points);
+    let estimate = &estimate.with_effort(estimate.model.effort.unbounded());
     let window = estimate.model.window(recording);
     let deficits = seconds
         .iter()

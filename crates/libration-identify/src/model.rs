@@ -1,15 +1,17 @@
 //! A model of a response, and its likelihood as a function of coordinates.
 
+use crate::effort::Effort;
 use crate::hold::Hold;
 use crate::noise::{Noise, NoiseKind};
 use crate::recording::Recording;
 use crate::regression::Regression;
 use crate::response::ResponseKind;
-use crate::whitening::{Whitened, Window, whiten};
+use crate::start::Start;
+use crate::whitening::{COMMAND, LOAD, Whitened, Window, whiten};
 
 /// A form of the response and of its noise, with what is known of them.
 #[derive(Clone, Debug)]
-pub(crate) struct Model {
+pub(crate) struct Model<'w> {
     pub(crate) response: ResponseKind,
     pub(crate) hold: Hold,
     pub(crate) noise: NoiseKind,
@@ -21,6 +23,10 @@ pub(crate) struct Model {
     pub(crate) longest: f64,
     /// The median interval of the responses, in s.
     pub(crate) interval: f64,
+    /// What is assumed before the first response.
+    pub(crate) start: Start,
+    /// What the search may spend.
+    pub(crate) effort: Effort<'w>,
 }
 
 /// A point of a model: parameters of the response in their order, and noise.
@@ -33,7 +39,7 @@ pub(crate) struct Point {
 /// A time constant this much shorter than an interval of the responses cannot be told from none.
 const SHORTEST_LAG: f64 = 1e-3;
 
-impl Model {
+impl<'w> Model<'w> {
     /// The number of free parameters of the response.
     pub(crate) fn free_shape(&self) -> usize {
         self.known.iter().filter(|known| known.is_none()).count()
@@ -140,18 +146,55 @@ impl Model {
 
     /// The regression of a window at a point.
     pub(crate) fn regression(&self, window: Window<'_>, point: &Point) -> Regression {
-        Regression::new(&self.whitened(window, point), self.gain)
+        let mut found = Regression::new(&self.whitened(window, point), self.gain);
+        if window.is_at_rest && self.response.dynamics(&point.shape[1..]).integrates() {
+            // An integral rests where the load balances the first command.
+            found.coefficients[LOAD] = -found.coefficients[COMMAND] * window.recording.commands[0];
+        }
+        found
     }
 
     /// The negative log likelihood at these coordinates, infinite outside of the model.
+    /// It is infinite too once the effort is spent or the work is stopped, which ends a search where it is.
     pub(crate) fn cost(&self, window: Window<'_>, coordinates: &[f64]) -> f64 {
-        self.point(coordinates)
-            .map_or(f64::INFINITY, |point| -self.regression(window, &point).log_likelihood())
+        let count = window.recording.responses.len() - window.first;
+        let Some(point) = self.point(coordinates).filter(|_| self.effort.spend(count)) else {
+            return f64::INFINITY;
+        };
+        -self.regression(window, &point).log_likelihood()
     }
 
-    /// The part of a recording that every dead time of the model predicts from known commands.
+    /// The same model with another effort.
+    pub(crate) fn with_effort<'v>(&self, effort: Effort<'v>) -> Model<'v> {
+        Model {
+            response: self.response.clone(),
+            hold: self.hold,
+            noise: self.noise,
+            gain: self.gain,
+            known: self.known.clone(),
+            longest: self.longest,
+            interval: self.interval,
+            start: self.start,
+            effort,
+        }
+    }
+
+    /// What is assumed before the first response. A disturbance moves a plant also before its recording, so that it does not begin at rest.
+    pub(crate) fn assumed_start(&self) -> Start {
+        match (self.start, self.noise) {
+            (Start::Rest, NoiseKind::Disturbance) => Start::Held,
+            (start, _) => start,
+        }
+    }
+
+    /// The part of a recording that every dead time of the model predicts from known or assumed commands.
     pub(crate) fn window<'a>(&self, recording: &'a Recording) -> Window<'a> {
-        let first = recording.response_times.partition_point(|&time| time < self.longest);
-        Window { recording, first, hold: self.hold, interval: self.interval }
+        let start = self.assumed_start();
+        let first = match start {
+            Start::Unknown => recording.response_times.partition_point(|&time| time < self.longest),
+            Start::Rest | Start::Held => 0,
+        };
+        let is_at_rest = start == Start::Rest;
+        Window { recording, first, is_at_rest, hold: self.hold, interval: self.interval }
     }
 }

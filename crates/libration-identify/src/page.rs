@@ -12,22 +12,28 @@ use crate::summary::{interval, seconds, with_unit};
 
 /// The identification as an HTML page.
 pub fn page(found: &Identification) -> String {
-    let mut page = Page { title: "Identified loop".to_owned(), ..Page::default() };
+    let mut page = Page { title: title(found), ..Page::default() };
     page.answer.clone_from(&found.answer);
+    page.note(format!("Verdict: {}.", found.verdict));
     for warning in &found.warnings {
         page.note(format!("Warning: {warning}."));
     }
-    parameters(&mut page, found);
-    fit(&mut page, found);
-    told_apart(&mut page, found);
-    residuals(&mut page, found);
+    // Numbers of a response that does not depend on the command mean nothing.
+    if found.depends_on_command {
+        parameters(&mut page, found);
+        fit(&mut page, found);
+        told_apart(&mut page, found);
+        residuals(&mut page, found);
+    }
     candidates(&mut page, found);
-    repeats(&mut page, found);
-    page.heading("How is it used?");
-    page.paragraph(
-        "`libration advise --config loop.toml` computes what this loop tolerates. The file `loop.toml`, as `--save-loop` writes it:",
-    );
-    page.code(loop_file(found));
+    if found.depends_on_command {
+        repeats(&mut page, found);
+        page.heading("How is it used?");
+        page.paragraph(
+            "`libration advise --config loop.toml` computes what this loop tolerates. The file `loop.toml`, as `--save-loop` writes it:",
+        );
+        page.code(loop_file(found));
+    }
     if !found.repeat_command.is_empty() {
         page.heading("How is the identification repeated?");
         page.code(found.repeat_command.clone());
@@ -40,6 +46,22 @@ pub fn page(found: &Identification) -> String {
         found.libration_version,
     );
     report::render_page(&page, &sub)
+}
+
+/// The first numbers of the answer, or the verdict if it is not good.
+fn title(found: &Identification) -> String {
+    if !found.depends_on_command {
+        return format!("Loop that is not identified: {}", found.verdict.outcome);
+    }
+    let named = found.parameters.iter().filter(|parameter| parameter.unit == "s").take(2);
+    let numbers: Vec<String> = named
+        .map(|parameter| format!("{} {}", parameter.name, with_unit(parameter.value, "s")))
+        .collect();
+    let outcome = match found.verdict.is_good() {
+        true => String::new(),
+        false => format!(" ({})", found.verdict.outcome),
+    };
+    format!("Identified loop: {}{outcome}", numbers.join(", "))
 }
 
 fn parameters(page: &mut Page, found: &Identification) {

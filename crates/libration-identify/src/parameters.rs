@@ -1,5 +1,6 @@
 //! Parameters of a fit in which all commands arrive.
 
+use libration_work::{Interrupted, Work};
 use serde::Serialize;
 
 use crate::estimate::Estimate;
@@ -7,6 +8,7 @@ use crate::hold::Hold;
 use crate::information::Information;
 use crate::interval::{Functional, Interval, profile_interval};
 use crate::recording::Recording;
+use crate::whitening::COMMAND;
 
 /// A number that was identified.
 #[derive(Clone, Debug, Serialize)]
@@ -23,6 +25,9 @@ pub struct Estimated {
     pub interval: Option<Interval>,
     /// The standard error by Fisher's information; `null` if it has none.
     pub standard_error: Option<f64>,
+    /// Whether the interval is no profile of the likelihood, since its effort ended before.
+    #[serde(skip)]
+    pub(crate) is_unprofiled: bool,
 }
 
 impl Estimated {
@@ -35,67 +40,93 @@ impl Estimated {
             value,
             interval: None,
             standard_error: None,
+            is_unprofiled: false,
         }
     }
 }
 
 /// All parameters.
+///
+/// # Errors
+/// [`Interrupted`].
 pub(crate) fn certain_parameters(
-    estimate: &Estimate,
+    estimate: &Estimate<'_>,
     recording: &Recording,
     information: Option<&Information>,
-) -> Vec<Estimated> {
-    let mut parameters = shape_parameters(estimate, recording, information);
-    parameters.extend(linear_parameters(estimate, recording, information));
-    parameters.extend(noise_parameters(estimate));
-    parameters
+    work: &Work<'_>,
+) -> Result<Vec<Estimated>, Interrupted> {
+    let mut rows = shape_parameters(estimate, information);
+    rows.extend(latency(estimate, information));
+    rows.extend(linear_parameters(estimate, information));
+    let rows = work.sweep("intervals", &rows, |(row, of)| {
+        Ok::<_, Interrupted>(match of {
+            Some(of) => profiled(row, *of, estimate, recording),
+            None => row.clone(),
+        })
+    })?;
+    Ok(rows.into_iter().chain(noise_parameters(estimate)).collect())
 }
 
-/// Parameters of the response with their intervals, and the latency at low frequencies.
-fn shape_parameters(
-    estimate: &Estimate,
+/// A parameter, and of what its interval is the profile.
+type Row = (Estimated, Option<Functional>);
+
+/// The parameter with its profile. Of a gain whose profile has no end, and where the effort ends first, the normal interval is left.
+fn profiled(
+    row: &Estimated,
+    of: Functional,
+    estimate: &Estimate<'_>,
     recording: &Recording,
-    information: Option<&Information>,
-) -> Vec<Estimated> {
+) -> Estimated {
+    let first = match of {
+        Functional::Gain => row.standard_error.or(Some(0.01 * row.value.abs())),
+        _ => row.standard_error,
+    };
+    let Some(profile) = profile_interval(estimate, recording, of, first) else {
+        let least = if of == Functional::Gain { f64::NEG_INFINITY } else { 0.0 };
+        let normal = row.standard_error.map(|error| normal_interval(row.value, error, estimate));
+        let interval = normal.map(|found| Interval { low: found.low.max(least), ..found });
+        return Estimated { interval, is_unprofiled: true, ..row.clone() };
+    };
+    let is_whole = profile.high.is_some() && profile.low.is_finite();
+    let interval = match of == Functional::Gain && !is_whole {
+        true => row.interval,
+        false => Some(profile),
+    };
+    let is_dead_time = of == Functional::Coordinate(0) && row.key == "dead_time";
+    let middle = if is_dead_time { middle(estimate, interval) } else { None };
+    Estimated { value: middle.unwrap_or(row.value), interval, ..row.clone() }
+}
+
+/// Parameters of the response.
+fn shape_parameters(estimate: &Estimate<'_>, information: Option<&Information>) -> Vec<Row> {
     let model = &estimate.model;
     let deviation = |i: usize| {
         information.map(|found| found.covariance[(i, i)].sqrt()).filter(|x| x.is_finite())
     };
     let mut free = 0;
-    let mut parameters = Vec::new();
+    let mut rows = Vec::new();
     for (i, parameter) in model.response.parameters().iter().enumerate() {
         let is_known = model.known[i].is_some();
-        let standard_error = if is_known { None } else { deviation(free) };
-        let interval = (!is_known).then(|| {
-            profile_interval(estimate, recording, Functional::Coordinate(free), standard_error)
-        });
+        let value = estimate.point.shape[i];
+        let row = Estimated {
+            standard_error: if is_known { None } else { deviation(free) },
+            ..Estimated::plain(parameter.key, parameter.name, parameter.unit, value)
+        };
+        rows.push((row, (!is_known).then_some(Functional::Coordinate(free))));
         free += usize::from(!is_known);
-        parameters.push(Estimated {
-            key: parameter.key.to_owned(),
-            name: parameter.name.to_owned(),
-            unit: parameter.unit.to_owned(),
-            value: middle(estimate, interval).unwrap_or(estimate.point.shape[i]),
-            interval,
-            standard_error,
-        });
     }
-    parameters.extend(latency(estimate, recording, information));
-    parameters
+    rows
 }
 
 /// The middle of the interval of a dead time alone, over which the likelihood is the same.
-fn middle(estimate: &Estimate, interval: Option<Interval>) -> Option<f64> {
+fn middle(estimate: &Estimate<'_>, interval: Option<Interval>) -> Option<f64> {
     let is_flat =
         estimate.model.response.parameters().len() == 1 && estimate.model.hold == Hold::Zero;
     interval.filter(|_| is_flat).and_then(|interval| Some(0.5 * (interval.low + interval.high?)))
 }
 
 /// The delay of slow commands: of a lag its time constant, of a response of second order `2ζ/ω`.
-fn latency(
-    estimate: &Estimate,
-    recording: &Recording,
-    information: Option<&Information>,
-) -> Option<Estimated> {
+fn latency(estimate: &Estimate<'_>, information: Option<&Information>) -> Option<Row> {
     let (model, shape) = (&estimate.model, &estimate.point.shape);
     if model.free_shape() != shape.len() || shape.len() < 2 {
         return None;
@@ -113,32 +144,27 @@ fn latency(
             .sqrt()
     });
     let standard_error = standard_error.filter(|error| error.is_finite());
-    let interval = match shape.len() {
-        2 => Some(profile_interval(estimate, recording, Functional::Sum, standard_error)),
-        _ => standard_error.map(|error| normal_interval(value, error, estimate)),
-    };
-    Some(Estimated {
-        key: "latency".to_owned(),
-        name: "latency of slow commands".to_owned(),
-        unit: "s".to_owned(),
-        value,
-        interval,
+    let row = Estimated {
         standard_error,
+        ..Estimated::plain("latency", "latency of slow commands", "s", value)
+    };
+    Some(match shape.len() {
+        2 => (row, Some(Functional::Sum)),
+        _ => {
+            let interval = standard_error.map(|error| normal_interval(value, error, estimate));
+            (Estimated { interval, ..row }, None)
+        }
     })
 }
 
-fn normal_interval(value: f64, error: f64, estimate: &Estimate) -> Interval {
+fn normal_interval(value: f64, error: f64, estimate: &Estimate<'_>) -> Interval {
     let freedom = estimate.regression.residuals.len() as f64 - estimate.parameters() as f64;
     let half = crate::quantiles::student(freedom) * error;
     Interval { low: value - half, high: Some(value + half) }
 }
 
 /// Gain and load.
-fn linear_parameters(
-    estimate: &Estimate,
-    recording: &Recording,
-    information: Option<&Information>,
-) -> Vec<Estimated> {
+fn linear_parameters(estimate: &Estimate<'_>, information: Option<&Information>) -> Vec<Row> {
     let coordinates = estimate.model.coordinates();
     let error = |column: usize| {
         let found = information?;
@@ -146,37 +172,21 @@ fn linear_parameters(
         let place = coordinates + place;
         Some(found.covariance[(place, place)].sqrt()).filter(|error| error.is_finite())
     };
-    [("gain", "gain", 0), ("load", "constant load at the input", 1)]
-        .into_iter()
-        .map(|(key, name, column)| {
-            let value = estimate.regression.coefficients[column];
-            let standard_error = error(column);
-            Estimated {
-                key: key.to_owned(),
-                name: name.to_owned(),
-                unit: String::new(),
-                value,
-                interval: standard_error.map(|error| normal_interval(value, error, estimate)),
-                standard_error,
-            }
-        })
-        .map(|row| match row.key == "gain" && estimate.model.gain.is_none() {
-            true => Estimated { interval: gain_interval(estimate, recording, &row), ..row },
-            false => row,
-        })
-        .collect()
-}
-
-/// The interval of the gain: with noise of which the colour is fitted too, the normal one is too narrow.
-fn gain_interval(estimate: &Estimate, recording: &Recording, row: &Estimated) -> Option<Interval> {
-    let first = row.standard_error.unwrap_or(0.01 * row.value.abs());
-    let profile = profile_interval(estimate, recording, Functional::Gain, Some(first));
-    let is_whole = profile.high.is_some() && profile.low.is_finite();
-    if is_whole { Some(profile) } else { row.interval }
+    let names = [("gain", "gain"), ("load", "constant load at the input")];
+    let row = |(column, (key, name))| {
+        let value = estimate.regression.coefficients[column];
+        let standard_error = error(column);
+        let interval = standard_error.map(|error| normal_interval(value, error, estimate));
+        let row = Estimated { interval, standard_error, ..Estimated::plain(key, name, "", value) };
+        // With noise of which the colour is fitted too, the normal interval of a gain is too narrow.
+        let is_profiled = column == COMMAND && estimate.model.gain.is_none();
+        (row, is_profiled.then_some(Functional::Gain))
+    };
+    names.into_iter().enumerate().map(row).collect()
 }
 
 /// Standard deviations of the noise.
-fn noise_parameters(estimate: &Estimate) -> Vec<Estimated> {
+fn noise_parameters(estimate: &Estimate<'_>) -> Vec<Estimated> {
     let (noise, variance) = (estimate.point.noise, estimate.variance());
     let mut rows =
         vec![Estimated::plain("noise_std", "white noise", "", estimate.white_deviation())];

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use libration::linear::{Matrix, StepIntegrals, exponential};
 
 use crate::response::UnitPlant;
+use crate::small_step::small_step;
 
 /// An exact step of `h` seconds: `x' = Φx + Γu + Γ₁s` for a command that begins at `u` and rises at the rate `s`.
 #[derive(Clone, Debug)]
@@ -60,9 +61,22 @@ impl<'a> PlantSteps<'a> {
 }
 
 impl PlantStep {
+    /// The states behind the step, under a command and its slope.
+    pub(crate) fn moved(&self, states: &[f64], command: f64, slope: f64) -> Vec<f64> {
+        let n = states.len();
+        (0..n)
+            .map(|i| {
+                let free: f64 = (0..n).map(|j| self.phi[i * n + j] * states[j]).sum();
+                free + self.gamma[i] * command + self.slope[i] * slope
+            })
+            .collect()
+    }
+
     fn new(plant: &UnitPlant, h: f64, with_noise: bool) -> Self {
         match plant.states() {
             1 => Self::of_one_state(plant, h),
+            2 => small_step::<2>(plant, h, with_noise),
+            3 => small_step::<3>(plant, h, with_noise),
             _ => Self::of_any(plant, h, with_noise),
         }
     }
@@ -146,6 +160,49 @@ mod tests {
             // e³ roundings of the largest entry.
             let off = short.plus(&long.scaled(-1.0)).largest();
             assert!(off < 20.0 * f64::EPSILON * long.largest(), "{h}: {off:e}");
+        }
+    }
+
+    #[test]
+    fn steps_of_few_states_are_the_general_ones() {
+        let oscillator = |omega: f64, zeta: f64| {
+            let rates = [[0.0, 1.0], [-omega * omega, -2.0 * zeta * omega]];
+            let a = Matrix::from_rows(&rates).unwrap();
+            UnitPlant { a, b: vec![0.0, omega * omega], c: vec![1.0, 0.0], d: 0.0 }
+        };
+        let rates = [[0.0, 1.0, 0.0], [9.0, -0.3, 2.0], [0.0, 0.0, -20.0]];
+        let a = Matrix::from_rows(&rates).unwrap();
+        let falling = UnitPlant { a, b: vec![0.0, 0.0, 20.0], c: vec![1.0, 0.0, 0.0], d: 0.0 };
+        let integrator = UnitPlant {
+            a: Matrix::from_rows(&[[0.0, 1.0], [0.0, -5.0]]).unwrap(),
+            b: vec![0.0, 5.0],
+            c: vec![1.0, 0.0],
+            d: 0.0,
+        };
+        let plants = [
+            oscillator(20.0, 0.3),
+            oscillator(3.0, 1.0),
+            oscillator(50.0, 4.0),
+            falling,
+            integrator,
+        ];
+        for plant in &plants {
+            for h in [1e-5, 3e-3, 0.02, 0.3] {
+                let one = PlantStep::new(plant, h, true);
+                let any = PlantStep::of_any(plant, h, true);
+                for (one, any) in [
+                    (&one.phi, &any.phi),
+                    (&one.gamma, &any.gamma),
+                    (&one.slope, &any.slope),
+                    (&one.noise, &any.noise),
+                ] {
+                    let size = any.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+                    // Up to ten doublings, each of which doubles an error of a few roundings.
+                    let off =
+                        one.iter().zip(any).fold(0.0_f64, |most, (x, y)| most.max((x - y).abs()));
+                    assert!(off <= 1e-12 * size, "{h}: {one:?} {any:?}");
+                }
+            }
         }
     }
 

@@ -59,7 +59,7 @@ pub enum RecordingError {
     },
     /// The command never changes.
     #[error(
-        "the command is {0} throughout; expected a command that changes, since nothing else shows a latency"
+        "the command is {0} throughout; expected a command that changes, since nothing else shows a latency; help: if another command acted before the recording, state it"
     )]
     ConstantCommand(f64),
     /// The response never changes.
@@ -185,11 +185,11 @@ impl Recording {
         }
     }
 
-    /// The part of at most `count` responses during which the command changes most, with all commands.
+    /// The part of `count` responses from the `first` on, with the commands that act in it after dead times up to `longest`, in s.
     #[must_use]
-    pub(crate) fn excerpt(&self, first: usize, count: usize) -> Self {
+    pub(crate) fn excerpt(&self, first: usize, count: usize, longest: f64) -> Self {
         let end = self.responses.len().min(first + count);
-        let start = self.response_times[first];
+        let start = self.response_times[first] - longest;
         // The last command before the part acts at its start.
         let known = self.command_times.partition_point(|&time| time <= start).saturating_sub(1);
         let zero = self.command_times[known];
@@ -200,6 +200,34 @@ impl Recording {
             response_times: shifted(&self.response_times[first..end]),
             responses: self.responses[first..end].to_vec(),
         }
+    }
+
+    /// The recording behind a command that acted before its first one.
+    ///
+    /// # Errors
+    /// [`RecordingError`].
+    pub fn behind(
+        before: f64,
+        command_times: &[f64],
+        commands: &[f64],
+        response_times: &[f64],
+        responses: &[f64],
+    ) -> Result<Self, RecordingError> {
+        check("command", command_times, commands)?;
+        check("response", response_times, responses)?;
+        let period = |times: &[f64]| {
+            let mut periods: Vec<f64> =
+                times.windows(2).map(|pair| pair[1] - pair[0]).filter(|&x| x > 0.0).collect();
+            periods.sort_by(f64::total_cmp);
+            periods.get(periods.len() / 2).copied()
+        };
+        // A period before the first, where a gap is none.
+        let period = period(command_times).or_else(|| period(response_times)).unwrap_or(0.0);
+        let first = command_times.first().map(|first| first - period);
+        let times: Vec<f64> = first.into_iter().chain(command_times.iter().copied()).collect();
+        let values: Vec<f64> =
+            first.map(|_| before).into_iter().chain(commands.iter().copied()).collect();
+        Recording::new(&times, &values, response_times, responses)
     }
 
     /// The same commands at the same times with other responses.

@@ -1,5 +1,7 @@
 //! What is to be identified.
 
+use std::ops::RangeInclusive;
+
 use libration_work::Interrupted;
 use thiserror::Error;
 
@@ -7,6 +9,7 @@ use crate::hold::Hold;
 use crate::noise::NoiseKind;
 use crate::recording::{FEWEST_RESPONSES, Recording, RecordingError};
 use crate::response::ResponseKind;
+use crate::start::{Start, likely_start};
 
 /// What is to be identified, and what is known.
 #[derive(Clone, Debug)]
@@ -25,6 +28,12 @@ pub struct Request {
     pub gain: Option<f64>,
     /// The largest dead time in s. Default: an eighth of the recording, at most 1 s or 50 intervals of the responses.
     pub largest_dead_time: Option<f64>,
+    /// What is assumed before the first response. Default: [`Start::Rest`] if the recording begins with a long hold of the command, or if
+    /// nearly all of a few changes would be lost with the responses up to the largest dead time, unless the responses contradict it; else
+    /// [`Start::Unknown`].
+    pub start: Option<Start>,
+    /// The number of evaluations of the likelihood that the search of a model may take. Default: 2000 to 20,000, fewer for long recordings.
+    pub budget: Option<usize>,
     /// Whether losses, two delays and jitter of arrivals are looked for.
     pub arrivals: bool,
     /// Whether the likelihood over dead time and lag, and other commands, are looked at.
@@ -45,6 +54,8 @@ impl Default for Request {
             lag: None,
             gain: None,
             largest_dead_time: None,
+            start: None,
+            budget: None,
             arrivals: true,
             details: true,
             bootstrap: 100,
@@ -57,6 +68,9 @@ impl Default for Request {
 pub const MOST_RESPONSES: usize = 1_000_000;
 /// Most simulated recordings of a bootstrap.
 pub const MOST_BOOTSTRAPS: usize = 10_000;
+
+/// Evaluations that the search of a model may take.
+const BUDGETS: RangeInclusive<usize> = 100..=1_000_000_000;
 
 /// Error of an identification.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -95,14 +109,19 @@ pub enum IdentifyError {
     /// No model has a finite likelihood.
     #[error("no model fits: the responses exceed the range of numbers")]
     NoFit,
+    /// No search ended.
+    #[error(
+        "no search of a model ended within {0} evaluations of the likelihood; help: raise the budget, or name the model"
+    )]
+    Budget(u64),
     /// The user stopped the work.
     #[error(transparent)]
     Interrupted(#[from] Interrupted),
 }
 
 impl Request {
-    /// The largest dead time for a recording, in s, once everything is checked.
-    pub(crate) fn check(&self, recording: &Recording) -> Result<f64, IdentifyError> {
+    /// The largest dead time for a recording, in s, and what is assumed before its first response, once everything is checked.
+    pub(crate) fn check(&self, recording: &Recording) -> Result<(f64, Start), IdentifyError> {
         let invalid = |name, value, expected: &str| {
             Err(IdentifyError::Value { name, value, expected: expected.to_owned() })
         };
@@ -118,6 +137,10 @@ impl Request {
         if self.bootstrap > MOST_BOOTSTRAPS {
             let expected = format!("at most {MOST_BOOTSTRAPS} simulated recordings");
             return invalid("bootstrap", self.bootstrap as f64, &expected);
+        }
+        if let Some(budget) = self.budget.filter(|budget| !BUDGETS.contains(budget)) {
+            let expected = format!("{} to {} evaluations", BUDGETS.start(), BUDGETS.end());
+            return invalid("budget", budget as f64, &expected);
         }
         if recording.responses.len() > MOST_RESPONSES {
             return Err(IdentifyError::TooMany(recording.responses.len()));
@@ -136,8 +159,9 @@ impl Request {
             let expected = format!("at most the largest dead time, {largest} s");
             return invalid("dead time", known, &expected);
         }
+        let start = self.start.unwrap_or_else(|| likely_start(recording, largest));
         let behind = recording.response_times.iter().filter(|&&time| time >= largest).count();
-        if behind < FEWEST_RESPONSES {
+        if behind < FEWEST_RESPONSES && start == Start::Unknown {
             return Err(IdentifyError::TooFewBehind { count: behind, largest });
         }
         let last = recording.response_times[recording.response_times.len() - 1];
@@ -146,6 +170,6 @@ impl Request {
         if !changes.any(|(_, &time)| time < last) {
             return Err(IdentifyError::NoExcitation(last));
         }
-        Ok(largest)
+        Ok((largest, start))
     }
 }

@@ -41,7 +41,7 @@ impl ResidualTests {
     }
 
     /// The tests of a fit.
-    pub(crate) fn of(estimate: &Estimate, recording: &Recording) -> Self {
+    pub(crate) fn of(estimate: &Estimate<'_>, recording: &Recording) -> Self {
         let used = estimate.model.coordinates() - estimate.model.free_shape();
         let first = estimate.model.window(recording).first;
         Self::new(&estimate.regression.residuals, used, first, recording)

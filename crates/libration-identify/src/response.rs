@@ -1,6 +1,6 @@
 //! What answers a command: a dead time and a plant of unit gain.
 
-use libration::linear::{LinearPlant, Matrix, eigenvalues};
+use libration::linear::{LinearPlant, Matrix, eigenvalues, solve_matrix};
 use serde::Serialize;
 
 /// The form of a response to a command `u`. Each begins after a dead time `τ`.
@@ -166,6 +166,33 @@ impl UnitPlant {
     /// The number of states.
     pub(crate) fn states(&self) -> usize {
         self.b.len()
+    }
+
+    /// Whether a constant input has no state at rest, unless it is zero.
+    pub(crate) fn integrates(&self) -> bool {
+        let n = self.states();
+        n > 0 && solve_matrix(&self.a, &Matrix::from_fn(n, 1, |i, _| self.b[i])).is_none()
+    }
+
+    /// The states in which the plant rests under a command of one; of a plant that does not come to rest, that of the lag on its input.
+    pub(crate) fn rest(&self) -> Vec<Option<f64>> {
+        let n = self.states();
+        let a = |i: usize, j: usize| self.a[(i, j)];
+        let is_stable = match n {
+            0 => true,
+            1 => a(0, 0) < 0.0,
+            2 => a(0, 0) + a(1, 1) <= 0.0 && a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0) > 0.0,
+            _ => eigenvalues(&self.a).is_some_and(|rates| rates.iter().all(|rate| rate.re < 0.0)),
+        };
+        let b = Matrix::from_fn(n, 1, |i, _| -self.b[i]);
+        match solve_matrix(&self.a, &b).filter(|_| is_stable) {
+            Some(rest) => (0..n).map(|i| Some(rest[(i, 0)])).collect(),
+            None => {
+                let is_lag =
+                    |i: usize| i + 1 == n && a(i, i) < 0.0 && (0..i).all(|j| a(i, j) == 0.0);
+                (0..n).map(|i| is_lag(i).then(|| -self.b[i] / a(i, i))).collect()
+            }
+        }
     }
 
     /// The plant behind a lag of unit gain, whose state comes last.

@@ -4,6 +4,8 @@ use libration_work::Work;
 
 use crate::arrivals::{ArrivalFit, ArrivalLaw, ArrivalSearch};
 use crate::candidate::CandidateRow;
+use crate::dependence::Dependence;
+use crate::effort::Effort;
 use crate::estimate::Estimate;
 use crate::hold::Hold;
 use crate::model::Model;
@@ -12,19 +14,22 @@ use crate::recording::Recording;
 use crate::request::{IdentifyError, Request};
 use crate::residuals::ResidualTests;
 use crate::response::ResponseKind;
+use crate::start::Start;
 
 /// The chosen model, and what was tried.
-pub(crate) struct Selection {
+pub(crate) struct Selection<'w> {
     /// The best fit in which all commands arrive; with random arrivals, the one that they were searched from.
-    pub(crate) estimate: Estimate,
+    pub(crate) estimate: Estimate<'w>,
     /// Random arrivals, if they are better.
     pub(crate) arrivals: Option<ArrivalFit>,
     /// All models, the best first.
     pub(crate) candidates: Vec<CandidateRow>,
     /// The best fit of a lag of first order with white noise.
-    pub(crate) lag: Option<Estimate>,
+    pub(crate) lag: Option<Estimate<'w>>,
     /// Whether the response depends on the command.
-    pub(crate) depends: bool,
+    pub(crate) dependence: Dependence,
+    /// Models that were not examined.
+    pub(crate) not_examined: Vec<String>,
 }
 
 /// Forms of response whose noise and arrivals are searched.
@@ -36,47 +41,124 @@ const MAY_WIN: f64 = 60.0;
 /// Forms of response with held commands whose arrivals are searched.
 const HELD: usize = 2;
 
-/// A gain in log likelihood that has a probability below 10⁻³ if one of a hundred independent dead times is chosen: `½χ²` at 10⁻⁵.
-const BY_CHANCE: f64 = 9.8;
+/// Fewest changes of a command of which some may be lost or late: of fewer, a law of arrivals is a guess.
+const FEWEST_CHANGES: usize = 20;
+
+/// A recording with what is to be identified of it.
+#[derive(Clone, Copy)]
+pub(crate) struct Task<'a, 'w> {
+    pub(crate) recording: &'a Recording,
+    pub(crate) request: &'a Request,
+    /// The largest dead time, in s.
+    pub(crate) largest: f64,
+    /// Evaluations of the likelihood that the search of a model may take.
+    pub(crate) evaluations: u64,
+    pub(crate) work: Work<'w>,
+}
+
+impl<'w> Task<'_, 'w> {
+    /// The effort of the search of a model.
+    pub(crate) fn effort(&self) -> Effort<'w> {
+        Effort::limited(self.work, self.evaluations, self.recording.responses.len())
+    }
+
+    fn model(&self, response: ResponseKind, hold: Hold, start: Start) -> Model<'w> {
+        let Task { recording, request, .. } = self;
+        let known = |key: &str| match key {
+            "dead_time" => request.dead_time,
+            "lag" => request.lag,
+            _ => None,
+        };
+        Model {
+            known: response.parameters().iter().map(|parameter| known(parameter.key)).collect(),
+            // Without a disturbance, errors of an unstable plant would have grown beyond all bounds, and nothing would follow from its responses.
+            noise: match request.noises.contains(&NoiseKind::Disturbance)
+                && response.is_unstable(recording.span())
+            {
+                true => NoiseKind::Disturbance,
+                false => NoiseKind::White,
+            },
+            response,
+            hold,
+            gain: request.gain,
+            longest: self.largest,
+            interval: recording.interval(),
+            start,
+            effort: self.effort(),
+        }
+    }
+
+    /// A fit, or the name of the model whose search did not end.
+    fn fit(
+        &self,
+        model: &Model<'w>,
+        search: impl FnOnce(&Model<'w>) -> Option<Estimate<'w>>,
+    ) -> Result<Option<Estimate<'w>>, String> {
+        let found = search(model);
+        match model.effort.is_exhausted() {
+            true => Err(format!(
+                "{} response with {} noise{} (budget of {} evaluations)",
+                model.response.name(),
+                model.noise.name(),
+                if model.hold == Hold::Linear { " and lines between commands" } else { "" },
+                self.evaluations
+            )),
+            false => Ok(found),
+        }
+    }
+}
+
+/// Fits in which all commands arrive.
+struct Fits<'w> {
+    /// Forms of response with their first noise, the best first.
+    searched: Vec<Estimate<'w>>,
+    /// Those with lines between commands, which are not chosen.
+    lines: Vec<Estimate<'w>>,
+    /// Forms with each noise, the best first.
+    all: Vec<Estimate<'w>>,
+    not_examined: Vec<String>,
+}
 
 /// The model with the least criterion of Bayes: forms of response with white noise first, then noise and arrivals of the best of them.
-pub(crate) fn select(
-    recording: &Recording,
-    request: &Request,
-    largest: f64,
-    work: &Work<'_>,
-) -> Result<Selection, IdentifyError> {
-    let models: Vec<Model> = request
-        .responses
-        .iter()
-        .flat_map(|response| request.holds.iter().map(|&hold| (response.clone(), hold)))
-        .map(|(response, hold)| model(response, hold, recording, request, largest))
-        .collect();
-    let searched = work.sweep("responses", &models, |model| {
-        Ok::<_, IdentifyError>(Estimate::search(model, recording))
-    })?;
-    let mut searched: Vec<Estimate> = searched.into_iter().flatten().collect();
-    by_criterion(&mut searched);
-    // Receivers hold commands. Lines between them, half a period earlier, imitate a held command so well that any defect of a log makes
-    // them the better model: they are chosen only on request.
-    let is_asked =
-        |fit: &&Estimate| !request.holds.contains(&Hold::Zero) || fit.model.hold == Hold::Zero;
-    let lines: Vec<Estimate> = searched.iter().filter(|fit| !is_asked(fit)).cloned().collect();
-    searched.retain(|fit| is_asked(&fit));
+pub(crate) fn select<'w>(task: Task<'_, 'w>, start: Start) -> Result<Selection<'w>, IdentifyError> {
+    let Task { recording, request, work, .. } = task;
+    let mut found = fits(task, start)?;
+    if start == Start::Rest && request.start.is_none() && !begins_at_rest(&found, task)? {
+        found = fits(task, Start::Held)?;
+    }
+    let Fits { searched, lines, all: fits, mut not_examined } = found;
     let lag = searched.iter().find(|fit| fit.model.response.name() == "lag").cloned();
-    let mut fits = with_noises(&searched, recording, request, work)?;
-    let best = fits.first().ok_or(IdentifyError::NoFit)?;
-    let depends = depends_on_command(best, recording);
+    let Some(best) = fits.first() else {
+        work.check()?;
+        return Err(match not_examined.is_empty() {
+            true => IdentifyError::NoFit,
+            false => IdentifyError::Budget(task.evaluations),
+        });
+    };
+    let dependence = Dependence::of(&fits, recording);
+    work.check()?;
     let is_suspect =
         best.model.noise != NoiseKind::White || ResidualTests::of(best, recording).are_suspect();
+    let changes = recording.commands.windows(2).filter(|pair| pair[0] != pair[1]).count();
     let mut random = Vec::new();
     // A command that is missing from the log looks like one that is lost.
-    if request.arrivals && is_suspect && depends && recording.missing_commands() == 0 {
-        let held: Vec<&Estimate> =
-            searched.iter().filter(|fit| fit.model.hold == Hold::Zero).take(HELD).collect();
-        random = with_arrivals(&held, recording, work)?;
+    let is_wanted = request.arrivals
+        && is_suspect
+        && dependence == Dependence::Shown
+        && recording.missing_commands() == 0;
+    if is_wanted && changes >= FEWEST_CHANGES {
+        let held: Vec<Estimate<'w>> = searched
+            .iter()
+            .filter(|fit| fit.model.hold == Hold::Zero)
+            .take(HELD)
+            .map(|fit| fit.with_effort(Effort::unlimited(work)))
+            .collect();
+        random = with_arrivals(&held, recording, &work)?;
+    } else if is_wanted {
+        not_examined.push(format!(
+            "lost and late commands ({changes} changes of the command, at least {FEWEST_CHANGES} needed)"
+        ));
     }
-    by_criterion(&mut fits);
     let mut candidates: Vec<CandidateRow> =
         fits.iter().chain(&lines).map(CandidateRow::certain).collect();
     let mut estimate = fits[0].clone();
@@ -91,74 +173,82 @@ pub(crate) fn select(
     }
     candidates.iter_mut().for_each(|row| row.excess -= least);
     candidates.sort_by(|a, b| a.excess.total_cmp(&b.excess));
-    Ok(Selection { estimate, arrivals, candidates, lag, depends })
+    let estimate = estimate.with_effort(task.effort());
+    Ok(Selection { estimate, arrivals, candidates, lag, dependence, not_examined })
 }
 
-/// Whether a fit is better than one without the command, by more than a search over the dead time gains by chance.
-fn depends_on_command(fit: &Estimate, recording: &Recording) -> bool {
-    let model = Model { gain: Some(0.0), ..fit.model.clone() };
-    // Of noise that is fitted again, without the command.
-    let noise = &fit.coordinates[fit.model.free_shape()..];
-    let start = [model.free(&fit.point.shape), noise.to_vec()].concat();
-    let without = match noise.is_empty() {
-        true => Estimate::at(&model, recording, &start),
-        false => Estimate::from_start(&model, recording, &start, 0.2 * model.interval),
-    };
-    without.is_none_or(|without| fit.log_likelihood - without.log_likelihood > BY_CHANCE)
+/// Fits of each form of response with each noise.
+fn fits<'w>(task: Task<'_, 'w>, start: Start) -> Result<Fits<'w>, IdentifyError> {
+    let Task { recording, request, work, .. } = task;
+    let models: Vec<Model<'w>> = request
+        .responses
+        .iter()
+        .flat_map(|response| request.holds.iter().map(|&hold| (response.clone(), hold)))
+        .map(|(response, hold)| task.model(response, hold, start))
+        .collect();
+    let results = work.sweep("responses", &models, |model| {
+        Ok::<_, IdentifyError>(task.fit(model, |model| Estimate::search(model, recording)))
+    })?;
+    let mut not_examined = Vec::new();
+    let mut searched = examined(results, &mut not_examined);
+    by_criterion(&mut searched);
+    // Receivers hold commands. Lines between them, half a period earlier, imitate a held command so well that any defect of a log makes
+    // them the better model: they are chosen only on request.
+    let is_asked =
+        |fit: &&Estimate<'_>| !request.holds.contains(&Hold::Zero) || fit.model.hold == Hold::Zero;
+    let lines = searched.iter().filter(|fit| !is_asked(fit)).cloned().collect();
+    searched.retain(|fit| is_asked(&fit));
+    let all = with_noises(&searched, task, &mut not_examined)?;
+    work.check()?;
+    Ok(Fits { searched, lines, all, not_examined })
 }
 
-fn by_criterion(fits: &mut [Estimate]) {
+/// The fits of searches that ended; the names of the others are appended.
+fn examined<'w>(
+    results: Vec<Result<Option<Estimate<'w>>, String>>,
+    not_examined: &mut Vec<String>,
+) -> Vec<Estimate<'w>> {
+    let (found, missing): (Vec<_>, Vec<_>) = results.into_iter().partition(Result::is_ok);
+    not_examined.extend(missing.into_iter().filter_map(Result::err));
+    found.into_iter().filter_map(Result::ok).flatten().collect()
+}
+
+/// Whether no fit with free initial states is better than the best at rest.
+fn begins_at_rest(found: &Fits<'_>, task: Task<'_, '_>) -> Result<bool, IdentifyError> {
+    let Some(best) = found.all.first() else { return Ok(true) };
+    let bases: Vec<&Estimate<'_>> = found.searched.iter().filter(|fit| fit.has_states()).collect();
+    let criteria = task.work.sweep("start", &bases, |base| {
+        let model = Model { start: Start::Held, ..base.model.with_effort(task.effort()) };
+        let step = 0.2 * model.interval;
+        let free = Estimate::from_start(&model, task.recording, &base.coordinates, step);
+        Ok::<_, IdentifyError>(free.map_or(f64::INFINITY, |free| free.criterion()))
+    })?;
+    Ok(criteria.into_iter().all(|criterion| criterion >= best.criterion()))
+}
+
+fn by_criterion(fits: &mut [Estimate<'_>]) {
     fits.sort_by(|a, b| a.criterion().total_cmp(&b.criterion()));
 }
 
-fn model(
-    response: ResponseKind,
-    hold: Hold,
-    recording: &Recording,
-    request: &Request,
-    largest: f64,
-) -> Model {
-    let known = |key: &str| match key {
-        "dead_time" => request.dead_time,
-        "lag" => request.lag,
-        _ => None,
-    };
-    Model {
-        known: response.parameters().iter().map(|parameter| known(parameter.key)).collect(),
-        // Without a disturbance, errors of an unstable plant would have grown beyond all bounds, and nothing would follow from its responses.
-        noise: match request.noises.contains(&NoiseKind::Disturbance)
-            && response.is_unstable(recording.span())
-        {
-            true => NoiseKind::Disturbance,
-            false => NoiseKind::White,
-        },
-        response,
-        hold,
-        gain: request.gain,
-        longest: largest,
-        interval: recording.interval(),
-    }
-}
-
 /// The fits with each kind of noise, the best first; of the best forms of response only, except with white noise.
-fn with_noises(
-    searched: &[Estimate],
-    recording: &Recording,
-    request: &Request,
-    work: &Work<'_>,
-) -> Result<Vec<Estimate>, IdentifyError> {
+fn with_noises<'w>(
+    searched: &[Estimate<'w>],
+    task: Task<'_, 'w>,
+    not_examined: &mut Vec<String>,
+) -> Result<Vec<Estimate<'w>>, IdentifyError> {
+    let Task { recording, request, work, .. } = task;
     let others = request.noises.iter().filter(|&&noise| noise != NoiseKind::White);
-    let jobs: Vec<(&Estimate, NoiseKind)> = others
+    let jobs: Vec<(&Estimate<'w>, NoiseKind)> = others
         .flat_map(|&noise| searched.iter().take(PURSUED).map(move |fit| (fit, noise)))
         // A disturbance of a plant without states is an error of the measurement.
         .filter(|(fit, noise)| *noise != NoiseKind::Disturbance || fit.has_states())
         .filter(|(fit, _)| fit.model.noise == NoiseKind::White)
         .collect();
-    let found = work.sweep("noise", &jobs, |&(fit, noise)| {
-        let model = Model { noise, ..fit.model.clone() };
-        Ok::<_, IdentifyError>(fit.extended(&model, recording))
+    let results = work.sweep("noise", &jobs, |&(fit, noise)| {
+        let model = Model { noise, ..fit.model.with_effort(task.effort()) };
+        Ok::<_, IdentifyError>(task.fit(&model, |model| fit.extended(model, recording)))
     })?;
-    let mut fits: Vec<Estimate> = found.into_iter().flatten().collect();
+    let mut fits = examined(results, not_examined);
     if request.noises.contains(&NoiseKind::White) || fits.is_empty() {
         fits.extend(searched.iter().cloned());
     }
@@ -167,20 +257,20 @@ fn with_noises(
 }
 
 /// Jitter, losses and two delays, with white noise.
-fn with_arrivals(
-    held: &[&Estimate],
+fn with_arrivals<'w>(
+    held: &[Estimate<'w>],
     recording: &Recording,
     work: &Work<'_>,
-) -> Result<Vec<(Estimate, ArrivalFit, CandidateRow)>, IdentifyError> {
+) -> Result<Vec<(Estimate<'w>, ArrivalFit, CandidateRow)>, IdentifyError> {
     let laws = ArrivalLaw::ALL;
-    let jobs: Vec<(&Estimate, ArrivalLaw)> =
-        held.iter().flat_map(|&base| laws.map(|law| (base, law))).collect();
+    let jobs: Vec<(&Estimate<'w>, ArrivalLaw)> =
+        held.iter().flat_map(|base| laws.map(|law| (base, law))).collect();
     let rough = work.sweep("arrivals", &jobs, |&(base, law)| {
         let search = ArrivalSearch::new(law, base, recording);
         Ok::<_, IdentifyError>(search.and_then(|search| search.rough()))
     })?;
     // Only what may win is fitted to all responses.
-    let count = |base: &Estimate| base.regression.residuals.len();
+    let count = |base: &Estimate<'_>| base.regression.residuals.len();
     let criteria: Vec<f64> = jobs
         .iter()
         .zip(&rough)
@@ -201,7 +291,7 @@ fn with_arrivals(
         let [Some(certain), others @ ..] = fits else { continue };
         for fit in others.iter().flatten() {
             let row = CandidateRow::random(base, fit, certain);
-            rows.push(((*base).clone(), fit.clone(), row));
+            rows.push((base.clone(), fit.clone(), row));
         }
     }
     Ok(rows)

@@ -84,13 +84,7 @@ impl SimulatedLoop {
                 let [command, slope] = [self.gain * command + self.load, self.gain * slope];
                 if until > now && n > 0 {
                     let step = steps.step(until - now);
-                    let moved: Vec<f64> = (0..n)
-                        .map(|i| {
-                            let free: f64 = (0..n).map(|j| step.phi[i * n + j] * state[j]).sum();
-                            free + step.gamma[i] * command + step.slope[i] * slope
-                        })
-                        .collect();
-                    state = moved;
+                    state = step.moved(&state, command, slope);
                     if self.disturbance > 0.0 {
                         let covariance = Matrix::from_fn(n, n, |i, j| {
                             step.noise[i * n + j] * self.disturbance.powi(2)

@@ -1,10 +1,12 @@
 //! An identification in sentences.
 
+use libration_report::Outcome;
 use libration_report::notation::{self, number};
 
 use crate::identification::Identification;
 use crate::parameters::Estimated;
 use crate::response::ResponseKind;
+use crate::start::Start;
 
 /// A time with four digits.
 pub(crate) fn seconds(time: f64) -> String {
@@ -30,6 +32,11 @@ pub fn interval(parameter: &Estimated) -> String {
     }
 }
 
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// The answer.
 pub(crate) fn answer(found: &Identification) -> String {
     let mut numbers: Vec<String> = Vec::new();
@@ -51,18 +58,28 @@ pub(crate) fn answer(found: &Identification) -> String {
         "a lag of first order after a dead time, before the given plant",
         ResponseKind::in_words,
     );
-    let verdict = match found.is_contradicted {
-        false => "The residuals do not contradict the model.",
-        true if !found.residuals.contradict() => {
-            "Too many commands are missing from the log: the intervals cannot be trusted."
+    let evidence = &found.verdict.evidence;
+    match (found.depends_on_command, found.verdict.outcome) {
+        (true, _) => {}
+        (false, Outcome::Unknown) => {
+            return format!("Whether the response depends on this command is unknown: {evidence}.");
         }
-        true => "The residuals contradict the model: its intervals cannot be trusted.",
-    };
-    if !found.depends_on_command {
-        return "The response does not depend on this command: no model with it is better than one without.".to_owned();
+        (false, _) => return format!("{}.", capitalised(evidence)),
     }
+    let judgement = match found.verdict.outcome {
+        Outcome::NoFault => "The residuals do not contradict the model.".to_owned(),
+        _ if found.residuals.contradict() => {
+            "The residuals contradict the model: its intervals cannot be trusted.".to_owned()
+        }
+        _ => format!("{}: the intervals cannot be trusted.", capitalised(evidence)),
+    };
+    let start = match found.start {
+        Start::Rest => " It starts from rest under the first command.",
+        Start::Held => " It starts in motion under the first command.",
+        Start::Unknown => "",
+    };
     let mut text = format!(
-        "The response is {form}: {}. The noise is {}. {verdict}",
+        "The response is {form}: {}.{start} The noise is {}. {judgement}",
         numbers.join(", "),
         found.noise.in_words()
     );

@@ -14,7 +14,7 @@ use crate::summary::seconds;
 
 /// What warnings depend on, besides the result.
 pub(crate) struct Context<'a> {
-    pub(crate) estimate: &'a Estimate,
+    pub(crate) estimate: &'a Estimate<'a>,
     pub(crate) recording: &'a Recording,
     /// The number of responses of the whole recording.
     pub(crate) all: usize,
@@ -31,9 +31,6 @@ const NEARLY_AS_GOOD: f64 = 20.0;
 pub(crate) fn warnings(found: &Identification, context: &Context<'_>) -> Vec<String> {
     let &Context { estimate, recording, all, longest_lag, lead } = context;
     let mut warnings = Vec::new();
-    if !found.depends_on_command {
-        warnings.push("the response does not depend on this command".to_owned());
-    }
     if is_controller(recording) {
         warnings.push(
             "the command is a function of the response: these are the numbers of the controller, not those of the plant; help: excite the reference".to_owned(),
@@ -164,7 +161,7 @@ fn other_models(found: &Identification) -> Option<String> {
 }
 
 /// Whether the command is a linear function of the last three responses, as in a loop whose reference rests.
-fn is_controller(recording: &Recording) -> bool {
+pub(crate) fn is_controller(recording: &Recording) -> bool {
     let mut rows = Vec::new();
     let mut commands = Vec::new();
     for (time, command) in recording.command_times.iter().zip(&recording.commands) {
@@ -223,7 +220,7 @@ fn periodic(recording: &Recording, largest: f64) -> Option<String> {
 }
 
 /// A warning if steps of an encoder are wider than the noise.
-fn quantisation(estimate: &Estimate, recording: &Recording) -> Option<String> {
+fn quantisation(estimate: &Estimate<'_>, recording: &Recording) -> Option<String> {
     let mut values = recording.responses.clone();
     values.sort_by(f64::total_cmp);
     values.dedup();

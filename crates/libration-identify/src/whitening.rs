@@ -34,6 +34,8 @@ pub(crate) struct Window<'a> {
     pub(crate) recording: &'a Recording,
     /// The first response.
     pub(crate) first: usize,
+    /// Whether the plant rests at the first command, so that its initial states are known.
+    pub(crate) is_at_rest: bool,
     pub(crate) hold: Hold,
     /// The median interval of the responses, in s.
     pub(crate) interval: f64,
@@ -57,6 +59,8 @@ struct Filter<'a> {
     /// States.
     gains: Vec<f64>,
     has_covariance: bool,
+    /// The command and the load are those beyond a balance of both, in which an integral rests: its load is no unknown.
+    balance: Option<f64>,
 }
 
 /// The innovations of a recording behind a dead time.
@@ -66,10 +70,16 @@ pub(crate) fn whiten(
     dead_time: f64,
     noise: Noise,
 ) -> Whitened {
-    let Window { recording, first, hold, interval } = window;
+    let Window { recording, first, is_at_rest, hold, interval } = window;
     let (times, values) = (&recording.command_times[..], &recording.commands[..]);
     let mut steps = PlantSteps::new(plant, noise.disturbance > 0.0);
     let mut filter = Filter::new(plant, noise, &mut steps, interval);
+    let mut now = recording.response_times[first];
+    if is_at_rest {
+        filter.rest(values[0]);
+        now = now.min(times[0]);
+    }
+    let input = |active: usize, time: f64| hold.at(times, values, active, time - dead_time);
     let count = recording.responses.len() - first;
     let columns = filter.width - 1;
     let mut whitened = Whitened {
@@ -78,7 +88,6 @@ pub(crate) fn whiten(
         responses: Vec::with_capacity(count),
         scales: Vec::with_capacity(count),
     };
-    let mut now = recording.response_times[first];
     // The command that acts now.
     let mut active = times.partition_point(|time| time + dead_time <= now).saturating_sub(1);
     for sample in first..recording.responses.len() {
@@ -88,18 +97,14 @@ pub(crate) fn whiten(
             // An equal command changes nothing, and a step is not divided for it.
             let rises = hold.slope(times, values, active) != hold.slope(times, values, active + 1);
             if values[active + 1] != values[active] || rises {
-                filter.advance(
-                    &mut steps,
-                    arrival - now,
-                    hold.at(times, values, active, now - dead_time),
-                );
+                filter.advance(&mut steps, arrival - now, input(active, now));
                 now = arrival;
             }
             active += 1;
         }
-        filter.advance(&mut steps, end - now, hold.at(times, values, active, now - dead_time));
+        filter.advance(&mut steps, end - now, input(active, now));
         now = end;
-        let (command, _) = hold.at(times, values, active, now - dead_time);
+        let (command, _) = input(active, now);
         filter.measure(command, recording.responses[sample], &mut whitened);
     }
     whitened
@@ -140,11 +145,32 @@ impl<'a> Filter<'a> {
             innovations: vec![0.0; width],
             gains: vec![0.0; states],
             has_covariance: is_coloured || noise.moves_plant(),
+            balance: None,
         }
+    }
+
+    /// Begins at rest under a command: the initial states are no unknowns.
+    fn rest(&mut self, command: f64) {
+        self.balance = self.plant.integrates().then_some(command);
+        let command = self.beyond_balance(command);
+        for (i, rest) in self.plant.rest().into_iter().enumerate() {
+            if let Some(rest) = rest {
+                let row = i * self.width;
+                self.means[row + LOAD + 1 + i] = 0.0;
+                self.means[row + COMMAND] = rest * command;
+                self.means[row + LOAD] = if self.balance.is_none() { rest } else { 0.0 };
+            }
+        }
+    }
+
+    fn beyond_balance(&self, command: f64) -> f64 {
+        command - self.balance.unwrap_or(0.0)
     }
 
     /// Moves on by `h` seconds under a command and its slope.
     fn advance(&mut self, steps: &mut PlantSteps<'_>, h: f64, (command, slope): (f64, f64)) {
+        let command = self.beyond_balance(command);
+        let load = f64::from(u8::from(self.balance.is_none()));
         if h <= 0.0 || h.is_nan() {
             return;
         }
@@ -162,7 +188,7 @@ impl<'a> Filter<'a> {
                 }
                 self.scratch[i * width + COMMAND] +=
                     step.gamma[i] * command + step.slope[i] * slope;
-                self.scratch[i * width + LOAD] += step.gamma[i];
+                self.scratch[i * width + LOAD] += step.gamma[i] * load;
             }
             self.means[..n * width].copy_from_slice(&self.scratch[..n * width]);
             if self.has_covariance && self.noise.moves_plant() {
@@ -221,8 +247,10 @@ impl<'a> Filter<'a> {
             let means = &self.means[i * width..(i + 1) * width];
             innovations.iter_mut().zip(means).for_each(|(sum, mean)| *sum += c(i) * mean);
         }
-        innovations[COMMAND] += self.plant.d * command;
-        innovations[LOAD] += self.plant.d;
+        if self.plant.d != 0.0 {
+            innovations[COMMAND] += self.plant.d * (command - self.balance.unwrap_or(0.0));
+            innovations[LOAD] += if self.balance.is_none() { self.plant.d } else { 0.0 };
+        }
         innovations[width - 1] = response - innovations[width - 1];
         let mut scale = self.noise.white;
         if self.has_covariance {

@@ -2,7 +2,7 @@
 
 use libration::linear::LinearPlant;
 use libration_identify::{
-    Hold, KnownPlant, NoiseKind, Recording, Request, ResponseKind, identify, loop_file, page,
+    Hold, KnownPlant, NoiseKind, Recording, Request, ResponseKind, Start, identify, loop_file, page,
 };
 use libration_study::Silent;
 use libration_work::Work;
@@ -25,14 +25,14 @@ pub(crate) fn _identify(
 ) -> PyResult<(String, String, String)> {
     let wrong = |error: &dyn core::fmt::Display| value_error(error.to_string());
     let [command_times, commands, response_times, responses] = &arrays;
-    let recording = Recording::new(
-        command_times.as_slice()?,
-        commands.as_slice()?,
-        response_times.as_slice()?,
-        responses.as_slice()?,
-    );
-    let recording = recording.map_err(|error| wrong(&error))?;
     let options: Value = serde_json::from_str(options).map_err(|error| wrong(&error))?;
+    let (times, values) = (command_times.as_slice()?, commands.as_slice()?);
+    let (response_times, responses) = (response_times.as_slice()?, responses.as_slice()?);
+    let recording = match options["command_before"].as_f64() {
+        Some(before) => Recording::behind(before, times, values, response_times, responses),
+        None => Recording::new(times, values, response_times, responses),
+    };
+    let recording = recording.map_err(|error| wrong(&error))?;
     let request = request(&options)?;
     let found = run_in_background(
         py,
@@ -59,6 +59,13 @@ fn request(options: &Value) -> PyResult<Request> {
         lag: number("lag"),
         gain: number("gain"),
         largest_dead_time: number("largest_dead_time"),
+        start: match options["start"].as_str().unwrap_or("auto") {
+            "auto" => None,
+            _ => choice("start", options, &Start::ALL, |start| start.name())?.first().copied(),
+        },
+        budget: options["budget"]
+            .as_u64()
+            .map(|budget| usize::try_from(budget).unwrap_or(usize::MAX)),
         arrivals: options["random_arrivals"].as_bool().unwrap_or(true),
         details: true,
         bootstrap: usize::try_from(whole("bootstrap")).unwrap_or(usize::MAX),

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use libration_identify::{Hold, NoiseKind, ResponseKind};
+use libration_identify::{Hold, NoiseKind, ResponseKind, Start};
 
 use super::number::time;
 use super::{ClockName, TimeUnitName, timing};
@@ -60,6 +60,16 @@ pub(crate) struct IdentifyArgs {
     /// Largest dead time to try, in s [default: an eighth of the log, up to 1 s or 50 responses]
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = time)]
     pub(crate) largest_dead_time: Option<f64>,
+    /// What is assumed before the first response: rest, held (the first command acts, the loop moves), or unknown [default: rest if the
+    /// log begins with a long hold, or has nearly all of a few changes of the command early]
+    #[arg(long, value_name = "STATE", default_value = "auto", value_parser = starts)]
+    pub(crate) start: Choice<Start>,
+    /// Command before the log, if it was another than the first
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true, value_parser = finite)]
+    pub(crate) command_before: Option<f64>,
+    /// Most evaluations of the likelihood in the search of a model [default: 2000 to 20000, fewer for long logs]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub(crate) budget: Option<usize>,
     /// Number of simulated logs that check the intervals (0: none)
     #[arg(long, value_name = "N", default_value_t = 100, allow_hyphen_values = true)]
     pub(crate) bootstrap: usize,
@@ -87,7 +97,7 @@ Examples:
   libration advise --config loop.toml
 
 Forms: delay, lag, second-order, integrated-lag. Laws of noise: white, coloured, disturbance. Holds: zero, linear.
-Exit codes: 0 success; 1 failed run; 2 invalid input.";
+Exit codes: 0 the residuals do not contradict the model; 1 another verdict, or a failed run; 2 invalid input.";
 
 fn finite(text: &str) -> Result<f64, String> {
     timing::finite(text).ok_or_else(|| "expected a finite number".to_owned())
@@ -118,6 +128,10 @@ fn forms(text: &str) -> Result<Choice<ResponseKind>, String> {
 
 fn noises(text: &str) -> Result<Choice<NoiseKind>, String> {
     choice(&NoiseKind::ALL, |kind| kind.name(), text)
+}
+
+fn starts(text: &str) -> Result<Choice<Start>, String> {
+    choice(&Start::ALL, |start| start.name(), text)
 }
 
 fn holds(text: &str) -> Result<Choice<Hold>, String> {

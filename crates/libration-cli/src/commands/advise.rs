@@ -47,6 +47,8 @@ pub(super) struct Verdict {
     pub(super) budgets: Vec<Budget>,
     /// The period of the loop in s; none without a loop.
     pub(super) period: Option<f64>,
+    /// The growth rate of second moments per period; none without a loop.
+    pub(super) growth: Option<f64>,
     pub(super) holds: bool,
 }
 
@@ -61,8 +63,9 @@ pub(super) fn verdict(args: &AdviseArgs, command: &str, quiet: bool) -> Result<V
         reporter.clear();
         let advice = advice.map_err(failure)?;
         let holds = advice.holds();
-        let linear::LinearAdvice { answer, warnings, budgets, period, .. } = advice;
-        return Ok(Verdict { answer, warnings, budgets, period: Some(period), holds });
+        let linear::LinearAdvice { answer, warnings, budgets, period, growth, .. } = advice;
+        let (period, growth) = (Some(period), Some(growth));
+        return Ok(Verdict { answer, warnings, budgets, period, growth, holds });
     }
     let (mut request, _) = load_request(args, quiet)?;
     command.clone_into(&mut request.invocation);
@@ -72,8 +75,9 @@ pub(super) fn verdict(args: &AdviseArgs, command: &str, quiet: bool) -> Result<V
     let advice = advice.map_err(failure)?;
     let holds = advice.holds();
     let period = advice.looped.as_ref().map(|looped| looped.period);
+    let growth = advice.looped.as_ref().map(|looped| looped.combined.growth);
     let budgets = advice.looped.map_or_else(Vec::new, |looped| looped.budgets);
-    Ok(Verdict { answer: advice.answer, warnings: advice.warnings, budgets, period, holds })
+    Ok(Verdict { answer: advice.answer, warnings: advice.warnings, budgets, period, growth, holds })
 }
 
 /// Returns the request of the file or of the options, and the warnings about the log.

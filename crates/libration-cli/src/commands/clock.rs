@@ -1,7 +1,8 @@
 //! `libration clock`.
 
-use libration_logs::clock::{Latency, TopicClock, phase_lags, rate_of_phase};
+use libration_logs::clock::{Dependence, Latency, TopicClock, phase_lags, rate_of_phase};
 use libration_logs::{Log, LogError};
+use libration_report::verdict;
 use serde_json::json;
 
 use super::clock_effect;
@@ -23,9 +24,9 @@ pub(crate) fn run(args: &ClockArgs, quiet: bool) -> Result<(), Failure> {
         false => terminal::print(&describe(&report))?,
     }
     file.write(|| page(&report))?;
-    match report.effects.iter().all(|effect| effect.holds) {
-        true => Ok(()),
-        false => Err(Failure::Disagreement),
+    match verdict::exit_code(report.effects.iter().map(|effect| &effect.verdict)) {
+        verdict::GOOD => Ok(()),
+        _ => Err(Failure::Disagreement),
     }
 }
 
@@ -68,7 +69,11 @@ fn report(args: &ClockArgs, quiet: bool) -> Result<ClockReport, Failure> {
     };
     let advise_command = topic_clock.as_ref().map(|_| {
         let config = args.config.clone().unwrap_or_else(|| "loop.toml".into());
-        let at = latency.as_ref().map(|latency| latency.quantile(0.99));
+        // A latency that changes has no value that holds beyond the record.
+        let steady = latency
+            .as_ref()
+            .filter(|latency| latency.time_dependence.dependence != Dependence::Changing);
+        let at = steady.map(|latency| latency.quantile(0.99));
         quoted(clock_effect::advise_words(args, &config, topic.as_deref(), at))
     });
     Ok(ClockReport {

@@ -3,16 +3,14 @@
 use std::path::Path;
 
 use libration_advise::Budget;
-use libration_logs::clock::Latency;
+use libration_logs::clock::{Dependence, Latency};
+use libration_report::{Outcome, Verdict};
 use serde::Serialize;
 
-use super::advise::{self, Verdict};
-use super::measure_jitter::time;
+use super::advise;
+use super::time_stamps::other_rate;
 use crate::args::{AdviseArgs, ClockArgs, quoted};
 use crate::error::Failure;
-
-/// Largest skew of a topic that is the clock of a loop.
-const OTHER_RATE: f64 = 0.05;
 
 /// What a clock and a latency do to a loop.
 #[derive(Debug, Serialize)]
@@ -23,6 +21,8 @@ pub(super) struct Effect {
     pub(super) latency: Option<f64>,
     /// Whether the loop is stable and within its tolerance.
     pub(super) holds: bool,
+    /// The same with its evidence; unknown if the clock or the latency is not that of the loop.
+    pub(super) verdict: Verdict,
     /// The answer of `advise`.
     pub(super) answer: String,
     pub(super) warnings: Vec<String>,
@@ -50,29 +50,36 @@ pub(super) fn effects(
             vec![case("median", 0.5), case("99 %", 0.99)]
         }
     };
+    let is_changing =
+        latency.is_some_and(|found| found.time_dependence.dependence == Dependence::Changing);
     let effect = |(case, latency): (String, Option<f64>)| {
         let words = advise_words(args, config, topic, latency);
         let command = quoted(words.clone());
         let advise_args = AdviseArgs::parse_words(words)?;
-        let Verdict { answer, mut warnings, budgets, period, holds } =
+        let advise::Verdict { answer, mut warnings, budgets, period, growth, holds } =
             advise::verdict(&advise_args, &command, quiet)?;
-        warnings.splice(0..0, period.and_then(|period| other_rate(period, mean)));
-        Ok(Effect { case, latency, holds, answer, warnings, budgets, command })
+        let other = period.and_then(|period| other_rate("topic", period, mean));
+        let verdict = match &other {
+            Some(_) => Verdict::unknown("the topic is not the clock of this loop"),
+            None if is_changing => Verdict::unknown("the latencies change over time"),
+            None => judged(growth, holds),
+        };
+        warnings.splice(0..0, other);
+        Ok(Effect { case, latency, holds, verdict, answer, warnings, budgets, command })
     };
     cases.into_iter().map(effect).collect()
 }
 
-/// A warning if the mean interval of a topic is not the period of the loop.
-fn other_rate(period: f64, mean: f64) -> Option<String> {
-    let is_other = (mean / period - 1.0).abs() > OTHER_RATE;
-    is_other.then(|| {
-        format!(
-            "the mean interval of the topic is {}, the period of the loop {}: the topic is not the clock of this loop; \
-             help: choose a --topic with one message per period",
-            time(mean),
-            time(period)
-        )
-    })
+/// The verdict on a loop whose second moments grow at this rate per period.
+fn judged(growth: Option<f64>, holds: bool) -> Verdict {
+    let Some(growth) = growth else { return Verdict::unknown("the file has no loop") };
+    let evidence = format!("second moments change by {:+.4e} per period", growth.exp_m1());
+    let outcome = match (growth < 0.0, holds) {
+        (true, true) => Outcome::Stable,
+        (true, false) => Outcome::Exceeds,
+        (false, _) => Outcome::Unstable,
+    };
+    Verdict::new(outcome, evidence)
 }
 
 /// The command line of `advise` with the clock of a topic and a latency in s.

@@ -1,18 +1,22 @@
 //! The clocks of a log as an HTML page.
 
-use libration_logs::clock::{Latency, TopicClock};
+use libration_logs::clock::{Dependence, Latency, TopicClock};
+use libration_report::Outcome;
 use libration_report::figure::{Axis, Figure, Mark, Panel};
+use libration_report::notation::plural;
 use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 use libration_report::report;
 
 use super::clock_report::ClockReport;
-use super::clock_text::{CUT, doubt_words, drift_words, law_words, matching_words, verdict_words};
+use super::clock_text::{
+    CHANGING, CUT, doubt_words, drift_words, law_words, matching_words, trend_words, verdict_words,
+};
 use super::measure_jitter::{jitter_words, listed, time};
 
 /// Returns the report as an HTML page.
 pub(super) fn page(found: &ClockReport) -> String {
-    let mut page = Page { title: "Clocks of a log".into(), ..Page::default() };
+    let mut page = Page { title: title(found), ..Page::default() };
     page.answer = answer(found);
     for note in &found.notes {
         page.note(format!("{note}."));
@@ -20,6 +24,10 @@ pub(super) fn page(found: &ClockReport) -> String {
     for effect in &found.effects {
         page.heading(format!("Loop: {}", effect.case));
         page.paragraph(effect.answer.clone());
+        page.note(format!("Verdict: {}.", effect.verdict));
+        for warning in &effect.warnings {
+            page.note(format!("Warning: {warning}."));
+        }
         let mut table =
             Table::new(&effect.case, &["imperfection", "stated", "stable up to", "used", "unit"]);
         for budget in &effect.budgets {
@@ -58,10 +66,30 @@ pub(super) fn page(found: &ClockReport) -> String {
     report::render_page(&page, &format!("{} · {} · `libration clock`", found.file, found.format))
 }
 
+/// The verdict on the loop, or the rate of the clock.
+fn title(found: &ClockReport) -> String {
+    match (found.effects.last(), &found.clock) {
+        (Some(effect), _) => format!("Loop with a recorded clock: {}", effect.verdict.outcome),
+        (None, Some(clock)) => format!(
+            "Clock of {}: {:.4} Hz, jitter of {:.3} %",
+            clock.topic,
+            clock.rate,
+            100.0 * clock.statistics.jitter_rms
+        ),
+        (None, None) => format!("Log of {}", plural(found.topics.len(), "topic")),
+    }
+}
+
 fn answer(found: &ClockReport) -> String {
     let mut words = Vec::new();
     if let Some(effect) = found.effects.last() {
-        words.push(effect.answer.clone());
+        // An answer about another clock than that of the loop is none.
+        words.push(match effect.verdict.outcome {
+            Outcome::Unknown => {
+                format!("Whether the loop is stable is unknown: {}.", effect.verdict.evidence)
+            }
+            _ => effect.answer.clone(),
+        });
     }
     if let Some(clock) = &found.clock {
         words.push(format!(
@@ -153,6 +181,13 @@ fn of_latency(page: &mut Page, latency: &Latency) {
     if latency.is_cut {
         page.note(format!("Warning: {CUT}."));
     }
+    if let Some(trend) = &latency.time_dependence.trend {
+        page.note(format!("Over time the latency {}.", trend_words(trend)));
+    }
+    if latency.time_dependence.dependence == Dependence::Changing {
+        page.note(format!("Warning: {CHANGING}."));
+    }
+    page.note(format!("Law of latencies: {}.", verdict_words(&latency.law)));
     if let Some(doubt) = latency.doubt {
         page.note(format!("Warning: {}.", doubt_words(doubt)));
     }

@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
+use libration_advise::Budget;
 use libration_logs::clock::{
-    Doubt, Drift, Latency, Law, LawFit, LawVerdict, Matching, PhaseLag, TopicClock,
+    Dependence, Doubt, Drift, Latency, Law, LawFit, LawVerdict, Matching, PhaseLag, TopicClock,
 };
 use libration_report::printable::printable;
 
@@ -110,6 +111,14 @@ fn topic_clock(clock: &TopicClock, text: &mut String) {
     }
 }
 
+/// The warning about latencies that change over time.
+pub(super) const CHANGING: &str = "latencies change over time, as of clocks that drift or were set: they are those of this record";
+
+/// The line of latencies over time in words.
+pub(super) fn trend_words(trend: &Drift) -> String {
+    format!("rises by {:+.2} ± {:.2} ppm (95 %)", trend.skew_ppm, trend.half_width_ppm)
+}
+
 /// The drift between two clocks in words.
 pub(super) fn drift_words(drift: &Drift) -> String {
     format!(
@@ -139,6 +148,8 @@ pub(super) fn verdict_words(fit: &LawFit) -> String {
         LawVerdict::Fits => words(""),
         LawVerdict::Close => words(", close but rejected"),
         LawVerdict::None => "none fits: replay the record (--jitter-file)".to_owned(),
+        LawVerdict::DependsOnTime => "none: they change over time".to_owned(),
+        LawVerdict::Correlated => "none: neighbours resemble each other".to_owned(),
     }
 }
 
@@ -227,6 +238,14 @@ fn latency(found: &Latency, text: &mut String) {
     if let Some(doubt) = found.doubt {
         line(text, "warning", doubt_words(doubt));
     }
+    if let Some(trend) = &found.time_dependence.trend {
+        line(text, "change over time", trend_words(trend));
+    }
+    let correlation = found.time_dependence.correlation;
+    line(text, "correlation", format!("{correlation:+.2} of neighbours"));
+    if found.time_dependence.dependence == Dependence::Changing {
+        line(text, "warning", CHANGING);
+    }
     law(&found.law, "latencies", text);
     let most = found.histogram.iter().map(|bin| bin.1).max().unwrap_or(1).max(1);
     for &(from, count) in &found.histogram {
@@ -241,22 +260,26 @@ fn phases(delay: f64, lags: &[PhaseLag]) -> String {
     format!("{}: {}", time(delay), lags.join(", "))
 }
 
+/// A stated size beside its limit, with the used part if there is one.
+fn budget_words(budget: &Budget) -> String {
+    let (stated, unit) = (libration_advise::rounded(budget.stated), budget.unit);
+    let (limit, used) = (budget.limit_in_words(budget.stable_up_to), budget.used_in_percent());
+    match budget.stable_up_to {
+        Some(_) if used.is_empty() => format!("{stated} of at most {limit} {unit}"),
+        Some(_) => format!("{stated} of at most {limit} {unit}: {used}"),
+        None => format!("{stated} {unit}; limit: {limit}"),
+    }
+}
+
 fn describe_effect(effect: &Effect, text: &mut String) {
     let at = effect.latency.map_or_else(String::new, |latency| format!(" of {}", time(latency)));
     let _ = writeln!(text, "\n{}{at}: {}", effect.case, effect.answer);
     for warning in &effect.warnings {
         let _ = writeln!(text, "warning: {warning}");
     }
+    let _ = writeln!(text, "verdict: {}", effect.verdict);
     for budget in &effect.budgets {
-        let used = budget.used_in_percent();
-        let used = if used.is_empty() { "-".to_owned() } else { used };
-        let value = format!(
-            "{} of at most {} {}: {used}",
-            libration_advise::rounded(budget.stated),
-            budget.limit_in_words(budget.stable_up_to),
-            budget.unit
-        );
-        line(text, &budget.name(), value);
+        line(text, &budget.name(), budget_words(budget));
     }
     let _ = writeln!(text, "  {}", effect.command);
 }

@@ -1,16 +1,15 @@
 //! `libration identify`.
 
-use std::fmt::Write as _;
-
 use libration_identify::{
-    Identification, IdentifyError, KnownPlant, Recording, Request, ResponseKind, identify,
-    interval, loop_file, page, with_unit,
+    IdentifyError, KnownPlant, Recording, RecordingError, Request, ResponseKind, identify,
+    loop_file, page,
 };
 use libration_logs::{Log, ReadOptions};
-use libration_report::notation::number;
+use libration_report::verdict;
 use libration_settings::linear_loop::read_plant;
 use libration_work::Work;
 
+use super::identify_text::describe;
 use super::log_warnings;
 use super::repeat_command::command_line;
 use super::result_file::ResultFile;
@@ -41,8 +40,17 @@ pub(crate) fn run(args: &IdentifyArgs, quiet: bool) -> Result<(), Failure> {
         false => text,
     };
     terminal::print(&text)?;
-    saved.write(|| loop_file(&found))?;
-    page_file.write(|| page(&found))
+    if found.depends_on_command {
+        saved.write(|| loop_file(&found))?;
+    } else if let Some(path) = &args.save_loop {
+        let path = path.display();
+        terminal::warn(&format!("`{path}` (--save-loop) is not written: there is no model"));
+    }
+    page_file.write(|| page(&found))?;
+    match verdict::exit_code([&found.verdict]) {
+        verdict::GOOD => Ok(()),
+        _ => Err(Failure::Disagreement),
+    }
 }
 
 /// Fails for options that contradict each other.
@@ -86,6 +94,7 @@ fn check(args: &IdentifyArgs) -> Result<(), Failure> {
 fn failure(error: IdentifyError) -> Failure {
     match error {
         IdentifyError::Interrupted(_) => Failure::Interrupted("interrupted".into()),
+        error @ IdentifyError::Budget(_) => Failure::run(error),
         IdentifyError::Value { name, value, expected } => {
             let option = format!("--{}", name.replace(' ', "-"));
             Failure::usage(format!("{option} is {value}; expected {expected}"))
@@ -107,6 +116,12 @@ fn request(args: &IdentifyArgs) -> Result<Request, Failure> {
         lag: args.lag,
         gain: args.gain,
         largest_dead_time: args.largest_dead_time,
+        // All of them are the default.
+        start: match &args.start.0[..] {
+            [start] => Some(*start),
+            _ => None,
+        },
+        budget: args.budget,
         arrivals: !args.certain_arrivals,
         details: true,
         bootstrap: args.bootstrap,
@@ -127,9 +142,21 @@ fn recording(args: &IdentifyArgs) -> Result<(Recording, Vec<String>), Failure> {
     };
     let command = series("--command", &args.command)?;
     let response = series("--response", &args.response)?;
-    Recording::new(&command.time, &command.values, &response.time, &response.values)
-        .map(|recording| (recording, warnings))
-        .map_err(|error| Failure::usage(format!("`{path}`: {error}")))
+    let [times, commands] = [&command.time, &command.values];
+    let [response_times, responses] = [&response.time, &response.values];
+    let recording = match args.command_before {
+        Some(before) => Recording::behind(before, times, commands, response_times, responses),
+        None => Recording::new(times, commands, response_times, responses),
+    };
+    recording.map(|recording| (recording, warnings)).map_err(|error| {
+        let option = match error {
+            RecordingError::ConstantCommand(_) if args.command_before.is_none() => {
+                " with --command-before"
+            }
+            _ => "",
+        };
+        Failure::usage(format!("`{path}`: {error}{option}"))
+    })
 }
 
 /// The channel of the plant of the options.
@@ -171,97 +198,4 @@ fn plant(args: &IdentifyArgs) -> Result<KnownPlant, Failure> {
     KnownPlant::new(&plant, input, output).ok_or_else(|| {
         Failure::usage("the plant (--plant) is sampled; expected one in continuous time")
     })
-}
-
-/// The result as text.
-fn describe(found: &Identification) -> String {
-    let mut text = format!("{}\n", found.answer);
-    for warning in &found.warnings {
-        let _ = writeln!(text, "warning: {warning}");
-    }
-    let _ = writeln!(text, "\n{:<32} {:>14}   95 % interval", "number", "estimate");
-    for parameter in &found.parameters {
-        let value = with_unit(parameter.value, &parameter.unit);
-        let _ = writeln!(text, "{:<32} {value:>14}   {}", parameter.name, interval(parameter));
-    }
-    if let Some(correlation) = found.correlation {
-        let _ = writeln!(
-            text,
-            "\nthe errors of dead time and lag have the correlation {correlation:.2} with this command"
-        );
-        excitations(found, &mut text);
-    }
-    if let Some([low, high]) = found.delay_range {
-        let _ = writeln!(
-            text,
-            "\nrange of action_delay for randomisation: {} to {}",
-            with_unit(low, "s"),
-            with_unit(high, "s")
-        );
-    }
-    let tests = &found.residuals;
-    let _ = writeln!(
-        text,
-        "\nresiduals: independent p = {}, of earlier commands p = {}, feedback p = {}",
-        number(tests.whiteness, 2),
-        number(tests.command, 2),
-        number(tests.feedback, 2)
-    );
-    let _ = writeln!(
-        text,
-        "\n{:<16} {:<8} {:<12} {:<12} {:>12} {:>12} {:>24}",
-        "response", "hold", "noise", "arrivals", "dead time", "lag", "excess of Bayes' criterion"
-    );
-    for row in found.candidates.iter().take(5) {
-        let _ = writeln!(
-            text,
-            "{:<16} {:<8} {:<12} {:<12} {:>12} {:>12} {:>24}",
-            row.response,
-            row.hold.name(),
-            row.noise.name(),
-            row.arrivals,
-            with_unit(row.dead_time, "s"),
-            row.second.map_or_else(|| "-".to_owned(), |second| with_unit(second, "s")),
-            number(row.excess, 4)
-        );
-    }
-    for row in &found.bootstrap {
-        let unit = found.parameter(&row.key).map_or("", |parameter| &*parameter.unit);
-        let _ = writeln!(
-            text,
-            "simulated logs: {:<16} {} to {}{}",
-            row.key,
-            with_unit(row.low, unit),
-            with_unit(row.high, unit),
-            row.ratio.map_or_else(String::new, |ratio| format!(
-                "; {} times the standard error of Fisher's information",
-                number(ratio, 3)
-            )),
-        );
-    }
-    let _ = writeln!(text, "repeat with: {}", found.repeat_command);
-    text
-}
-
-/// The command that would tell most.
-fn excitations(found: &Identification, text: &mut String) {
-    let own = found.excitations.first().and_then(|row| row.dead_time_error);
-    let others = found.excitations.iter().skip(1).filter(|row| row.dead_time_error.is_some());
-    let best = others.min_by(|a, b| {
-        let error = |row: &libration_identify::ExcitationRow| {
-            let [first, second] = [row.dead_time_error, row.lag_error];
-            first.unwrap_or(f64::INFINITY) + second.unwrap_or(0.0)
-        };
-        error(a).total_cmp(&error(b))
-    });
-    let (Some(own), Some(best)) = (own, best) else { return };
-    if let Some(error) = best.dead_time_error.filter(|&error| error < 0.8 * own) {
-        let _ = writeln!(
-            text,
-            "with {} of the same size the standard error of the dead time would be {}, in place of {}",
-            best.command,
-            with_unit(error, "s"),
-            with_unit(own, "s")
-        );
-    }
 }

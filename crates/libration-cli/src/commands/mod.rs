@@ -29,6 +29,7 @@ mod equation_loop;
 mod finding;
 mod gains;
 mod identify;
+mod identify_text;
 mod lab;
 mod linear_closed_loop;
 mod list;

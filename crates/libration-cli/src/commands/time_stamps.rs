@@ -33,7 +33,7 @@ pub(super) fn read_for_period<T>(
     make: impl FnOnce(&[f64]) -> Result<T, RecordedError>,
 ) -> Result<(T, Vec<String>), Failure> {
     const FLAG: &str = "--jitter-file";
-    let TimeStamps { seconds, warnings, is_of_bag, .. } = load(path, FLAG, options)?;
+    let TimeStamps { seconds, mut warnings, is_of_bag, .. } = load(path, FLAG, options)?;
     let fails = |why: &str| wrong(path, FLAG, why);
     let span = seconds.last().zip(seconds.first()).map_or(0.0, |(last, first)| last - first);
     let mean = span / seconds.len().saturating_sub(1).max(1) as f64;
@@ -54,8 +54,25 @@ pub(super) fn read_for_period<T>(
             range.end()
         )));
     }
+    warnings.extend(other_rate("record", period, mean));
     let made = make(&seconds).map_err(|error| fails(&error.to_string()))?;
     Ok((made, warnings))
+}
+
+/// Largest relative difference of the mean interval of the clock of a loop from its period.
+const OTHER_RATE: f64 = 0.05;
+
+/// A warning if the mean interval of `what` is not the period of a loop, both in s.
+pub(super) fn other_rate(what: &str, period: f64, mean: f64) -> Option<String> {
+    let is_other = (mean / period - 1.0).abs() > OTHER_RATE;
+    is_other.then(|| {
+        format!(
+            "the mean interval of the {what} is {}, the period of the loop {}: the {what} is not the clock of this loop; \
+             help: choose a --topic with one message per period",
+            time(mean),
+            time(period)
+        )
+    })
 }
 
 fn load(path: &Path, flag: &str, options: &StampOptions) -> Result<TimeStamps, Failure> {

@@ -95,3 +95,61 @@ fn wrong_signals_and_numbers_are_errors_of_usage() {
         identify(&[&SIGNALS[..], &more].concat()).code(2).stderr(predicate::str::contains(message));
     }
 }
+
+/// Writes a step test of a lag of 50 ms behind a dead time of 30 ms: 2 s at 100 Hz, with a small error that repeats after 97 samples.
+fn step_test(folder: &std::path::Path, step: f64) -> String {
+    let mut text = "t,cmd,q\n".to_owned();
+    for i in 0..200_u32 {
+        let time = 0.01 * f64::from(i);
+        let since = (time - step - 0.03).max(0.0);
+        let error = 0.002 * (f64::from((i * 7919) % 97) / 48.0 - 1.0);
+        let command = u8::from(time > step - 1e-9);
+        let _ = writeln!(text, "{time},{command},{}", 1.0 - (-since / 0.05).exp() + error);
+    }
+    let path = folder.join("step.csv");
+    fs::write(&path, text).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn a_step_test_is_identified_wherever_its_step_is_and_the_verdict_decides_the_exit_code() {
+    let folder = tempfile::tempdir().unwrap();
+    let identify = |step: f64, more: &[&str]| {
+        let log = step_test(folder.path(), step);
+        let lag = ["--model", "lag", "--noise", "white", "--bootstrap", "0", "-q"];
+        libration(&[&["identify", &log][..], &SIGNALS, &lag, more].concat())
+    };
+    let read = |step: f64, more: &[&str]| {
+        let done = identify(step, &[&["--json"], more].concat()).success();
+        let found: Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
+        assert_eq!(
+            (&found["start"], &found["verdict"]["outcome"]),
+            (&"rest".into(), &"no-fault".into())
+        );
+        let rows = found["parameters"].as_array().unwrap();
+        let value = |key: &str| {
+            rows.iter().find(|row| row["key"] == key).unwrap()["value"].as_f64().unwrap()
+        };
+        // An error of 1.2e-3 rms beside slopes of 20/s: of a few responses on the slope 0.1 ms in the mean.
+        assert!((value("dead_time") - 0.03).abs() < 1e-3, "{}", found["answer"]);
+        assert!((value("lag") - 0.05).abs() < 2e-3, "{}", found["answer"]);
+    };
+    read(0.1, &[]);
+    read(0.0, &["--command-before", "0"]);
+    let help = "the command is 1 throughout; expected a command that changes, since nothing else shows a latency; \
+        help: if another command acted before the recording, state it with --command-before";
+    identify(0.0, &[]).code(2).stderr(predicate::str::contains(help));
+    // Without the responses up to the largest dead time nothing is left of the step: no numbers, no loop, exit code 1.
+    let saved = folder.path().join("loop.toml");
+    let words = ["--start", "unknown", "--save-loop", saved.to_str().unwrap()];
+    identify(0.1, &words)
+        .code(1)
+        .stdout(
+            predicate::str::contains("verdict: unknown: 0 of 1 changes of the command")
+                .and(predicate::str::contains("estimate").not()),
+        )
+        .stderr(predicate::str::contains("(--save-loop) is not written"));
+    assert!(!saved.exists());
+    let wrong = "--budget is 5; expected 100 to 1000000000 evaluations";
+    identify(0.1, &["--budget", "5"]).code(2).stderr(predicate::str::contains(wrong));
+}

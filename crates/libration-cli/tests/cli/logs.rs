@@ -201,3 +201,69 @@ fn wrong_input_names_the_option_the_value_and_what_is_allowed() {
         libration(words).code(2).stderr(predicate::str::contains(wanted));
     }
 }
+
+/// Writes stamps in ns, one in 10 ms, and later ones: 1 ms with up to 0.2 ms more, and `rise` ns more from row to row.
+fn two_stamps(folder: &std::path::Path, rise: i64) -> String {
+    let mut word = 7_u32;
+    let mut row = |n: i64| {
+        word = word.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        let start = 1_700_000_000_000_000_000 + 10_000_000 * n;
+        format!("{start},{}\n", start + 1_000_000 + i64::from(word >> 8) / 84 + rise * n)
+    };
+    let rows: String = (0..1000).map(&mut row).collect();
+    let path = folder.join("stamps.csv");
+    fs::write(&path, format!("start_ns,end_ns\n{rows}")).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn latencies_of_clocks_that_drift_have_a_slope_and_neither_a_law_nor_a_proposal() {
+    let folder = tempfile::tempdir().unwrap();
+    let clock = |rise: i64| {
+        let log = two_stamps(folder.path(), rise);
+        json(&["clock", &log, "--topic", "start_ns", "--against", "end_ns"])
+    };
+    let found = clock(200);
+    let trend = &found["latency"]["time_dependence"]["trend"];
+    let [slope, width] = ["skew_ppm", "half_width_ppm"].map(|key| trend[key].as_f64().unwrap());
+    // 200 ns in 10 ms. Noise of 58 µs rms over 10 s leaves 0.6 ppm.
+    assert!((slope - 20.0).abs() < 2.0 * width && width < 2.5, "{trend}");
+    assert_eq!(found["latency"]["law"]["verdict"], "depends-on-time");
+    assert_eq!(found["latency"]["law"]["fits"].as_array().unwrap().len(), 0);
+    assert!(!found["advise_command"].as_str().unwrap().contains("--latency"));
+    // Without drift there is both.
+    let found = clock(0);
+    assert_eq!(found["latency"]["law"]["fits"][0]["name"], "uniform");
+    assert!(found["advise_command"].as_str().unwrap().contains("--latency 0.001"));
+    let log = two_stamps(folder.path(), 200);
+    let config = folder.path().join("loop.toml");
+    fs::write(&config, LOOP).unwrap();
+    let words = ["clock", &log, "--topic", "start_ns", "--against", "end_ns", "--config"];
+    libration(&[&words[..], &[config.to_str().unwrap()]].concat())
+        .code(1)
+        .stdout(predicate::str::contains("verdict: unknown: the latencies change over time"));
+}
+
+#[test]
+fn a_record_that_is_not_the_clock_of_the_loop_decides_nothing_on_any_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = two_stamps(folder.path(), 0);
+    // The record has a stamp in 10 ms, the loop a period of 20 ms.
+    let config = folder.path().join("loop.toml");
+    fs::write(&config, LOOP.replace("0.01", "0.02")).unwrap();
+    let config = config.to_str().unwrap();
+    let page = folder.path().join("clock.html");
+    let warning = "the mean interval of the topic is 10.0 ms, the period of the loop 20.0 ms: the topic is not the clock of this loop";
+    let words = ["clock", &log, "--topic", "start_ns", "--config", config, "--page"];
+    libration(&[&words[..], &[page.to_str().unwrap()]].concat()).code(1).stdout(
+        predicate::str::contains(warning)
+            .and(predicate::str::contains("verdict: unknown: the topic is not the clock"))
+            .and(predicate::str::contains("relative rms; limit: ")),
+    );
+    let text = fs::read_to_string(&page).unwrap();
+    assert!(text.contains(warning) && text.contains("Loop with a recorded clock: unknown"));
+    let advised =
+        json(&["advise", "--config", config, "--jitter-file", &log, "--time", "start_ns"]);
+    let warnings = advised["warnings"].to_string();
+    assert!(warnings.contains("the record is not the clock of this loop"), "{warnings}");
+}

@@ -1,8 +1,10 @@
 //! Tests of identification, on loops that are simulated here by other means.
 
+mod budgets;
 mod coverage;
 mod errors;
 mod imperfections;
 mod loops;
 mod robustness;
+mod step_tests;
 mod unstable;

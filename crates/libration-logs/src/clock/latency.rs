@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::pairs::{Matched, by_header, by_order, by_row, seconds};
 use super::statistics::{Quantile, quantiles_at};
-use super::{LawFit, PhaseLag, phase_lags, rate_of_phase};
+use super::{Dependence, LawFit, LawVerdict, PhaseLag, TimeDependence, phase_lags, rate_of_phase};
 use crate::{ClockChoice, Log, LogError};
 
 /// How messages are matched.
@@ -62,7 +62,9 @@ pub struct Latency {
     pub quantiles: Vec<Quantile>,
     /// Lower bounds of bins in s, and numbers of latencies. The last bin has all above it.
     pub histogram: Vec<(f64, usize)>,
-    /// The law of the latencies.
+    /// Whether the latencies depend on time.
+    pub time_dependence: TimeDependence,
+    /// The law of the latencies; none of those that depend on time.
     pub law: LawFit,
     /// Phase lags of the median.
     pub phase_of_median: Vec<PhaseLag>,
@@ -108,14 +110,20 @@ impl Latency {
             Some(matched) => (Matching::HeaderStamps, matched),
             None => (Matching::NearestPreceding, by_order(&earlier, &later)),
         };
-        let Matched { latencies, unmatched, unanswered } = matched;
+        let latencies = matched.latencies();
+        let Matched { pairs, unmatched, unanswered } = matched;
         if latencies.is_empty() {
             return Err(LogError::Damaged(format!("no message on `{to}` follows one on `{from}`")));
         }
         let count = latencies.len() as f64;
         let mean = latencies.iter().sum::<f64>() / count;
         let square = latencies.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count;
-        let law = LawFit::of(&latencies);
+        let time_dependence = TimeDependence::of(&pairs);
+        let law = match time_dependence.dependence {
+            Dependence::Changing => LawFit::without(LawVerdict::DependsOnTime),
+            Dependence::Correlated => LawFit::without(LawVerdict::Correlated),
+            Dependence::None | Dependence::TooFew => LawFit::of(&latencies),
+        };
         let negative = latencies.iter().filter(|&&x| x < 0.0).count();
         if negative as f64 > REVERSED * count {
             return Err(LogError::Damaged(format!(
@@ -145,6 +153,7 @@ impl Latency {
             mean,
             deviation: square.sqrt(),
             histogram: histogram(&sorted),
+            time_dependence,
             law,
             phase_of_median: phase_lags(of(0.5)),
             phase_of_99_percent: phase_lags(of(0.99)),

@@ -38,6 +38,10 @@ pub enum LawVerdict {
     None,
     /// There are too few values.
     TooFew,
+    /// Values change over time: a law would be that of one record.
+    DependsOnTime,
+    /// Neighbouring values resemble each other, so that no test of a law holds.
+    Correlated,
 }
 
 /// The laws, the best first.
@@ -59,7 +63,12 @@ const FEWEST: usize = 32;
 impl LawFit {
     /// That of values that are equal.
     pub(crate) fn constant() -> Self {
-        LawFit { verdict: LawVerdict::Constant, fits: Vec::new() }
+        LawFit::without(LawVerdict::Constant)
+    }
+
+    /// No law, for this reason.
+    pub(crate) fn without(verdict: LawVerdict) -> Self {
+        LawFit { verdict, fits: Vec::new() }
     }
 
     /// Fits all laws to values in any order.
@@ -71,7 +80,7 @@ impl LawFit {
         let values: Vec<f64> =
             values.iter().copied().step_by(stride).filter(|x| x.is_finite()).collect();
         if values.len() < FEWEST {
-            return LawFit { verdict: LawVerdict::TooFew, fits: Vec::new() };
+            return LawFit::without(LawVerdict::TooFew);
         }
         let sorted = |values: &mut dyn Iterator<Item = f64>| {
             let mut values: Vec<f64> = values.collect();

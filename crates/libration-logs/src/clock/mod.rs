@@ -8,6 +8,7 @@ mod pairs;
 mod phase;
 mod spectrum;
 mod statistics;
+mod time_dependence;
 mod topic_clock;
 mod two_values;
 
@@ -18,4 +19,5 @@ pub use law_fit::{Fit, LawFit, LawVerdict};
 pub use phase::{PhaseLag, phase_lags, rate_of_phase};
 pub use spectrum::{Band, Spectrum};
 pub use statistics::{Lateness, Quantile, Statistics};
+pub use time_dependence::{Dependence, TimeDependence};
 pub use topic_clock::TopicClock;

@@ -2,10 +2,10 @@
 
 use std::collections::{HashMap, HashSet};
 
-/// Latencies of pairs.
+/// Pairs of messages.
 pub(super) struct Matched {
-    /// In s, in file order of the later messages.
-    pub(super) latencies: Vec<f64>,
+    /// Stamps in ns, in file order of the later messages.
+    pub(super) pairs: Vec<(i64, i64)>,
     pub(super) unmatched: usize,
     pub(super) unanswered: usize,
 }
@@ -31,19 +31,19 @@ pub(super) fn by_header(
         }
     }
     times.values_mut().for_each(|own| own.sort_unstable());
-    let mut latencies = Vec::new();
+    let mut pairs = Vec::new();
     for (time, header) in later.iter().zip(later_headers) {
         let (Some(time), Some(header)) = (time, header) else { continue };
         let Some(own) = times.get_mut(header) else { continue };
         let before = own.partition_point(|(from, _)| from <= time).saturating_sub(1);
         if let Some((from, answered)) = own.get_mut(before) {
             *answered = true;
-            latencies.push(seconds(*from, *time));
+            pairs.push((*from, *time));
         }
     }
-    let unmatched = later.len() - latencies.len();
+    let unmatched = later.len() - pairs.len();
     let unanswered = times.values().flatten().filter(|(_, answered)| !answered).count();
-    (latencies.len() >= unmatched).then_some(Matched { latencies, unmatched, unanswered })
+    (pairs.len() >= unmatched).then_some(Matched { pairs, unmatched, unanswered })
 }
 
 /// Whether most header stamps occur once.
@@ -54,11 +54,11 @@ fn is_mostly_unique(headers: &[Option<i64>]) -> bool {
 
 /// Latencies within a row.
 pub(super) fn by_row(earlier: &[Option<i64>], later: &[Option<i64>]) -> Matched {
-    let pairs = || earlier.iter().zip(later);
-    let latencies: Vec<f64> = pairs().filter_map(|(a, b)| Some(seconds((*a)?, (*b)?))).collect();
-    let unmatched = later.iter().flatten().count() - latencies.len();
-    let unanswered = earlier.iter().flatten().count() - latencies.len();
-    Matched { latencies, unmatched, unanswered }
+    let rows = earlier.iter().zip(later);
+    let pairs: Vec<(i64, i64)> = rows.filter_map(|(a, b)| Some(((*a)?, (*b)?))).collect();
+    let unmatched = later.iter().flatten().count() - pairs.len();
+    let unanswered = earlier.iter().flatten().count() - pairs.len();
+    Matched { pairs, unmatched, unanswered }
 }
 
 /// Latencies from the nearest preceding message.
@@ -66,17 +66,24 @@ pub(super) fn by_order(earlier: &[Option<i64>], later: &[Option<i64>]) -> Matche
     let mut earlier: Vec<i64> = earlier.iter().flatten().copied().collect();
     earlier.sort_unstable();
     let mut answered = vec![false; earlier.len()];
-    let mut latencies = Vec::new();
+    let mut pairs = Vec::new();
     for &time in later.iter().flatten() {
         let before = earlier.partition_point(|&own| own <= time);
         if let Some(i) = before.checked_sub(1) {
             answered[i] = true;
-            latencies.push(seconds(earlier[i], time));
+            pairs.push((earlier[i], time));
         }
     }
-    let unmatched = later.len() - latencies.len();
+    let unmatched = later.len() - pairs.len();
     let unanswered = answered.iter().filter(|answered| !**answered).count();
-    Matched { latencies, unmatched, unanswered }
+    Matched { pairs, unmatched, unanswered }
+}
+
+impl Matched {
+    /// The latencies in s, in the order of the pairs.
+    pub(super) fn latencies(&self) -> Vec<f64> {
+        self.pairs.iter().map(|&(from, to)| seconds(from, to)).collect()
+    }
 }
 
 /// The time between stamps in ns, in s.
@@ -92,7 +99,7 @@ mod tests {
     fn messages_are_matched_with_the_nearest_that_precedes() {
         let stamps = |all: &[i64]| all.iter().map(|&x| Some(x)).collect::<Vec<_>>();
         let found = by_order(&stamps(&[10, 30, 20]), &stamps(&[5, 12, 25, 26]));
-        assert_eq!(found.latencies, [2e-9, 5e-9, 6e-9]);
+        assert_eq!(found.latencies(), [2e-9, 5e-9, 6e-9]);
         assert_eq!((found.unmatched, found.unanswered), (1, 1));
     }
 
@@ -101,7 +108,7 @@ mod tests {
         let stamps = |all: &[i64]| all.iter().map(|&x| Some(x)).collect::<Vec<_>>();
         let (earlier, later) = (stamps(&[10, 20, 30]), stamps(&[35, 36, 37]));
         let found = by_header(&earlier, &stamps(&[1, 2, 3]), &later, &stamps(&[1, 3, 9])).unwrap();
-        assert_eq!(found.latencies, [25e-9, 6e-9]);
+        assert_eq!(found.latencies(), [25e-9, 6e-9]);
         assert_eq!((found.unmatched, found.unanswered), (1, 1));
         assert!(by_header(&earlier, &stamps(&[1, 2, 3]), &later, &stamps(&[7, 8, 9])).is_none());
         // Stamps that are held show no cause.
@@ -110,6 +117,6 @@ mod tests {
         let (earlier, headers) = (stamps(&[10, 20, 30, 40, 50, 60]), [1, 2, 3, 4, 5, 5]);
         let later = stamps(&[55, 65]);
         let found = by_header(&earlier, &stamps(&headers), &later, &stamps(&[5, 6])).unwrap();
-        assert_eq!(found.latencies, [5e-9]);
+        assert_eq!(found.latencies(), [5e-9]);
     }
 }

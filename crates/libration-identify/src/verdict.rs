@@ -1,0 +1,100 @@
+//! The verdict on an identification.
+
+use libration_report::notation::{number, plural};
+use libration_report::{Outcome, Verdict};
+
+use crate::dependence::Dependence;
+use crate::identification::Identification;
+use crate::residuals::CONTRADICTION;
+use crate::summary::seconds;
+use crate::warnings::{Context, is_controller};
+
+/// Fewest responses behind the first change of a command that tell a form of response from others.
+const FEWEST_FOLLOWERS: usize = 10;
+
+/// The responses behind the first change of the command, after the dead time.
+fn followers(context: &Context<'_>) -> usize {
+    let recording = context.recording;
+    let changes = recording.commands.windows(2).zip(&recording.command_times[1..]);
+    let first = changes.filter(|(pair, _)| pair[0] != pair[1]).map(|(_, time)| *time).next();
+    let since = first.unwrap_or(f64::INFINITY) + context.estimate.point.shape[0];
+    recording.response_times.iter().filter(|&&time| time >= since).count()
+}
+
+/// The verdict, with its evidence and what was not examined.
+pub(crate) fn verdict(
+    found: &Identification,
+    dependence: &Dependence,
+    context: &Context<'_>,
+    not_examined: Vec<String>,
+) -> Verdict {
+    let judged = judged(found, dependence, context);
+    not_examined.into_iter().fold(judged, Verdict::without)
+}
+
+fn judged(found: &Identification, dependence: &Dependence, context: &Context<'_>) -> Verdict {
+    match dependence {
+        Dependence::Undecided(reason) => return Verdict::unknown(reason),
+        Dependence::Excluded(share) => {
+            return Verdict::new(
+                Outcome::Fault,
+                format!(
+                    "the response does not depend on this command, which explains at most {} % of its variance",
+                    number(100.0 * share, 2)
+                ),
+            );
+        }
+        Dependence::Shown => {}
+    }
+    let tests = &found.residuals;
+    let probabilities = format!(
+        "independent p = {}, of earlier commands p = {}",
+        number(tests.whiteness, 2),
+        number(tests.command, 2)
+    );
+    if tests.contradict() {
+        return Verdict::new(
+            Outcome::Fault,
+            format!("the residuals contradict the model ({probabilities})"),
+        );
+    }
+    if let Some(lead) = context.lead {
+        return Verdict::new(
+            Outcome::Fault,
+            format!("the response leads the command by {}", seconds(lead)),
+        );
+    }
+    if found.is_contradicted {
+        return Verdict::unknown(format!(
+            "{} seem to be missing from the log",
+            plural(context.recording.missing_commands(), "command")
+        ));
+    }
+    if is_controller(context.recording) {
+        return Verdict::unknown("the command is a function of the response");
+    }
+    let followers = followers(context);
+    if followers < FEWEST_FOLLOWERS {
+        return Verdict::unknown(format!(
+            "only {} the first change of the command after the dead time",
+            if followers == 1 {
+                "one response follows".to_owned()
+            } else {
+                format!("{followers} responses follow")
+            }
+        ));
+    }
+    let model = &context.estimate.model;
+    if model.known[0].is_none() && context.estimate.point.shape[0] > 0.98 * model.longest {
+        return Verdict::unknown(format!(
+            "the dead time is at the largest one tried, {}",
+            seconds(model.longest)
+        ));
+    }
+    Verdict::new(
+        Outcome::NoFault,
+        format!(
+            "the residuals do not contradict the model at p = {CONTRADICTION} ({probabilities})"
+        ),
+    )
+}
