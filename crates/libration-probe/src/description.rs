@@ -4,7 +4,7 @@ use libration::linear::{Matrix, Signal};
 use serde::Deserialize;
 use thiserror::Error;
 
-use crate::{Recording, Reference, Subject, SubjectError};
+use crate::{DiscreteInput, Recording, Reference, Subject, SubjectError};
 
 /// The description of a simulator.
 #[derive(Clone, Debug, Deserialize)]
@@ -39,6 +39,12 @@ pub struct Description {
     reference: Option<ReferenceDescription>,
     #[serde(default)]
     stated_delays: Vec<f64>,
+    #[serde(default)]
+    direct_inputs: Vec<String>,
+    #[serde(default)]
+    discrete_inputs: Vec<DiscreteInput>,
+    #[serde(default)]
+    not_examined: Vec<String>,
     #[serde(default)]
     recordings: Vec<Recording>,
     /// Whether the simulator computes energies.
@@ -114,6 +120,9 @@ impl Description {
         subject.version = self.version.filter(|version| !version.is_empty());
         subject.notes = self.notes;
         subject.stated_delays = self.stated_delays;
+        subject.direct_inputs = self.direct_inputs;
+        subject.discrete_inputs = self.discrete_inputs;
+        subject.not_examined = self.not_examined;
         subject.validity = self.validity;
         subject.recordings = self.recordings;
         subject.invocation = self.invocation;

@@ -48,7 +48,7 @@ impl Flow {
             if !step.is_finite() {
                 return Ok(None);
             }
-            match rates(step) {
+            match rates(step).filter(|_| halvings >= prober.settled) {
                 Some(level) => levels.push(level),
                 // A longer step may be short where this one is not, if its matrix is close to the identity by chance.
                 None => levels.clear(),
