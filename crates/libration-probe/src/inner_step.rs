@@ -19,9 +19,6 @@ const VISIBLE: f64 = 1e-9;
 const ROUNDINGS: f64 = 1e3;
 /// Lengths of the step in a row that have the same result.
 const SAME: usize = 4;
-/// Change of a rate by a halving that is a jump, relative to the rate and to all earlier changes.
-const JUMP: f64 = 1e-6;
-const JUMP_RATIO: f64 = 2.0;
 
 /// The evidence that a simulator divides a step into inner steps of a fixed length, or rounds its length: it has no limit of small steps.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -101,7 +98,6 @@ impl InnerStep {
                 return Ok(None);
             }
         }
-        prober.settled = prober.settled.max(settled(&start, &results, subject.dt));
         let longest = |i| length((results.len() - same(i)) as i32);
         Ok(state.map(|i| InnerStep {
             longest_dt: longest(i),
@@ -122,25 +118,4 @@ impl InnerStep {
             "{what}: inner steps have a fixed length, or the length is rounded; the system that the step approximates is unknown"
         )
     }
-}
-
-/// Halvings after which rates only converge: before, one of the next halvings changes a rate more than all earlier ones together do, as
-/// where a step becomes shorter than an inner one.
-fn settled(start: &[f64], results: &[Vec<f64>], dt: f64) -> usize {
-    let rate = |k: usize, i: usize| (results[k][i] - start[i]) / (dt * 2.0_f64.powi(-(k as i32)));
-    let mut settled = 0;
-    for i in 0..start.len() {
-        let mut earlier = 0.0_f64;
-        for k in 1..results.len() {
-            let change = (rate(k, i) - rate(k - 1, i)).abs();
-            let shortest = dt * 2.0_f64.powi(-(k as i32));
-            let size = start[i].abs().max(results[k][i].abs());
-            let rounding = ROUNDINGS * f64::EPSILON * size / shortest + JUMP * rate(k, i).abs();
-            if k > 1 && change > JUMP_RATIO * earlier + rounding {
-                settled = settled.max(k);
-            }
-            earlier = earlier.max(change);
-        }
-    }
-    settled
 }

@@ -22,8 +22,6 @@ pub(crate) struct Prober<'a> {
     held: (Matrix, usize),
     /// Whether results depend on earlier states.
     pub(crate) has_state_memory: bool,
-    /// Halvings of the step after which rates only converge.
-    pub(crate) settled: usize,
     /// Rows that were stepped.
     pub(crate) calls: u64,
 }
@@ -37,7 +35,6 @@ impl<'a> Prober<'a> {
             coarseness: 0.0,
             held: (Matrix::zeros(0, 0), 0),
             has_state_memory: false,
-            settled: 0,
             calls: 0,
         }
     }

@@ -89,7 +89,8 @@ fn inner_steps_that_follow_the_length_are_no_finding() {
         ] {
             assert_eq!(kinds(&report), [""; 0], "{dt} {}", report.answer);
             let rate = report.modes[0].flow.unwrap().growth_rate;
-            assert!((rate + 1.0).abs() < 1e-6, "{rate}");
+            // That of the inner step is −1.005.
+            assert!((rate + 1.0).abs() < 1e-5, "{dt} {rate}");
         }
     }
 }
