@@ -4,7 +4,7 @@ use libration::linear::{Matrix, Signal};
 use serde::Deserialize;
 use thiserror::Error;
 
-use crate::{DiscreteInput, Recording, Reference, Subject, SubjectError};
+use crate::{MeasuredInput, Recording, Reference, Subject, SubjectError};
 
 /// The description of a simulator.
 #[derive(Clone, Debug, Deserialize)]
@@ -42,7 +42,7 @@ pub struct Description {
     #[serde(default)]
     direct_inputs: Vec<String>,
     #[serde(default)]
-    discrete_inputs: Vec<DiscreteInput>,
+    measured_inputs: Vec<MeasuredInput>,
     #[serde(default)]
     not_examined: Vec<String>,
     #[serde(default)]
@@ -121,7 +121,7 @@ impl Description {
         subject.notes = self.notes;
         subject.stated_delays = self.stated_delays;
         subject.direct_inputs = self.direct_inputs;
-        subject.discrete_inputs = self.discrete_inputs;
+        subject.measured_inputs = self.measured_inputs;
         subject.not_examined = self.not_examined;
         subject.validity = self.validity;
         subject.recordings = self.recordings;

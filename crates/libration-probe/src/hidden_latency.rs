@@ -53,7 +53,7 @@ pub(crate) fn hidden_latencies(
             total: late_steps.map(|late| late * step.dt + integrator_delay.unwrap_or(0.0)),
         }
     };
-    let discrete = subject.discrete_inputs.iter().map(|input| HiddenLatency {
+    let measured = subject.measured_inputs.iter().map(|input| HiddenLatency {
         input: input.name.clone(),
         late_steps: Some(input.late_steps),
         late: Some(input.late_steps * step.dt),
@@ -61,7 +61,7 @@ pub(crate) fn hidden_latencies(
         integrator_delay: None,
         total: Some(input.late_steps * step.dt),
     });
-    (0..subject.inputs.len()).map(of).chain(discrete).collect()
+    (0..subject.inputs.len()).map(of).chain(measured).collect()
 }
 
 /// The state that responds most to an input, and by how much it is later than in an exact step.

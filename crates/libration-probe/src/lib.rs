@@ -96,5 +96,5 @@ pub use report::ProbeReport;
 pub use rest::Rest;
 pub use rounding::Rounding;
 pub use settling::Settling;
-pub use subject::{DiscreteInput, Recording, Reference, Subject, SubjectError};
+pub use subject::{MeasuredInput, Recording, Reference, Subject, SubjectError};
 pub use summary::error_in_words;

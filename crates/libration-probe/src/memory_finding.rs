@@ -73,7 +73,7 @@ pub(crate) fn of_memory(
             ),
         ));
     }
-    for input in &subject.discrete_inputs {
+    for input in &subject.measured_inputs {
         if input.late_steps.abs() < DELAY && !input.varies {
             continue;
         }

@@ -50,8 +50,8 @@ pub struct Subject {
     pub stated_delays: Vec<f64>,
     /// Inputs that the audit sets past the way of commands, so that their lateness is not that of commands.
     pub direct_inputs: Vec<String>,
-    /// Discrete inputs, whose lateness the adapter of the simulator measures.
-    pub discrete_inputs: Vec<DiscreteInput>,
+    /// Inputs whose lateness the adapter of the simulator measures: discrete ones, and those whose delay varies at random.
+    pub measured_inputs: Vec<MeasuredInput>,
     /// The parts of the simulator that are not audited, such as wrappers.
     pub not_examined: Vec<String>,
     /// Recordings of the simulator that should have the same bits.
@@ -60,10 +60,10 @@ pub struct Subject {
     pub invocation: String,
 }
 
-/// The lateness of an input without a derivative.
+/// The lateness of an input that the adapter of a simulator measures.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct DiscreteInput {
+pub struct MeasuredInput {
     /// Its name.
     pub name: String,
     /// Steps by which a command is used late, on average.
@@ -137,7 +137,7 @@ impl Subject {
             reference: None,
             stated_delays: Vec::new(),
             direct_inputs: Vec::new(),
-            discrete_inputs: Vec::new(),
+            measured_inputs: Vec::new(),
             not_examined: Vec::new(),
             recordings: Vec::new(),
             invocation: String::new(),

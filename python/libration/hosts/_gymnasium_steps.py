@@ -40,7 +40,7 @@ class Steps:
         self.is_observed = _is_numeric(outer.observation_space)
         plain = {name: value for name, value in vars(self.inner).items() if isinstance(value, _PLAIN)}
         self.plain = {name: value for name, value in plain.items() if isinstance(value, _FIXED)}
-        self.containers = copy.deepcopy({name: value for name, value in plain.items() if name not in self.plain})
+        self.containers = copy.deepcopy({name: value for name, value in plain.items() if name not in (*self.plain, state)})
         generator: Any = getattr(self.inner, "np_random", None)
         self.bits = copy.deepcopy(generator.bit_generator.state) if hasattr(generator, "bit_generator") else None
         # Wrappers draw from the same generator.
@@ -81,8 +81,10 @@ class Steps:
         attributes = vars(inner)
         if not self.keeps_attributes:
             attributes.update(self.plain)
-            attributes.update(copy.deepcopy(self.containers))
-        if self.holds_generator and self.bits is not None and inner.np_random is not None:
+            if self.containers:
+                attributes.update(copy.deepcopy(self.containers))
+        holds_generator = self.holds_generator and self.bits is not None
+        if holds_generator:
             inner.np_random.bit_generator.state = self.bits
         if clock is not None:
             setattr(inner, clock, float(dt) / (self.count or 1))
@@ -99,13 +101,18 @@ class Steps:
             )
         if self.is_observed:
             self.observation = _numbers(self.outer.observation_space, observation)
-        found = np.array(getattr(inner, state_name))
-        self.is_single |= found.dtype == np.float32
-        if self.holds_generator and self.bits is not None and not self.draws:
+        found = getattr(inner, state_name)
+        self.is_single |= getattr(found, "dtype", None) == np.float32
+        if holds_generator and not self.draws:
             self.draws = inner.np_random.bit_generator.state != self.bits
         after = np.array(found, dtype=np.float64)
-        after[self.angles] -= 2 * np.pi * np.round((after[self.angles] - state[self.angles]) / (2 * np.pi))
+        if self.angles:
+            after[self.angles] -= 2 * np.pi * np.round((after[self.angles] - state[self.angles]) / (2 * np.pi))
         return after
+
+    def settle(self) -> None:
+        """Leave the generator alone from now on if no step has drawn from it."""
+        self.holds_generator &= self.draws
 
     def observe(self, states: Array) -> Array:
         """Return the observation that the last step returned, for each state."""

@@ -106,6 +106,7 @@ def gymnasium_host(
         notes.append(f"actions and observations go through {', '.join(wrappers)}")
     if repeated > 1:
         notes.append(f"a step is {repeated} steps of the environment")
+    simulation.settle()
     not_examined, discrete = _limits(simulation, start, vector, timestep, left_out)
     if simulation.is_single:
         notes.append("the environment keeps its state in float32: differences have about three digits")
@@ -132,7 +133,7 @@ def gymnasium_host(
         observe=simulation.observe if simulation.is_observed else None,
         not_examined=tuple(not_examined),
         direct_inputs=of_inputs[:count] if action_attribute is not None else (),
-        discrete_inputs=discrete,
+        measured_inputs=discrete,
     )
 
 
@@ -142,6 +143,8 @@ def _memory(simulation: Steps, start: Array, vector: Array, dt: float, is_wrappe
     other = vector + 0.01 * np.maximum(1.0, np.abs(vector))
     changes: list[tuple[Array, Array, Any]] = [(moved, other, simulation.fixed)]
     if simulation.fixed is not None:
+        # An attribute of zero would hide them.
+        vector = other
         changes += [(start, vector, one) for one in simulation.other_actions()[:1]]
     found = simulation.has_memory(start, vector, changes, dt)
     if found is False:
@@ -156,7 +159,7 @@ def _memory(simulation: Steps, start: Array, vector: Array, dt: float, is_wrappe
 def _limits(
     simulation: Steps, start: Array, vector: Array, dt: float, left_out: Sequence[str]
 ) -> tuple[list[str], tuple[tuple[str, float, bool], ...]]:
-    """Return what an audit does not examine, and the lateness of the discrete action."""
+    """Return what an audit does not examine, and the lateness of a discrete action, or of actions whose delay varies at random."""
     names = ["rewards and ends of episodes"]
     if left_out:
         what = "wrapper" if len(left_out) == 1 else "wrappers"
@@ -166,15 +169,25 @@ def _limits(
     if simulation.draws:
         names.append("random numbers of the environment, which are the same in each step")
     if simulation.fixed is None:
-        return names, ()
+        calls = _calls(simulation, (start, vector, dt), (start, vector + 0.01 * np.maximum(1.0, np.abs(vector)), None))
+        # A delay that does not vary is found by the audit itself.
+        return names, (("action", _mean(calls), True),) if any(one != calls[0] for one in calls) else ()
+    vector = vector + np.maximum(1.0, np.abs(vector))
     for other in simulation.other_actions():
-        found = simulation.responses(start, vector, (start, vector, other), dt)
-        calls = [own for own, _ in found or []]
+        calls = _calls(simulation, (start, vector, dt), (start, vector, other))
         if any(calls):
-            late = float(np.mean([call for one in calls for call in one]))
-            return names, (("discrete action", late, any(one != calls[0] for one in calls)),)
+            return names, (("discrete action", _mean(calls), any(one != calls[0] for one in calls)),)
     names.append("lateness of discrete actions")
     return names, ()
+
+
+def _calls(simulation: Steps, base: tuple[Array, Array, float], changed: tuple[Array, Array, Any]) -> list[set[int]]:
+    """Return the calls whose states respond to each of many changed calls; empty if states vary by themselves."""
+    return [own for own, _ in simulation.responses(*base[:2], changed, base[2]) or []]
+
+
+def _mean(calls: list[set[int]]) -> float:
+    return float(np.mean([call for one in calls for call in one]))
 
 
 def _clock(inner: Any, name: str | None, title: str, is_given: bool) -> str | None:

@@ -80,7 +80,8 @@ class Host:
     """What an audit of the host does not examine, such as wrappers that it leaves out."""
     direct_inputs: tuple[str, ...] = ()
     """Actions that are set past the way of commands, so that their lateness is unknown."""
-    discrete_inputs: tuple[tuple[str, float, bool], ...] = ()
-    """Inputs without a derivative: their names, the steps by which they are late on average, and whether that varies."""
+    measured_inputs: tuple[tuple[str, float, bool], ...] = ()
+    """Inputs whose lateness the host measures, discrete ones and those whose delay varies at random: their names, the steps by which they
+    are late on average, and whether that varies."""
     reset: Callable[[], None] = field(default=lambda: None)
     """Forget what earlier calls left; it has an effect with memory only."""
