@@ -38,6 +38,13 @@ def description_of(host: Host) -> dict[str, Any]:
             "a": host.reference_A.tolist(),
             "b": host.reference_B.tolist(),
         }
+    if host.fixed_dt:
+        described["fixed_dt"] = True
+    for key, value in (("not_examined", host.not_examined), ("direct_inputs", [name.split(" (")[0] for name in host.direct_inputs])):
+        if value:
+            described[key] = list(value)
+    if host.measured_inputs:
+        described["measured_inputs"] = [{"name": name, "late_steps": late, "varies": varies} for name, late, varies in host.measured_inputs]
     if host.delays:
         described["stated_delays"] = list(host.delays)
     if host.recordings:

@@ -29,7 +29,7 @@ class ProbeReport:
     def __init__(self, results: dict[str, Any], holds: bool, page: str) -> None:
         self.results = results
         self.holds = holds
-        """Whether the step has no fault."""
+        """Whether the verdict is good: what was examined has no fault, and that decides."""
         self._page = page
 
     def __repr__(self) -> str:
@@ -39,6 +39,11 @@ class ProbeReport:
     def answer(self) -> str:
         """The answer in a few sentences."""
         return str(self.results["answer"])
+
+    @property
+    def verdict(self) -> dict[str, Any]:
+        """``outcome`` (``"no-fault"``, ``"fault"`` or ``"unknown"``), its ``evidence``, and what the audit did not examine as ``not_examined``."""
+        return {"not_examined": [], **self.results["verdict"]}
 
     @property
     def findings(self) -> list[dict[str, Any]]:
@@ -74,7 +79,10 @@ class ProbeReport:
 
     @property
     def hidden_latency(self) -> list[dict[str, Any]]:
-        """The latency of each input in s: of late commands, of the integrator, and in total."""
+        """The latency of each input in s: of late commands, of the integrator, and in total. None: not examined.
+
+        Discrete actions of an environment come last.
+        """
         return list(self.results["hidden_latency"])
 
     @property
@@ -201,8 +209,11 @@ class ProbeReport:
         plant = self.plant
         period = float(self.results["dt"]) if period is None else period
         late = np.full(len(self.results["inputs"]), self.exchange_latency if exchange else 0.0)
-        for k, entry in enumerate(self.hidden_latency):
-            late[k] += float(entry["late"])
+        entries = self.hidden_latency
+        # An input that is set past the commands is as late as the discrete action in whose place it is.
+        discrete = sum(float(entry["late"]) for entry in entries[len(late) :])
+        for k, entry in enumerate(entries[: len(late)]):
+            late[k] += discrete if entry["late"] is None else float(entry["late"])
         if late.any():
             keywords["latency"] = _added(keywords.get("latency"), late, period)
         return advise(plant, controller, period=period, **keywords)

@@ -254,8 +254,9 @@ class Probe:
         described.update(conservative=bool(conservative), invocation=str(invocation))
         if "mass" in described:
             described["mass"] = inertia(described["mass"], len(host.positions))
+        watch = None if host.observe is None else observations_of(host.observe, True)
         # The rows of a host with memory continue one simulation each.
-        return _audit(host, described, None, None, not host.memory, number_of_threads)
+        return _audit(host, described, watch, None, not host.memory, number_of_threads)
 
 
 probe = Probe()

@@ -222,6 +222,28 @@ def test_a_step_that_hides_a_state_is_found():
     assert {"hidden-state", "not-reproducible"} & set(kinds(audit(hidden)))
 
 
+def test_an_energy_that_diverges_in_the_run_of_the_audit_is_a_fault():
+    def hardening(x, u, dt):
+        return [x[0] + dt * x[1], x[1] - dt * (10 * x[0] + x[0] ** 3)]
+
+    def own(x):
+        return x[1] ** 2 / 2 + 5 * x[0] ** 2 + x[0] ** 4 / 4
+
+    report = probe(hardening, [1, 0], [], 0.05, energy=own, conservative=True, equilibrium=False)
+    assert kinds(report) == ["energy-drift"] and not report.holds and "No fault" not in report.answer
+    assert report.verdict == {"outcome": "fault", "evidence": report.findings[0]["text"], "not_examined": ["stability along the motion"]}
+
+
+@pytest.mark.parametrize("count", [math.floor, lambda parts: max(1, round(parts)), lambda parts: math.ceil(parts - 1e-9)])
+def test_a_fixed_inner_step_has_no_rates_of_a_system(count):
+    def decay(x, u, dt):
+        return [x[0] * 0.99 ** count(dt / 0.01 + 1e-12)]
+
+    report = probe(decay, [0.0], [], 0.05)
+    assert kinds(report) == ["fixed-inner-step"] and report.modes[0]["flow"] is None and report.largest_dt is None
+    assert "the system that the step approximates is unknown" in report.answer
+
+
 def test_a_step_beyond_its_limit_is_found():
     report = audit(pendulum, dt=0.7)
     assert kinds(report)[-1] == "unstable-step" and report.largest_dt == pytest.approx(2 / 3, rel=1e-6)

@@ -9,7 +9,7 @@ import pytest
 
 fmpy = pytest.importorskip("fmpy")
 
-from fmu import COMPILER, make_fmu  # noqa: E402
+from fmu import COMPILER, FAULTS, make_fmu  # noqa: E402
 
 from libration import StateFeedback, Steps, probe  # noqa: E402
 from libration.hosts import Host  # noqa: E402
@@ -116,6 +116,26 @@ def test_a_call_repeats_the_audit(path, report, exchanged):
     assert report.repeat_command == f"libration.probe.fmu({str(path)!r}, start_values={{'x0': 0.0}})" or len(str(path)) > 100
     call = f"libration.probe.fmu({str(path)!r}, kind='ModelExchange', dt={MACRO_STEP})"
     assert exchanged.repeat_command == call or len(str(path)) > 100
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_inner_steps_of_a_fixed_length_leave_the_system_unknown(version, tmp_path_factory):
+    inner = 'fixedInternalStepSize="0.001"' if version == 3 else ""
+    made = make_fmu(tmp_path_factory.mktemp("fixed"), version, inner=inner)
+    report = probe.fmu(made, dt=0.008, start_values={"x0": 0.0, "fault": FAULTS["fixed inner step"]})
+    assert [finding["kind"] for finding in report.findings] == ["fixed-inner-step"]
+    assert report.results["flow"] is None and report.largest_dt is None and all(mode["flow"] is None for mode in report.modes)
+    # Eight steps of forward Euler of a mode that grows by 0.5 1/s: whether the system grows is not known.
+    assert report.verdict["outcome"] == "unknown" and not report.holds
+    stated = "the FMU states inner steps of 0.001 s: 8 of them in a macro step"
+    assert (stated in report.notes) == (version == 3)
+
+
+def test_equal_inner_steps_that_follow_the_length_have_the_rates_of_the_system(path):
+    # Ten steps of forward Euler of 0.001 s, whose own rates are those of log(1 + h s)/h.
+    report = probe.fmu(path, start_values={"x0": 0.0}, dt=0.064)
+    rate = report.modes[0]["flow"]["growth_rate"]
+    assert rate == pytest.approx(0.5, abs=1e-6)
 
 
 def test_the_latency_of_a_host_is_finite_and_at_least_0():

@@ -72,6 +72,7 @@ fn examine(
     }
     report.findings = findings;
     report.calls = prober.calls;
+    report.verdict = report.judge(subject);
     report.answer = report.summary();
     Ok(report)
 }

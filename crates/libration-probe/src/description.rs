@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use thiserror::Error;
 
-use crate::{Recording, Reference, Subject, SubjectError};
+use crate::{MeasuredInput, Recording, Reference, Subject, SubjectError};
 
 /// The description of a simulator.
 #[derive(Clone, Debug, Deserialize)]
@@ -42,6 +42,12 @@ pub struct Description {
     reference: Option<ReferenceDescription>,
     #[serde(default)]
     stated_delays: Vec<f64>,
+    #[serde(default)]
+    direct_inputs: Vec<String>,
+    #[serde(default)]
+    measured_inputs: Vec<MeasuredInput>,
+    #[serde(default)]
+    not_examined: Vec<String>,
     #[serde(default)]
     recordings: Vec<Recording>,
     /// Whether the simulator computes energies.
@@ -136,6 +142,9 @@ impl Description {
         subject.version = self.version.filter(|version| !version.is_empty());
         subject.notes = self.notes;
         subject.stated_delays = self.stated_delays;
+        subject.direct_inputs = self.direct_inputs;
+        subject.measured_inputs = self.measured_inputs;
+        subject.not_examined = self.not_examined;
         subject.validity = self.validity;
         subject.recordings = self.recordings;
         subject.invocation = self.invocation;

@@ -17,11 +17,25 @@ const STEPS: usize = 2_000;
 const DISPLACEMENT: f64 = 0.1;
 /// Drifts per step below this, relative to the energy of the displacement, are roundings.
 const ROUNDING: f64 = 1e-13;
+/// Equal windows of a trajectory, and the part of a change that one of them may take back where the energy changes in one direction.
+const WINDOWS: usize = 8;
+const BACK: f64 = 0.05;
+/// Change over a trajectory of a system that conserves its energy that is a fault: half a percent of an amplitude.
+const CLEAR: f64 = 0.01;
+/// Growth of the energy of any other system that needs a reason: it doubles.
+const GROWN: f64 = 1.0;
+/// Parts of a step whose trajectory shows what the system does by itself, and the most steps of it.
+const PARTS: usize = 8;
+const MOST_PARTS: usize = 200_000;
+/// By a method of order 1 the logarithm of a growth falls to an eighth, and a blow-up comes eight times as late; of the system, neither.
+const LESS: f64 = 3.0;
+const LATER: f64 = 1.8;
 
 /// The drift of the energy.
 #[derive(Clone, Debug, Serialize)]
 pub struct EnergyDrift {
-    /// Rate of the energy in 1/s, relative to that of a displacement from an equilibrium; else to the energy itself.
+    /// Rate of the energy in 1/s, relative to that of a displacement from an equilibrium; off one to a size that does not depend on the
+    /// zero of the energy: half of its slope along a state times the scale of this state.
     pub rate: f64,
     /// The same with half the step.
     pub rate_halved: Option<f64>,
@@ -31,6 +45,12 @@ pub struct EnergyDrift {
     pub resolution: f64,
     /// The reason.
     pub reason: DriftReason,
+    /// Change of the energy from the first eighth of the trajectory to the last, relative as the rate. None: it leaves the finite numbers.
+    pub change: Option<f64>,
+    /// Whether the energy changes in one direction: no eighth of the trajectory takes back a part of the change.
+    pub is_steady: bool,
+    /// Whether the change is one of the step and not of the system, by a trajectory with an eighth of the step. None: there is none.
+    pub is_of_step: Option<bool>,
 }
 
 /// Why an energy drifts.
@@ -90,29 +110,49 @@ impl EnergyDrift {
         let wanted = PERIODS * longest_period / subject.dt;
         let steps = least.max((wanted as usize).min(MOST_STEPS)) / 2 * 2;
         let is_short = wanted > 2.0 * steps as f64;
-        let size = if is_at_rest { energy - rest } else { energy };
+        let size = if is_at_rest { energy - rest } else { energy_size(prober, rest)? };
         let size = size.abs().max(f64::MIN_POSITIVE);
-        let Some(full) = rate(prober, &start, subject.dt, steps, size)? else {
-            return Ok(Some(EnergyDrift {
-                rate: f64::INFINITY,
-                rate_halved: None,
-                steps,
-                resolution: 0.0,
-                reason: DriftReason::Divergence,
-            }));
+        let full = Trajectory::run(prober, &start, subject.dt, steps, size)?;
+        let mut found = EnergyDrift {
+            rate: f64::INFINITY,
+            rate_halved: None,
+            steps: full.energies.len(),
+            resolution: 0.0,
+            reason: DriftReason::Divergence,
+            change: None,
+            is_steady: true,
+            is_of_step: None,
         };
+        let shorter = subject.dt / PARTS as f64;
+        if !full.is_finite {
+            if !subject.has_fixed_dt {
+                let steps = (2 * PARTS * (full.energies.len() + 1)).min(MOST_PARTS);
+                let other = Trajectory::run(prober, &start, shorter, steps, size)?;
+                let ratio = other.energies.len() as f64 / (PARTS * found.steps.max(1)) as f64;
+                // A blow-up of the system comes at its own time, whatever the step.
+                let is_decided = !other.is_finite || ratio > LATER;
+                found.is_of_step = is_decided.then_some(ratio > LATER);
+            }
+            return Ok(Some(found));
+        }
         let halved = match subject.has_fixed_dt {
             true => None,
-            false => rate(prober, &start, subject.dt / 2.0, 2 * steps, size)?,
+            false => {
+                let half = Trajectory::run(prober, &start, subject.dt / 2.0, 2 * steps, size)?;
+                half.is_finite.then(|| half.rate().0)
+            }
         };
+        let (change, is_steady) = full.change();
+        let (rate, wobble) = full.rate();
         let rounding = ROUNDING / subject.dt * (energy.abs() / size).max(1.0);
-        let resolution = full.wobble.max(rounding);
-        let reason = match &halved {
-            _ if full.rate.abs() <= resolution => DriftReason::None,
+        let is_clear = is_steady && change.abs() > CLEAR;
+        found.resolution = if is_clear { rounding } else { wobble.max(rounding) };
+        found.reason = match halved {
+            _ if rate.abs() <= found.resolution => DriftReason::None,
             _ if is_short => DriftReason::Short,
             None => DriftReason::Unknown,
             Some(half) => {
-                let ratio = full.rate.abs() / half.rate.abs().max(f64::MIN_POSITIVE);
+                let ratio = rate.abs() / half.abs().max(f64::MIN_POSITIVE);
                 match ratio {
                     0.97..=1.03 => DriftReason::System,
                     ratio if ratio > 1.25 => DriftReason::Truncation,
@@ -121,48 +161,120 @@ impl EnergyDrift {
                 }
             }
         };
-        let rate_halved = halved.as_ref().map(|half| half.rate);
-        Ok(Some(EnergyDrift { rate: full.rate, rate_halved, steps, resolution, reason }))
-    }
-}
-
-struct Rate {
-    rate: f64,
-    /// How far the rates of parts of the trajectory are apart because the energy oscillates.
-    wobble: f64,
-}
-
-/// The rate of the energy: the difference of smooth averages over the halves of a trajectory. None if it diverges.
-fn rate(
-    prober: &mut Prober<'_>,
-    start: &[f64],
-    dt: f64,
-    steps: usize,
-    size: f64,
-) -> Result<Option<Rate>, BlackBoxError> {
-    let action = &prober.subject.action;
-    let mut x = start.to_vec();
-    let mut energies = Vec::with_capacity(steps);
-    for _ in 0..steps {
-        match prober.advance(&x, action, dt) {
-            Ok(next) => x = next,
-            Err(BlackBoxError::NotFinite { .. }) => return Ok(None),
-            Err(error) => return Err(error),
+        (found.rate, found.rate_halved) = (rate, halved);
+        (found.change, found.is_steady) = (Some(change), is_steady);
+        let is_asked = !subject.is_conservative && !subject.has_fixed_dt;
+        if is_asked && is_steady && change > GROWN {
+            let other = Trajectory::run(prober, &start, shorter, PARTS * steps, size)?;
+            let by_system = match other.is_finite {
+                true => other.change().0.max(0.0).ln_1p(),
+                false => f64::INFINITY,
+            };
+            found.is_of_step = Some(by_system < change.ln_1p() / LESS);
         }
-        let Some(energy) = prober.energy(&x)? else { return Ok(None) };
-        energies.push(energy / size);
+        Ok(Some(found))
     }
-    let span = |part: core::ops::Range<usize>| {
-        let middle = (part.start + part.end) / 2;
-        let time = (part.end - part.start) as f64 / 2.0 * dt;
-        (average(&energies[middle..part.end]) - average(&energies[part.start..middle])) / time
-    };
-    let whole = span(0..steps);
-    // A shift of the window moves the phase of an oscillation, but no drift.
-    let shift = steps / 50;
-    let others = [span(shift..steps), span(0..steps - shift), span(shift / 3..steps - shift / 2)];
-    let wobble = others.iter().map(|other| (other - whole).abs()).fold(0.0, f64::max);
-    Ok(Some(Rate { rate: whole, wobble }))
+
+    /// Whether a trajectory that leaves the finite numbers does so by the system itself.
+    pub(crate) fn is_unexamined(&self) -> bool {
+        self.reason == DriftReason::Short
+            || (self.reason == DriftReason::Divergence && self.is_of_step != Some(true))
+    }
+
+    /// Whether the energy changes too much in one direction: by [`CLEAR`] where it is conserved, by [`GROWN`] in any system that does not
+    /// do so itself.
+    pub(crate) fn is_fault(&self, is_conservative: bool) -> bool {
+        if matches!(self.reason, DriftReason::System | DriftReason::Short) {
+            return false;
+        }
+        let is_of_step = self.is_of_step == Some(true);
+        match self.change {
+            None => is_of_step,
+            Some(change) if is_conservative => self.is_steady && change.abs() > CLEAR,
+            Some(change) => self.is_steady && change > GROWN && is_of_step,
+        }
+    }
+}
+
+/// The size of the energy that does not depend on its zero: for a square of a state at its scale the energy itself.
+fn energy_size(prober: &mut Prober<'_>, here: f64) -> Result<f64, BlackBoxError> {
+    let subject = prober.subject;
+    let mut size = 0.0_f64;
+    for i in 0..subject.state.len() {
+        let mut at = |side: f64| {
+            let mut x = subject.state.clone();
+            x[i] += side * DISPLACEMENT * subject.state_scale[i];
+            prober.energy(&x)
+        };
+        let (Some(above), Some(below)) = (at(1.0)?, at(-1.0)?) else { continue };
+        let slope = (above - below).abs() / (4.0 * DISPLACEMENT);
+        let bend = (above + below - 2.0 * here).abs() / 2.0;
+        // `max` leaves out what is not a number.
+        size = [slope, bend].into_iter().filter(|x| x.is_finite()).fold(size, f64::max);
+    }
+    Ok(size)
+}
+
+/// Energies along a trajectory, in units of their size.
+struct Trajectory {
+    dt: f64,
+    energies: Vec<f64>,
+    /// Whether states and energies are finite to the end.
+    is_finite: bool,
+}
+
+impl Trajectory {
+    fn run(
+        prober: &mut Prober<'_>,
+        start: &[f64],
+        dt: f64,
+        steps: usize,
+        size: f64,
+    ) -> Result<Self, BlackBoxError> {
+        let action = &prober.subject.action;
+        let mut x = start.to_vec();
+        let mut found =
+            Trajectory { dt, energies: Vec::with_capacity(steps), is_finite: false };
+        for _ in 0..steps {
+            match prober.advance(&x, action, dt) {
+                Ok(next) => x = next,
+                Err(BlackBoxError::NotFinite { .. }) => return Ok(found),
+                Err(error) => return Err(error),
+            }
+            let energy = prober.energy(&x)?.map(|energy| energy / size);
+            let Some(energy) = energy.filter(|energy| energy.is_finite()) else { return Ok(found) };
+            found.energies.push(energy);
+        }
+        found.is_finite = true;
+        Ok(found)
+    }
+
+    /// The difference of smooth averages over the halves, in 1/s, and how far the rates of parts are apart because the energy oscillates.
+    fn rate(&self) -> (f64, f64) {
+        let steps = self.energies.len();
+        let span = |part: core::ops::Range<usize>| {
+            let middle = (part.start + part.end) / 2;
+            let time = (part.end - part.start) as f64 / 2.0 * self.dt;
+            (average(&self.energies[middle..part.end]) - average(&self.energies[part.start..middle]))
+                / time
+        };
+        let whole = span(0..steps);
+        // A shift of the window moves the phase of an oscillation, but no drift.
+        let shift = steps / 50;
+        let others =
+            [span(shift..steps), span(0..steps - shift), span(shift / 3..steps - shift / 2)];
+        (whole, others.iter().map(|other| (other - whole).abs()).fold(0.0, f64::max))
+    }
+
+    /// The change from the first to the last of equal windows, and whether none of them takes back a part of it.
+    fn change(&self) -> (f64, bool) {
+        let width = self.energies.len() / WINDOWS;
+        let averages: Vec<f64> =
+            (0..WINDOWS).map(|k| average(&self.energies[k * width..(k + 1) * width])).collect();
+        let change = averages[WINDOWS - 1] - averages[0];
+        let back = averages.windows(2).map(|pair| -(pair[1] - pair[0]) * change.signum());
+        (change, back.fold(0.0, f64::max) <= BACK * change.abs())
+    }
 }
 
 /// The average with the weights of a squared sine, squared: an oscillation leaves the fifth power of its period over the window.

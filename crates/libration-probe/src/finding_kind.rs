@@ -36,10 +36,14 @@ pub enum FindingKind {
     HiddenState,
     /// Half a step has the result of a step.
     IgnoresDt,
+    /// Steps below a length have no effect, or one that does not depend on their length.
+    FixedInnerStep,
     /// A velocity accelerates itself.
     NegativeDamping,
     /// The energy of a conservative system changes.
     EnergyLeak,
+    /// The energy changes too much in one direction, by the step.
+    EnergyDrift,
     /// The step is longer than the longest stable one.
     UnstableStep,
     /// A mode grows with every length of the step.
@@ -58,7 +62,7 @@ pub enum FindingKind {
 
 impl FindingKind {
     /// All kinds.
-    pub const ALL: [FindingKind; 22] = [
+    pub const ALL: [FindingKind; 24] = [
         FindingKind::NotReproducible,
         FindingKind::SharedGenerator,
         FindingKind::SameNoise,
@@ -72,8 +76,10 @@ impl FindingKind {
         FindingKind::IrregularDelay,
         FindingKind::HiddenState,
         FindingKind::IgnoresDt,
+        FindingKind::FixedInnerStep,
         FindingKind::NegativeDamping,
         FindingKind::EnergyLeak,
+        FindingKind::EnergyDrift,
         FindingKind::UnstableStep,
         FindingKind::GrowsAlways,
         FindingKind::LimitedValidity,
@@ -99,8 +105,10 @@ impl FindingKind {
             FindingKind::IrregularDelay => "irregular-delay",
             FindingKind::HiddenState => "hidden-state",
             FindingKind::IgnoresDt => "ignores-dt",
+            FindingKind::FixedInnerStep => "fixed-inner-step",
             FindingKind::NegativeDamping => "negative-damping",
             FindingKind::EnergyLeak => "energy-leak",
+            FindingKind::EnergyDrift => "energy-drift",
             FindingKind::UnstableStep => "unstable-step",
             FindingKind::GrowsAlways => "grows-always",
             FindingKind::LimitedValidity => "limited-validity",
@@ -156,11 +164,17 @@ impl FindingKind {
             FindingKind::IgnoresDt => {
                 "pass dt to the integrator; if the step has one length only, audit with `--fixed-dt` (Python: `fixed_dt=True`)"
             }
+            FindingKind::FixedInnerStep => {
+                "divide each step into equal parts of at most the inner step; if the inner step is meant, keep dt a multiple of it"
+            }
             FindingKind::NegativeDamping => {
                 "reverse the sign of the force that grows with this velocity, unless it is a drive"
             }
             FindingKind::EnergyLeak => {
                 "remove damping, friction and forces without a potential; if they are meant, audit without `--conservative` (Python: `conservative`)"
+            }
+            FindingKind::EnergyDrift => {
+                "shorten the step, or use a symplectic integrator such as velocity Verlet"
             }
             FindingKind::UnstableStep => "shorten the step, or use an implicit integrator",
             FindingKind::GrowsAlways => {

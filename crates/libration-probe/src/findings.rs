@@ -3,7 +3,7 @@
 use libration_report::notation::number;
 
 use crate::FindingKind::*;
-use crate::energy_finding::{energy_leak, negative_damping};
+use crate::energy_finding::{energy_drift, energy_leak, mode_loss, negative_damping};
 use crate::report::ProbeReport;
 use crate::{Bits, Finding, Subject};
 
@@ -94,6 +94,9 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
             "a step of half the length gives the same bits: the simulator ignores dt".into(),
         ));
     }
+    found.extend(
+        report.inner_step.iter().map(|inner| Finding::warning(FixedInnerStep, inner.in_words())),
+    );
     if !report.is_differentiable() {
         found.push(Finding::warning(
             NotDifferentiable,
@@ -181,7 +184,12 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
     if report.is_conservative {
         let leak = energy_leak(report.defects.as_ref(), &report.modes, equilibrium.holds);
         found.extend(leak.map(|text| Finding::fault(EnergyLeak, text)));
+        let loss = if equilibrium.holds { mode_loss(report) } else { None };
+        found.extend(loss.map(|text| Finding::fault(EnergyDrift, text)));
     }
+    let drift = report.defects.as_ref().and_then(|defects| defects.energy.as_ref());
+    let drift = drift.and_then(|drift| energy_drift(drift, report.is_conservative, report.dt));
+    found.extend(drift.map(|text| Finding::fault(EnergyDrift, text)));
     let grows = report.spectral_radius > 1.0 + COARSE;
     if report.flow.is_none()
         && grows
@@ -200,8 +208,9 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
     }
     if let Some(limit) = &report.largest_dt {
         if limit.grows_always {
-            found.push(Finding::warning(
+            found.push(Finding::new(
                 GrowsAlways,
+                equilibrium.holds,
                 format!(
                     "the mode of {} grows with every step length though it does not grow in the system",
                     limit.mode

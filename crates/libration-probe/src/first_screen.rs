@@ -2,6 +2,7 @@
 
 use libration_report::notation::{cut_off, number, plural};
 use libration_report::page::Highlight;
+use libration_report::verdict::Outcome;
 
 use crate::ProbeReport;
 use crate::summary::capitalised;
@@ -13,10 +14,12 @@ const MOST_ACTIONS: usize = 3;
 pub(crate) fn title(audit: &ProbeReport) -> String {
     let faults = audit.findings.iter().filter(|finding| finding.is_fault).count();
     let warnings = audit.findings.len() - faults;
-    let found = match (faults, warnings) {
-        (0, 0) => "no fault".into(),
-        (0, warnings) => format!("no fault, but {}", plural(warnings, "warning")),
-        (faults, _) => plural(faults, "fault"),
+    let outcome = audit.verdict.outcome;
+    let found = match (outcome, warnings) {
+        (Outcome::Fault, _) => plural(faults, "fault"),
+        (Outcome::NoFault, 0) => outcome.to_string(),
+        (Outcome::NoFault, _) => format!("{outcome}, but {}", plural(warnings, "warning")),
+        _ => return format!("Whether the step of {} has a fault is {outcome}", audit.title),
     };
     format!("The step of {} has {found}", audit.title)
 }

@@ -10,6 +10,14 @@ use crate::prober::Prober;
 const MOST_HALVINGS: usize = 40;
 /// Steps from which the limit is extrapolated, each half of the one before.
 const LEVELS: usize = 5;
+/// Halvings beyond the last level at which the limit is confirmed, and most of those that are tried until it is.
+const FARTHER: usize = 6;
+const MORE_HALVINGS: usize = 14;
+/// Factor by which a rate may be farther from the limit than one that converges with order 1, estimated errors that count, and the part
+/// of the largest rate that is no difference.
+const MARGIN: f64 = 4.0;
+const ERRORS: f64 = 10.0;
+const NEAR: f64 = 1e-6;
 /// Distance of all factors of a short step from 1.
 const SHORT: f64 = 0.2;
 
@@ -35,6 +43,7 @@ impl Flow {
     ) -> Result<Option<Self>, BlackBoxError> {
         let mut steps = vec![step.clone()];
         let mut levels: Vec<(Matrix, Matrix)> = Vec::new();
+        let mut first: Option<((Matrix, Matrix), usize)> = None;
         let subject = prober.subject;
         for halvings in 0..MOST_HALVINGS {
             let step = match steps.get(halvings) {
@@ -54,17 +63,30 @@ impl Flow {
                 None => levels.clear(),
             }
             if levels.len() == LEVELS {
-                let (whole, errors) = extrapolate(&levels);
-                let (n, m) = (step.a.rows(), step.b.columns());
-                return Ok(Some(Flow {
-                    a: whole.block((0, 0), (n, n)),
-                    b: whole.block((0, n), (n, m)),
-                    a_errors: errors.block((0, 0), (n, n)),
-                    steps,
-                }));
+                let limit = extrapolate(&levels);
+                let is_last = first.as_ref().is_some_and(|(_, at)| halvings - at == MORE_HALVINGS);
+                if is_confirmed(prober, &limit, &levels, halvings)? {
+                    return Ok(Some(Flow::new(limit, steps)));
+                }
+                let (unconfirmed, _) = first.get_or_insert((limit, halvings));
+                if is_last {
+                    return Ok(Some(Flow::new(unconfirmed.clone(), steps)));
+                }
+                // Steps that are not shorter than an inner one seem to converge, to the rates of inner steps.
+                levels.remove(0);
             }
         }
-        Ok(None)
+        Ok(first.map(|(limit, _)| Flow::new(limit, steps)))
+    }
+
+    fn new((whole, errors): (Matrix, Matrix), steps: Vec<LinearisedStep>) -> Self {
+        let (n, m) = (steps[0].a.rows(), steps[0].b.columns());
+        Flow {
+            a: whole.block((0, 0), (n, n)),
+            b: whole.block((0, n), (n, m)),
+            a_errors: errors.block((0, 0), (n, n)),
+            steps,
+        }
     }
 
     /// The rates with entries of 0 and 1 where they are so within their errors.
@@ -82,6 +104,32 @@ impl Flow {
             }
         })
     }
+}
+
+/// Whether the rates of a far shorter step are as near to the limit as those of the last level tell.
+fn is_confirmed(
+    prober: &mut Prober<'_>,
+    (limit, errors): &(Matrix, Matrix),
+    levels: &[(Matrix, Matrix)],
+    halvings: usize,
+) -> Result<bool, BlackBoxError> {
+    // With a memory in time, far shorter steps need as many more calls.
+    if prober.memory > 0 {
+        return Ok(true);
+    }
+    let dt = prober.subject.dt * 2.0_f64.powi(-((halvings + FARTHER) as i32));
+    let Some((rates, own_errors)) = rates(&LinearisedStep::at(prober, dt)?) else {
+        return Ok(false);
+    };
+    let last = &levels[LEVELS - 1].0;
+    let largest = limit.entries().iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let is_near = |k: usize| {
+        let of = |matrix: &Matrix| matrix.entries()[k];
+        let falls = MARGIN * (of(last) - of(limit)).abs() / f64::from(1 << FARTHER);
+        let explained = ERRORS * (of(&own_errors) + of(errors)) + NEAR * largest;
+        (of(&rates) - of(limit)).abs() <= falls + explained
+    };
+    Ok((0..limit.entries().len()).all(is_near))
 }
 
 /// The rates whose exact flow a short step is, and their errors.

@@ -15,17 +15,17 @@ const STEPS_PER_PERIOD: [f64; 3] = [12.0, 20.0, 33.0];
 pub struct HiddenLatency {
     /// The name of the input.
     pub input: String,
-    /// Steps by which a command is used late, on average; 0: by the step that gets it.
-    pub late_steps: f64,
+    /// Steps by which a command is used late, on average; 0: by the step that gets it. None if this was not examined.
+    pub late_steps: Option<f64>,
     /// The same in s.
-    pub late: f64,
+    pub late: Option<f64>,
     /// The state that responds most, whose phase is compared.
     pub state: Option<String>,
     /// The delay in s beyond that of the flow under the same held command, by the phase of the step; negative: it is early. None
     /// without the flow, or without an effect.
     pub integrator_delay: Option<f64>,
     /// The sum of both in s.
-    pub total: f64,
+    pub total: Option<f64>,
 }
 
 /// The latency of each input.
@@ -40,18 +40,28 @@ pub(crate) fn hidden_latencies(
     let exact = flow.map(|flow| Discretisation::exact(&flow.a, &flow.b, step.dt));
     let of = |j: usize| {
         let by_phase = exact.as_ref().and_then(|exact| delay(step, exact, pairs, subject, j));
-        let late_steps = memory.latency(j, delays);
+        let name = &subject.inputs[j].name;
+        let is_known = !subject.direct_inputs.contains(name);
+        let late_steps = is_known.then(|| memory.latency(j, delays));
         let integrator_delay = by_phase.as_ref().map(|(_, delay)| *delay);
         HiddenLatency {
-            input: subject.inputs[j].name.clone(),
+            input: name.clone(),
             late_steps,
-            late: late_steps * step.dt,
+            late: late_steps.map(|late| late * step.dt),
             state: by_phase.map(|(i, _)| subject.states[i].name.clone()),
             integrator_delay,
-            total: late_steps * step.dt + integrator_delay.unwrap_or(0.0),
+            total: late_steps.map(|late| late * step.dt + integrator_delay.unwrap_or(0.0)),
         }
     };
-    (0..subject.inputs.len()).map(of).collect()
+    let measured = subject.measured_inputs.iter().map(|input| HiddenLatency {
+        input: input.name.clone(),
+        late_steps: Some(input.late_steps),
+        late: Some(input.late_steps * step.dt),
+        state: None,
+        integrator_delay: None,
+        total: Some(input.late_steps * step.dt),
+    });
+    (0..subject.inputs.len()).map(of).chain(measured).collect()
 }
 
 /// The state that responds most to an input, and by how much it is later than in an exact step.

@@ -1,6 +1,6 @@
 //! The part of the page of an audit about the integrator.
 
-use libration_report::notation::number;
+use libration_report::notation::{number, plural};
 use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 
@@ -78,6 +78,10 @@ pub(crate) fn defects(page: &mut Page, audit: &ProbeReport) {
             Some(_) => format!("{}; {reason}", beside("half the step", energy.rate_halved)),
             None => reason.to_owned(),
         };
+        if let Some(change) = energy.change {
+            let steps = plural(energy.steps, "step");
+            row("relative change of the energy", Some(change), format!("over {steps}; conserved: 0"));
+        }
         row("relative rate of the energy (1/s)", Some(energy.rate), reason);
     }
     page.table(&table, 4);

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::impulse::{Lateness, MOST_CALLS, moved, respond};
+use crate::observation_age::ObservationAge;
 use crate::observed::Observed;
 use crate::prober::Prober;
 use crate::settling::Settling;
@@ -26,6 +27,8 @@ pub struct Memory {
     pub observation: Option<Lateness>,
     /// Which state observations show; none without observations.
     pub observed: Option<Observed>,
+    /// The age of observations within the last step, in steps; none: not examined.
+    pub observed_age: Option<f64>,
     /// How the influence of earlier calls fades, if it is a filter's.
     pub settling: Option<Settling>,
 }
@@ -62,7 +65,24 @@ impl Memory {
             Some(_) if observation_varies => Some(Observed::Varying),
             Some(response) => Some(Observed::of(prober, response.first.is_some())?),
         };
-        Ok(Memory { calls, tried: MOST_CALLS, inputs, state, observation, observed, settling })
+        let is_new = |of: &Lateness| of.first == state.first && of.last == state.last;
+        let mut observed_age = None;
+        if observed == Some(Observed::Asked)
+            && observation.as_ref().is_some_and(is_new)
+            && let ObservationAge::Steps(age) = ObservationAge::measure(prober)?
+        {
+            observed_age = Some(age);
+        }
+        Ok(Memory {
+            calls,
+            tried: MOST_CALLS,
+            inputs,
+            state,
+            observation,
+            observed,
+            observed_age,
+            settling,
+        })
     }
 
     /// The latency of an action beyond that of a step that uses it at once, in steps on average. Where it changes from step to step, the
@@ -80,6 +100,6 @@ impl Memory {
         let varies = self.observed == Some(Observed::Varying);
         let late = self.observation.as_ref().filter(|found| found.first.is_some() && !varies);
         let late = late.map_or(0.0, |observation| observation.mean - self.state.mean);
-        late + if self.observed == Some(Observed::Given) { 1.0 } else { 0.0 }
+        late + if self.observed == Some(Observed::Given) { 1.0 } else { self.observed_age.unwrap_or(0.0) }
     }
 }

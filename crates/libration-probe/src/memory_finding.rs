@@ -73,6 +73,21 @@ pub(crate) fn of_memory(
             ),
         ));
     }
+    for input in &subject.measured_inputs {
+        if input.late_steps.abs() < DELAY && !input.varies {
+            continue;
+        }
+        found.push(Finding::fault(
+            if input.varies { IrregularDelay } else { LateCommand },
+            format!(
+                "a command of `{}` acts {} late ({} s) on average{}",
+                input.name,
+                steps(input.late_steps),
+                number(input.late_steps * dt, 4),
+                if input.varies { ", and its delay changes from step to step" } else { "" }
+            ),
+        ));
+    }
     if memory.state.last.unwrap_or(0) > 0 {
         found.push(Finding::fault(
             LateState,

@@ -52,7 +52,7 @@ impl Observed {
 }
 
 /// A step, and the observation after it.
-fn after(
+pub(crate) fn after(
     prober: &mut Prober<'_>,
     x: &[f64],
     u: &[f64],

@@ -46,8 +46,8 @@ pub fn page(audit: &ProbeReport) -> String {
 fn findings(page: &mut Page, audit: &ProbeReport) {
     page.heading("What should be changed?");
     if audit.findings.is_empty() {
-        page.paragraph(format!("Nothing: the audit has no finding.{}", longer_step(audit)));
-        return;
+        page.paragraph(format!("The audit has no finding.{}", longer_step(audit)));
+        return limits(page, audit);
     }
     let mut table = Table::new("findings", &["finding", "kind", "evidence", "what to change"]);
     for finding in &audit.findings {
@@ -60,6 +60,15 @@ fn findings(page: &mut Page, audit: &ProbeReport) {
         ]);
     }
     page.table(&table, 4);
+    limits(page, audit);
+}
+
+/// What the audit did not examine.
+fn limits(page: &mut Page, audit: &ProbeReport) {
+    let limits = audit.verdict.limits();
+    if !limits.is_empty() {
+        page.paragraph(limits);
+    }
 }
 
 /// How much longer the step might be; empty if that is unknown.
@@ -96,7 +105,7 @@ fn modes(page: &mut Page, audit: &ProbeReport) {
              step takes damping away. A mode with |z| above 1 grows."
         }
         false => {
-            "The simulator has one step only, so that the limit of small steps is unknown. A mode with |z| above 1 grows."
+            "The limit of small steps is unknown, and with it the modes of the system. A mode with |z| above 1 grows."
         }
     });
     let of_step = ["mode in", "|z|", "growth rate (1/s)", "frequency (Hz)"];
@@ -144,11 +153,15 @@ fn latency(page: &mut Page, audit: &ProbeReport) {
     }
     page.heading("Which latency is hidden in the step?");
     let is_late = !audit.delays.is_empty()
-        || audit.hidden_latency.iter().any(|latency| latency.late_steps != 0.0);
+        || audit.hidden_latency.iter().any(|latency| latency.late_steps.is_some_and(|late| late != 0.0));
     let is_known = audit.hidden_latency.iter().any(|latency| latency.integrator_delay.is_some());
     page.paragraph(format!(
         "{} {}",
-        if is_late { "Some commands are used late." } else { "Each command is used in the step that receives it." },
+        match (is_late, audit.hidden_latency.iter().all(|latency| latency.late_steps.is_some())) {
+            (true, _) => "Some commands are used late.",
+            (false, true) => "Each command is used in the step that receives it.",
+            (false, false) => "Whether each command is used in the step that receives it was not examined for all inputs.",
+        },
         if is_known {
             "The integrator itself delays the effect of a command: beyond the exact motion under the same held command, by the phase of \
              the state that responds most. A negative delay is an early effect."
@@ -176,11 +189,11 @@ fn latency(page: &mut Page, audit: &ProbeReport) {
             false => vec![input, delay, state],
             true => vec![
                 input,
-                Cell::rounded(latency.late_steps, 4),
-                Cell::rounded(latency.late, 4),
+                known(latency.late_steps, 4),
+                known(latency.late, 4),
                 delay,
                 state,
-                Cell::rounded(latency.total, 4),
+                known(latency.total, 4),
             ],
         });
     }

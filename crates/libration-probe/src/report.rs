@@ -1,6 +1,7 @@
 //! The audit of a step, and its results.
 
 use libration::analysis::positions_and_velocities;
+use libration_report::verdict::Verdict;
 use serde::Serialize;
 
 use crate::driven_velocity::{DrivenVelocity, driven_velocities};
@@ -15,7 +16,7 @@ use crate::prober::Prober;
 use crate::reference_check::ReferenceCheck;
 use crate::rest::Rest;
 use crate::{
-    Bits, BlackBoxError, Confirmation, Convergence, Defects, DelayAudit, LargestStep, Match,
+    Bits, BlackBoxError, Confirmation, Convergence, Defects, DelayAudit, InnerStep, LargestStep, Match,
     Memory, Recognition, Subject,
 };
 
@@ -27,6 +28,8 @@ const DIFFERENTIABLE: f64 = 0.01;
 pub struct ProbeReport {
     /// The answer in a few sentences.
     pub answer: String,
+    /// Whether the step has a fault, with the evidence and what was not examined.
+    pub verdict: Verdict,
     /// Faults of the step, and facts without which its numbers mislead. A clean step has none.
     pub findings: Vec<Finding>,
     /// The simulator.
@@ -53,6 +56,8 @@ pub struct ProbeReport {
     pub equilibrium: Rest,
     /// Whether half a step gives the same bits as a step.
     pub ignores_dt: bool,
+    /// Inner steps of a fixed length; none if there is no evidence of them.
+    pub inner_step: Option<InnerStep>,
     /// The matrices of the step; none if it is not reproducible.
     pub step: Option<Matrices>,
     /// The largest estimated error of an entry, relative to the largest entry of its row in units of the scales.
@@ -107,6 +112,7 @@ impl ProbeReport {
         }
         ProbeReport {
             answer: String::new(),
+            verdict: Verdict::unknown(String::new()),
             findings: Vec::new(),
             title: subject.title.clone(),
             version: subject.version.clone(),
@@ -125,6 +131,7 @@ impl ProbeReport {
                 state: String::new(),
             },
             ignores_dt: false,
+            inner_step: None,
             step: None,
             jacobian_error: f64::INFINITY,
             state_error: f64::INFINITY,
@@ -158,8 +165,9 @@ impl ProbeReport {
         let subject = prober.subject;
         self.equilibrium = Rest::measure(prober)?;
         let has_fixed_dt = subject.has_fixed_dt || {
-            self.ignores_dt = ignores_dt(prober)?;
-            self.ignores_dt
+            self.inner_step = InnerStep::measure(prober)?;
+            self.ignores_dt = self.inner_step.is_none() && ignores_dt(prober)?;
+            self.ignores_dt || self.inner_step.is_some()
         };
         let mut step = LinearisedStep::at(prober, subject.dt)?;
         self.jacobian_error = step.relative_error(subject);
@@ -216,9 +224,9 @@ impl ProbeReport {
         self.state_error <= DIFFERENTIABLE
     }
 
-    /// Whether the step has no fault.
+    /// Whether the verdict is good: what was examined has no fault, and decides.
     pub fn holds(&self) -> bool {
-        !self.findings.iter().any(|finding| finding.is_fault)
+        self.verdict.is_good()
     }
 }
 

@@ -48,10 +48,28 @@ pub struct Subject {
     pub reference: Option<Reference>,
     /// Delays of the actions in s that the simulator states; empty if it states none.
     pub stated_delays: Vec<f64>,
+    /// Inputs that the audit sets past the way of commands, so that their lateness is not that of commands.
+    pub direct_inputs: Vec<String>,
+    /// Inputs whose lateness the adapter of the simulator measures: discrete ones, and those whose delay varies at random.
+    pub measured_inputs: Vec<MeasuredInput>,
+    /// The parts of the simulator that are not audited, such as wrappers.
+    pub not_examined: Vec<String>,
     /// Recordings of the simulator that should have the same bits.
     pub recordings: Vec<Recording>,
     /// The command that repeats the audit.
     pub invocation: String,
+}
+
+/// The lateness of an input that the adapter of a simulator measures.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeasuredInput {
+    /// Its name.
+    pub name: String,
+    /// Steps by which a command is used late, on average.
+    pub late_steps: f64,
+    /// Whether the delay changes from step to step.
+    pub varies: bool,
 }
 
 /// Two recordings that should have the same bits.
@@ -118,6 +136,9 @@ impl Subject {
             validity: Vec::new(),
             reference: None,
             stated_delays: Vec::new(),
+            direct_inputs: Vec::new(),
+            measured_inputs: Vec::new(),
+            not_examined: Vec::new(),
             recordings: Vec::new(),
             invocation: String::new(),
         }

@@ -1,24 +1,27 @@
 //! The answer of an audit, in sentences.
 
 use libration_report::notation::{number, plural};
+use libration_report::verdict::Outcome;
 
 use crate::modes::ProbedMode;
+use crate::verdict::Growth;
 use crate::{FindingKind, ProbeReport};
 
 impl ProbeReport {
     /// The answer in a few sentences: faults first.
     pub(crate) fn summary(&self) -> String {
-        let faults: Vec<&str> = self
-            .findings
-            .iter()
-            .filter(|finding| finding.is_fault)
-            .map(|finding| finding.text.as_str())
-            .collect();
         let mut sentences = Vec::new();
-        match faults[..] {
-            [] => {}
-            [first] => sentences.push(format!("One fault: {first}.")),
-            [first, ..] => sentences.push(format!("{} faults, the first: {first}.", faults.len())),
+        let faults = self.findings.iter().filter(|finding| finding.is_fault).count();
+        match (self.verdict.outcome, faults) {
+            (Outcome::Fault, 1) => {
+                sentences.push(format!("One fault: {}.", self.verdict.evidence));
+            }
+            (Outcome::Fault, _) => sentences.push(format!("{}.", self.verdict.evidence)),
+            (Outcome::Unknown, _) => sentences.push(format!(
+                "Whether the step has a fault is unknown: {}.",
+                self.verdict.evidence
+            )),
+            _ => {}
         }
         if self.is_differentiable() {
             sentences.extend(self.stability());
@@ -34,22 +37,24 @@ impl ProbeReport {
         let validity =
             self.findings.iter().filter(|finding| finding.kind == FindingKind::LimitedValidity);
         sentences.extend(validity.map(|finding| format!("{}.", capitalised(&finding.text))));
-        if faults.is_empty() && self.step.is_some() && self.is_differentiable() {
+        if self.verdict.outcome == Outcome::NoFault {
             let warnings: Vec<&str> = self
                 .findings
                 .iter()
                 .filter(|finding| finding.kind != FindingKind::LimitedValidity)
                 .map(|finding| finding.text.as_str())
                 .collect();
+            let verdict = capitalised(self.verdict.outcome.name());
             sentences.push(match warnings[..] {
-                [] => "No fault was found.".into(),
-                [only] => format!("No fault was found, but 1 warning: {only}."),
+                [] => format!("{verdict} was found."),
+                [only] => format!("{verdict} was found, but 1 warning: {only}."),
                 [first, ..] => format!(
-                    "No fault was found, but {}, the first: {first}.",
+                    "{verdict} was found, but {}, the first: {first}.",
                     plural(warnings.len(), "warning")
                 ),
             });
         }
+        sentences.extend(Some(self.verdict.limits()).filter(|limits| !limits.is_empty()));
         sentences.join(" ")
     }
 
@@ -57,24 +62,25 @@ impl ProbeReport {
         self.step.as_ref()?;
         let dt = number(self.dt, 6);
         let leading = self.modes.first()?;
-        let grows = leading.radius > 1.0 + 1e-9 && leading.step.growth_rate > 10.0 * leading.error;
-        let flow_grows = leading.flow.is_some_and(|flow| flow.growth_rate > 10.0 * leading.error);
-        let growth = || format!("grows at {} 1/s", number(leading.step.growth_rate, 4));
+        let growth = format!("grows at {} 1/s", number(leading.step.growth_rate, 4));
         let names = leading.names();
-        let mut text = match (grows, flow_grows) {
-            (true, true) => {
-                format!("With dt = {dt} s a mode {}, as in the system itself ({names})", growth())
+        let is_at_rest = self.equilibrium.holds;
+        let mut text = match self.growth() {
+            Growth::OfSystem => format!(
+                "With dt = {dt} s a mode {growth}, as in the system itself ({names})"
+            ),
+            Growth::OfStep if is_at_rest => {
+                format!("With dt = {dt} s the step is unstable: a mode {growth} ({names})")
             }
-            (true, false) if !self.equilibrium.holds => {
-                format!(
-                    "With dt = {dt} s a mode of deviations from the motion {} ({names})",
-                    growth()
-                )
+            Growth::Unknown => format!(
+                "With dt = {dt} s a mode of the step {growth} ({names}), and whether it does so in the system is unknown"
+            ),
+            Growth::OfStep | Growth::None if leading.radius > 1.0 + 1e-9 && !is_at_rest => {
+                format!("With dt = {dt} s a mode of deviations from the motion {growth} ({names})")
             }
-            (true, false) => {
-                format!("With dt = {dt} s the step is unstable: a mode {} ({names})", growth())
+            Growth::OfStep | Growth::None => {
+                format!("With dt = {dt} s the step is stable at this state")
             }
-            (false, _) => format!("With dt = {dt} s the step is stable at this state"),
         };
         // The fault comes first, and has the limit.
         let is_known =

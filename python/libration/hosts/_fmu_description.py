@@ -58,10 +58,16 @@ class Description:
         flag = "providesDirectionalDerivative" + ("" if self.model.fmiVersion == "2.0" else "s")
         return element is not None and element.get(flag) in ("true", "1")
 
+    @property
+    def inner_step(self) -> float | None:
+        """The fixed length in s of the steps that the FMU states to make within a macro step; None if it states none."""
+        found = getattr(self.interface, "fixedInternalStepSize", None)
+        return None if found is None else float(found)
+
     def macro_step(self) -> float:
         """Return the fixed step of the FMU, or that of its default experiment."""
         experiment = self.model.defaultExperiment
-        for step in (getattr(self.interface, "fixedInternalStepSize", None), experiment.stepSize if experiment is not None else None):
+        for step in (self.inner_step, experiment.stepSize if experiment is not None else None):
             if step is not None:
                 return float(step)
         raise ValueError(f"dt is missing, and {self.name} has no step of a default experiment; expected the macro step in s")

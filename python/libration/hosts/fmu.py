@@ -94,6 +94,11 @@ def fmu_host(
         hidden = [v.name for v in described.continuous_states() if v not in readers]
         what = f"the continuous states {', '.join(hidden)}" if hidden else "what is no state"
         notes.append(f"each step begins at {load['time']:g} s, with {what} at the start")
+        if described.inner_step is not None:
+            parts = timestep / described.inner_step
+            whole = abs(parts - round(parts)) <= 1e-9 * max(1.0, parts)
+            fits = f"{round(parts)} of them in a macro step" if whole and parts > 0.5 else "the macro step is no multiple of it"
+            notes.append(f"the FMU states inner steps of {described.inner_step:g} s: {fits}")
         if not described.interface.canHandleVariableCommunicationStepSize:
             notes.append("the FMU declares a constant macro step: other timesteps may fail")
     if fixed:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import numbers
 from typing import Any, Sequence
 
@@ -12,6 +11,8 @@ from numpy.typing import NDArray
 
 from .._keywords import check_keywords
 from .._settings import nearest, positive
+from ._gymnasium_steps import Steps
+from ._gymnasium_wrappers import unwrapped_copy
 from .host import Host
 
 Array = NDArray[np.float64]
@@ -45,8 +46,10 @@ def gymnasium_host(
 ) -> Host:
     """Return a Gymnasium environment as a step of its internal state.
 
-    The state is that of the environment without wrappers, in the precision that it has inside, not its observation. Each call sets all
-    plain attributes of the environment to what they were. The environment itself is never changed: the host has a copy.
+    The state is that of the environment without wrappers, in the precision that it has inside, not its observation. Actions go through the
+    wrappers, and observations are those that ``step`` returns. Wrappers of rewards, records and time limits are left out; those whose
+    observations are no function of a state, too, and the audit names these. Each call sets all plain attributes of the environment to what
+    they were, unless they are a memory of earlier calls. The environment itself is never changed: the host has a copy.
 
     Parameters
     ----------
@@ -58,7 +61,8 @@ def gymnasium_host(
     state:
         The point (default: zero for Pendulum, CartPole and Acrobot; for others the current state, or that of ``reset(seed=0)``).
     dt:
-        Timestep in s at which the step is described (default: that of the environment).
+        Timestep in s at which the step is described (default: that of the environment, as often as wrappers repeat it). It is required of an
+        environment without an attribute of its timestep, which then has this timestep only.
     state_attribute, dt_attribute:
         Names of the attributes with the state and the timestep (default of the latter: ``dt``, ``tau``, ``timestep`` or
         ``time_step``).
@@ -72,16 +76,17 @@ def gymnasium_host(
     TypeError, ValueError
         For an environment without these attributes, or a state or action of another size; the message names the attribute.
     """
-    inner = _environment(env)
+    outer, wrappers, left_out = unwrapped_copy(env)
+    inner = outer.unwrapped
     kind = next((name for name in _KNOWN if type(inner).__name__.startswith(name)), None)
     named, input_name, positions, angles = _KNOWN[kind] if kind else ((), "action (command)", (), ())
     title = inner.spec.id if getattr(inner, "spec", None) is not None else type(inner).__name__
-    clock = _clock(inner, dt_attribute, title)
+    clock = _clock(inner, dt_attribute, title, dt is not None)
     start = _start(inner, state, state_attribute, np.zeros(len(named)) if kind else None, title)
     notes: list[str] = []
-    fixed, vector = _action(inner, action, action_attribute, notes)
-    simulation = _Environment(inner, state_attribute, clock, action_attribute, fixed, angles)
-    timestep = positive("dt", getattr(inner, clock) if dt is None else dt)
+    fixed, vector = _action(outer, action, action_attribute, notes)
+    simulation = Steps(outer, state_attribute, clock, action_attribute, fixed, angles, bool(wrappers))
+    timestep = positive("dt", getattr(inner, clock) if dt is None and clock is not None else dt)
     size, count = len(start), len(vector)
     labels = tuple(states) if states is not None else named or tuple(f"x{k + 1}" for k in range(size))
     of_inputs = tuple(inputs) if inputs is not None else (input_name,) if count == 1 else tuple(f"u{k + 1}" for k in range(count))
@@ -90,8 +95,19 @@ def gymnasium_host(
             raise ValueError(f"{what} has {len(names)} names; expected {expected}")
     try:
         after = simulation.step(start[np.newaxis], vector[np.newaxis], timestep)[0]
+        repeated = simulation.count or 1
+        if dt is None and repeated > 1:
+            timestep *= repeated
+            after = simulation.step(start[np.newaxis], vector[np.newaxis], timestep)[0]
+        memory = _memory(simulation, start, vector, timestep, bool(wrappers))
     except Exception as error:
         raise ValueError(f"{title} fails in a step at the point: {type(error).__name__}: {error}") from error
+    if wrappers:
+        notes.append(f"actions and observations go through {', '.join(wrappers)}")
+    if repeated > 1:
+        notes.append(f"a step is {repeated} steps of the environment")
+    simulation.settle()
+    not_examined, discrete = _limits(simulation, start, vector, timestep, left_out)
     if simulation.is_single:
         notes.append("the environment keeps its state in float32: differences have about three digits")
     if angles:
@@ -112,64 +128,70 @@ def gymnasium_host(
         positions=positions,
         equilibrium=at_rest,
         notes=tuple(notes),
+        memory=memory,
+        fixed_dt=clock is None,
+        observe=simulation.observe if simulation.is_observed else None,
+        not_examined=tuple(not_examined),
+        direct_inputs=of_inputs[:count] if action_attribute is not None else (),
+        measured_inputs=discrete,
     )
 
 
-class _Environment:
-    """The steps of an environment, from attributes that are set as a whole."""
-
-    def __init__(
-        self, inner: Any, state: str, clock: str, action: str | None, fixed: Any, angles: tuple[int, ...]
-    ) -> None:
-        self.inner, self.names, self.fixed, self.angles = inner, (state, clock, action), fixed, list(angles)
-        plain = (numbers.Number, str, bytes, np.ndarray, np.generic, tuple, list, dict, type(None))
-        self.attributes = {name: value for name, value in vars(inner).items() if isinstance(value, plain)}
-        generator: Any = getattr(inner, "np_random", None)
-        self.bits = copy.deepcopy(generator.bit_generator.state) if hasattr(generator, "bit_generator") else None
-        self.is_single = False
-
-    def step(self, states: Array, actions: Array, dt: float) -> Array:
-        states, actions = np.asarray(states, dtype=np.float64), np.asarray(actions, dtype=np.float64)
-        if states.ndim != 2 or len(actions) != len(states):
-            raise ValueError(f"states and actions have shapes {states.shape} and {actions.shape}; expected a row for each state")
-        inner, (state_name, clock, action_name) = self.inner, self.names
-        after = np.full(states.shape, np.nan)
-        for row, (state, action) in enumerate(zip(states, actions)):
-            if not (np.isfinite(state).all() and np.isfinite(action).all()):
-                continue
-            vars(inner).update(copy.deepcopy(self.attributes))
-            if self.bits is not None and inner.np_random is not None:
-                inner.np_random.bit_generator.state = copy.deepcopy(self.bits)
-            setattr(inner, clock, float(dt))
-            setattr(inner, state_name, state.copy())
-            if action_name is not None:
-                setattr(inner, action_name, float(action[0]))
-            inner.step(action.copy() if self.fixed is None else self.fixed)
-            found = np.asarray(getattr(inner, state_name))
-            self.is_single |= found.dtype == np.float32
-            after[row] = found
-            turns = np.round((after[row, self.angles] - state[self.angles]) / (2 * np.pi))
-            after[row, self.angles] -= 2 * np.pi * turns
-        return after
+def _memory(simulation: Steps, start: Array, vector: Array, dt: float, is_wrapped: bool) -> bool:
+    """Return whether the rows of the host continue a simulation, after a choice of the attributes that live on."""
+    moved = start + 0.01 * np.maximum(1.0, np.abs(start))
+    other = vector + 0.01 * np.maximum(1.0, np.abs(vector))
+    changes: list[tuple[Array, Array, Any]] = [(moved, other, simulation.fixed)]
+    if simulation.fixed is not None:
+        # An attribute of zero would hide them.
+        vector = other
+        changes += [(start, vector, one) for one in simulation.other_actions()[:1]]
+    found = simulation.has_memory(start, vector, changes, dt)
+    if found is False:
+        # The memory may be in attributes, which were the same before each call.
+        simulation.keeps_attributes = True
+        if simulation.has_memory(start, vector, changes, dt) is True:
+            return True
+        simulation.keeps_attributes = False
+    return found is True or (found is None and is_wrapped)
 
 
-def _environment(env: Any) -> Any:
-    """Return a copy of an environment without wrappers."""
-    if isinstance(env, str):
-        try:
-            return gymnasium.make(env, disable_env_checker=True).unwrapped
-        except gymnasium.error.Error as error:
-            raise ValueError(f"env is {env!r}: {' '.join(str(error).split())}") from None
-    if not hasattr(env, "unwrapped") or not hasattr(env, "step"):
-        raise TypeError(f"env must be an environment of Gymnasium or its id, not {type(env).__name__}")
-    try:
-        return copy.deepcopy(env.unwrapped)
-    except Exception as error:
-        raise ValueError(f"env {env} has no copy ({type(error).__name__}: {error}); help: give its id") from None
+def _limits(
+    simulation: Steps, start: Array, vector: Array, dt: float, left_out: Sequence[str]
+) -> tuple[list[str], tuple[tuple[str, float, bool], ...]]:
+    """Return what an audit does not examine, and the lateness of a discrete action, or of actions whose delay varies at random."""
+    names = ["rewards and ends of episodes"]
+    if left_out:
+        what = "wrapper" if len(left_out) == 1 else "wrappers"
+        names.insert(0, f"{len(left_out)} {what} ({', '.join(left_out)})")
+    if not simulation.is_observed:
+        names.append("observations, which are no real numbers")
+    if simulation.draws:
+        names.append("random numbers of the environment, which are the same in each step")
+    if simulation.fixed is None:
+        calls = _calls(simulation, (start, vector, dt), (start, vector + 0.01 * np.maximum(1.0, np.abs(vector)), None))
+        # A delay that does not vary is found by the audit itself.
+        return names, (("action", _mean(calls), True),) if any(one != calls[0] for one in calls) else ()
+    vector = vector + np.maximum(1.0, np.abs(vector))
+    for other in simulation.other_actions():
+        calls = _calls(simulation, (start, vector, dt), (start, vector, other))
+        if any(calls):
+            return names, (("discrete action", _mean(calls), any(one != calls[0] for one in calls)),)
+    names.append("lateness of discrete actions")
+    return names, ()
 
 
-def _clock(inner: Any, name: str | None, title: str) -> str:
-    """Return the name of the attribute with the timestep, a number that can be set."""
+def _calls(simulation: Steps, base: tuple[Array, Array, float], changed: tuple[Array, Array, Any]) -> list[set[int]]:
+    """Return the calls whose states respond to each of many changed calls; empty if states vary by themselves."""
+    return [own for own, _ in simulation.responses(*base[:2], changed, base[2]) or []]
+
+
+def _mean(calls: list[set[int]]) -> float:
+    return float(np.mean([call for one in calls for call in one]))
+
+
+def _clock(inner: Any, name: str | None, title: str, is_given: bool) -> str | None:
+    """Return the name of the attribute with the timestep, a number that can be set; None if there is none, and the timestep is given."""
     for one in _TIMESTEPS if name is None else (name,):
         value = getattr(inner, one, None)
         if isinstance(value, numbers.Real) and not isinstance(value, bool):
@@ -178,8 +200,13 @@ def _clock(inner: Any, name: str | None, title: str) -> str:
             return one
     if name is not None:
         raise ValueError(f"{title} has no number {name!r}: {nearest(name, [k for k in vars(inner) if not k.startswith('_')])}")
+    if is_given:
+        return None
     wanted = ", ".join(_TIMESTEPS)
-    raise ValueError(f"{title} has no timestep: it has no number {wanted}; help: name the attribute with dt_attribute{_mujoco(inner)}")
+    raise ValueError(
+        f"{title} has no timestep: it has no number {wanted}; help: name the attribute with dt_attribute, or give dt, "
+        f"the only timestep that it has{_mujoco(inner)}"
+    )
 
 
 def _mujoco(inner: Any) -> str:
@@ -208,9 +235,9 @@ def _start(inner: Any, state: Any, name: str, default: Array | None, title: str)
     return point
 
 
-def _action(inner: Any, action: Any, attribute: str | None, notes: list[str]) -> tuple[Any, Array]:
+def _action(outer: Any, action: Any, attribute: str | None, notes: list[str]) -> tuple[Any, Array]:
     """Return the action that is fixed, if one is, and the vector of those that are not."""
-    space = inner.action_space
+    space, inner = outer.action_space, outer.unwrapped
     if isinstance(space, gymnasium.spaces.Discrete):
         first, size = int(space.start), int(space.n)
         fixed = first + size // 2 if action is None or attribute is not None else action

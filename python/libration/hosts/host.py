@@ -72,5 +72,16 @@ class Host:
     """Names and pairs of recordings that should have the same bits, steps × components or steps × environments × components."""
     memory: bool = False
     """Whether each row continues a simulation: what is no state lives on from call to call."""
+    fixed_dt: bool = False
+    """Whether the simulator has the timestep :attr:`dt` only."""
+    observe: Callable[[Array], Array] | None = None
+    """``observe(states)``: the observation of each state, or that of the last step, states × numbers."""
+    not_examined: tuple[str, ...] = ()
+    """What an audit of the host does not examine, such as wrappers that it leaves out."""
+    direct_inputs: tuple[str, ...] = ()
+    """Actions that are set past the way of commands, so that their lateness is unknown."""
+    measured_inputs: tuple[tuple[str, float, bool], ...] = ()
+    """Inputs whose lateness the host measures, discrete ones and those whose delay varies at random: their names, the steps by which they
+    are late on average, and whether that varies."""
     reset: Callable[[], None] = field(default=lambda: None)
     """Forget what earlier calls left; it has an effect with memory only."""

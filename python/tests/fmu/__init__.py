@@ -22,14 +22,14 @@ _VARIABLES = (
     ("floor", "parameter", "fixed", "exact", "-1000", ""),
     ("x0_start", "parameter", "fixed", "exact", "2", ""),
 )
-FAULTS = {"crash": 1, "exit": 2, "hang": 3, "error": 4, "discard": 5, "leak": 6, "faulty restore": 7, "wrong derivative": 8}
+FAULTS = {"crash": 1, "exit": 2, "hang": 3, "error": 4, "discard": 5, "leak": 6, "faulty restore": 7, "wrong derivative": 8, "fixed inner step": 9}
 
 
-def make_fmu(folder, version, *, saves=True, directional=True, lists=True, exchange=True, step='stepSize="0.01"'):
+def make_fmu(folder, version, *, saves=True, directional=True, lists=True, exchange=True, step='stepSize="0.01"', inner=""):
     """Return the path of an FMU.
 
     ``saves``, ``directional`` and ``lists`` are whether it declares that it saves states, has directional derivatives, and lists its
-    derivatives.
+    derivatives. ``inner`` is an attribute of its co-simulation.
     """
     import fmpy
 
@@ -39,9 +39,9 @@ def make_fmu(folder, version, *, saves=True, directional=True, lists=True, excha
         headers = Path(fmpy.__file__).parent / "c-code"
         command = [COMPILER, "-shared", "-fPIC", "-O1", "-ffp-contract=off", "-w", f"-I{headers}", f"-I{HERE}"]
         subprocess.run([*command, str(HERE / f"fmi{version}.c"), "-o", str(library), "-lm"], check=True)
-    path = Path(folder) / f"vanderpol{version}_{saves:d}{directional:d}{lists:d}{exchange:d}{len(step)}.fmu"
+    path = Path(folder) / f"vanderpol{version}_{saves:d}{directional:d}{lists:d}{exchange:d}{len(step)}{len(inner)}.fmu"
     with zipfile.ZipFile(path, "w") as archive:
-        archive.writestr("modelDescription.xml", (_fmi2 if version == 2 else _fmi3)(saves, directional, lists, exchange, step))
+        archive.writestr("modelDescription.xml", (_fmi2 if version == 2 else _fmi3)(saves, directional, lists, exchange, step, inner))
         archive.write(library, f"binaries/{platform}/vanderpol{fmpy.sharedLibraryExtension}")
     return path
 
@@ -54,7 +54,7 @@ def _flag(value):
     return "true" if value else "false"
 
 
-def _fmi2(saves, directional, lists, exchange, step):
+def _fmi2(saves, directional, lists, exchange, step, inner):
     units = "".join(f'<Unit name="{unit}"/>' for unit in ("m", "m/s", "m/s2"))
     rows = []
     for k, (name, causality, variability, initial, start, more) in enumerate(_VARIABLES):
@@ -69,14 +69,14 @@ def _fmi2(saves, directional, lists, exchange, step):
     return (
         '<?xml version="1.0" encoding="UTF-8"?><fmiModelDescription fmiVersion="2.0" modelName="VanDerPol" guid="{van-der-pol}" '
         f'generationTool="Stub 1.2" numberOfEventIndicators="{1 if exchange else 0}">{model_exchange}'
-        f'<CoSimulation {common} canHandleVariableCommunicationStepSize="true"/><UnitDefinitions>{units}</UnitDefinitions>'
+        f'<CoSimulation {common} {inner} canHandleVariableCommunicationStepSize="true"/><UnitDefinitions>{units}</UnitDefinitions>'
         f'<DefaultExperiment startTime="0" stopTime="1" {step}/><ModelVariables>{"".join(rows)}</ModelVariables><ModelStructure>'
         f'<Outputs><Unknown index="2"/><Unknown index="8"/></Outputs>{derivatives}'
         f'<InitialUnknowns>{unknown}<Unknown index="8"/></InitialUnknowns></ModelStructure></fmiModelDescription>'
     )
 
 
-def _fmi3(saves, directional, lists, exchange, step):
+def _fmi3(saves, directional, lists, exchange, step, inner):
     units = "".join(f'<Unit name="{unit}"/>' for unit in ("m", "m/s", "m/s2"))
     rows = []
     for k, (name, causality, variability, initial, start, more) in enumerate(_VARIABLES):
@@ -94,7 +94,7 @@ def _fmi3(saves, directional, lists, exchange, step):
     return (
         '<?xml version="1.0" encoding="UTF-8"?><fmiModelDescription fmiVersion="3.0" modelName="VanDerPol" '
         f'generationTool="Stub 1.2" instantiationToken="{{van-der-pol}}">{model_exchange}'
-        f'<CoSimulation {common} canHandleVariableCommunicationStepSize="true"/><UnitDefinitions>{units}</UnitDefinitions>'
+        f'<CoSimulation {common} {inner} canHandleVariableCommunicationStepSize="true"/><UnitDefinitions>{units}</UnitDefinitions>'
         f'<DefaultExperiment startTime="0" stopTime="1" {step}/><ModelVariables>{"".join(rows)}</ModelVariables><ModelStructure>'
         f'<Output valueReference="1"/><Output valueReference="7"/>{derivatives}{unknown}{indicator}</ModelStructure></fmiModelDescription>'
     )

@@ -1,6 +1,6 @@
 /* The oscillator of van der Pol with a force: x0' = x1, x1' = mu (1 - x0^2) x1 - x0 + u, with the output y = x0 + 2 u.
 
-   A macro step has steps of forward Euler of at most 0.001 s. Parameters give it faults. */
+   A macro step has equal steps of forward Euler of at most 0.001 s. Parameters give it faults, such as steps of always 0.001 s, as many as fit. */
 
 #include <math.h>
 #include <stdio.h>
@@ -10,7 +10,7 @@
 
 /* Value references: 0 time, 1 x0, 2 der(x0), 3 x1, 4 der(x1), 5 mu, 6 u, 7 y, 8 fault, 9 floor, 10 x0_start. */
 enum { TIME, X0, DX0, X1, DX1, MU, U, Y, FAULT, FLOOR, X0_START, SIZE };
-enum { CRASH = 1, EXIT, HANG, ERROR, DISCARD, LEAK, FAULTY_RESTORE, WRONG_DERIVATIVE };
+enum { CRASH = 1, EXIT, HANG, ERROR, DISCARD, LEAK, FAULTY_RESTORE, WRONG_DERIVATIVE, FIXED_INNER_STEP };
 enum { INSTANTIATED, INITIALISATION, RUN };
 
 typedef struct {
@@ -95,11 +95,13 @@ static int macro_step(Model *m, double time, double dt) {
         break;
     case LEAK: v[X1] += ++runs; break;
     }
-    int parts = (int)ceil(dt / 0.001 - 1e-6);
+    int is_fixed = v[FAULT] == FIXED_INNER_STEP;
+    int parts = (int)(is_fixed ? floor(dt / 0.001 + 1e-6) : ceil(dt / 0.001 - 1e-6));
+    double h = is_fixed ? 0.001 : dt / parts;
     for (int k = 0; k < parts; k++) {
         double d0 = get(m, DX0), d1 = get(m, DX1);
-        v[X0] += dt / parts * d0;
-        v[X1] += dt / parts * d1;
+        v[X0] += h * d0;
+        v[X1] += h * d1;
     }
     v[TIME] = time + dt;
     return 0;

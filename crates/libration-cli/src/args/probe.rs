@@ -90,7 +90,7 @@ A program reads a line for each step and writes a line at once, until its input 
       v -= dt * 9.81 * math.sin(q)
       print(q + dt * v, v, flush=True)
 
-Exit codes: 0 no fault; 1 a fault, or a failed simulator; 2 invalid input.";
+Exit codes: 0 no fault; 1 a fault, a verdict that is unknown, or a failed simulator; 2 invalid input.";
 
 /// The words of a command.
 #[derive(Clone, Debug)]

@@ -10,6 +10,7 @@ use libration_probe::{
 };
 use libration_report::notation::plural;
 use libration_report::printable::{printable, toml_string};
+use libration_report::verdict::{GOOD, exit_code};
 use libration_settings::linear_loop::read_plant;
 
 use super::mujoco;
@@ -57,7 +58,10 @@ pub(crate) fn run(args: &ProbeArgs, quiet: bool) -> Result<(), Failure> {
         })?;
         plant_file.write(|| plant_text(&report, plant))?;
     }
-    if report.holds() { Ok(()) } else { Err(Failure::Disagreement) }
+    match exit_code([&report.verdict]) {
+        GOOD => Ok(()),
+        _ => Err(Failure::Disagreement),
+    }
 }
 
 /// Checks that `advise --plant` will know the format of a plant. A pipe or device needs no suffix.

@@ -83,9 +83,10 @@ fn latency(report: &ProbeReport, text: &mut String) {
     for (i, latency) in report.hidden_latency.iter().enumerate() {
         let start = if i == 0 { "\n" } else { "" };
         let late = match latency.late_steps {
-            0.0 => "not late".to_owned(),
-            1.0 => "1 step late".to_owned(),
-            late => format!("{} steps late", number(late, 4)),
+            None => "late by an unknown time, not examined".to_owned(),
+            Some(0.0) => "not late".to_owned(),
+            Some(1.0) => "1 step late".to_owned(),
+            Some(late) => format!("{} steps late", number(late, 4)),
         };
         let _ = write!(text, "{start}latency of {}: {late}", latency.input);
         if let Some(delay) = latency.integrator_delay {

@@ -54,6 +54,21 @@ fn a_fault_of_the_step_is_named_and_the_exit_code_is_1() {
 }
 
 #[test]
+fn the_exit_code_follows_from_the_verdict_and_unknown_is_no_success() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("euler.py");
+    let text = "import sys\nfor line in sys.stdin:\n    q, v, u, dt = map(float, line.split())\n    print(q + dt * v, v + dt * (u - 9 * q), flush=True)\n";
+    fs::write(&path, text).unwrap();
+    for (more, outcome) in [(&[][..], "fault"), (&["--fixed-dt"], "unknown")] {
+        let words = [more, &["--json"]].concat();
+        let output = probe(&path, &words).code(1).get_output().stdout.clone();
+        let report: Value = serde_json::from_slice(&output).unwrap();
+        assert_eq!(report["verdict"]["outcome"], outcome);
+        probe(&path, more).code(1).stdout(predicate::str::contains("No fault").not());
+    }
+}
+
+#[test]
 fn a_program_that_fails_ends_the_run_with_its_name_and_what_it_did() {
     for (command, part) in [
         ("nosuchprogram", "cannot start `nosuchprogram`"),

@@ -12,6 +12,7 @@ mod faults;
 mod finding_kinds;
 mod first_difference;
 mod gains;
+mod inner_steps;
 mod jacobians;
 mod memory;
 #[path = "../../src/noise_free_matrix.rs"]
@@ -25,3 +26,4 @@ mod settled_order;
 mod shorter_step;
 mod simulators;
 mod theory;
+mod verdicts;

@@ -12,7 +12,7 @@ fn a_command_that_is_one_step_late_is_found_and_does_not_spoil_the_matrices() {
     let late = Simulator::new(move |x, u, dt| pendulum(x, &[held.replace(u[0])], dt));
     let report = late.audit(&pendulum_subject());
     assert_eq!(kinds(&report), ["late-command"]);
-    assert_eq!(report.hidden_latency[0].late_steps, 1.0);
+    assert_eq!(report.hidden_latency[0].late_steps, Some(1.0));
     assert_eq!(report.step.unwrap().b, clean.step.unwrap().b);
 }
 
@@ -28,7 +28,7 @@ fn a_command_between_two_and_three_steps_late_has_its_fraction() {
     let report = late.audit(&pendulum_subject());
     assert_eq!(kinds(&report), ["late-command"]);
     // Rounding of forces of 1/64 beside positions of order one.
-    assert!((report.hidden_latency[0].late_steps - 2.4).abs() < 1e-6, "{report:?}");
+    assert!((report.hidden_latency[0].late_steps.unwrap() - 2.4).abs() < 1e-6, "{report:?}");
 }
 
 #[test]
@@ -119,7 +119,7 @@ fn a_delay_that_alternates_is_late_by_its_mean() {
     });
     let report = late.audit(&pendulum_subject());
     assert_eq!(kinds(&report), ["late-command", "irregular-delay"], "{:?}", report.findings);
-    assert!((report.hidden_latency[0].late_steps - 1.5).abs() < 1e-12, "{report:?}");
+    assert!((report.hidden_latency[0].late_steps.unwrap() - 1.5).abs() < 1e-12, "{report:?}");
 }
 
 #[test]
@@ -173,7 +173,7 @@ fn a_delay_in_seconds_that_the_simulator_states_is_no_finding_and_is_flushed_at_
     let report = late().audit(&subject);
     assert_eq!(kinds(&report), ["late-command"]);
     let latency = &report.hidden_latency[0];
-    assert!((latency.late - 0.03).abs() < 1e-9, "{latency:?}");
+    assert!((latency.late.unwrap() - 0.03).abs() < 1e-9, "{latency:?}");
     // The gain in the limit of small steps, and with it the half step by which the integrator is early.
     assert!((report.flow.as_ref().unwrap().b[(1, 0)] - 1.0).abs() < 1e-9, "{:?}", report.flow);
     assert!((latency.integrator_delay.unwrap() + 0.005).abs() < 1e-5, "{latency:?}");
@@ -243,7 +243,7 @@ fn a_command_that_acts_and_takes_half_back_is_early() {
     let lead = Simulator::new(|x, u, dt| pendulum(x, &[2.0 * u[0] - held.replace(u[0])], dt));
     let report = lead.audit(&pendulum_subject());
     // (0·2 + 1·(−1))/(2 − 1).
-    assert!((report.hidden_latency[0].late_steps + 1.0).abs() < 1e-9, "{report:?}");
+    assert!((report.hidden_latency[0].late_steps.unwrap() + 1.0).abs() < 1e-9, "{report:?}");
 }
 
 #[test]
@@ -254,4 +254,49 @@ fn a_force_of_time_is_no_filter() {
         pendulum(x, &[u[0] + 0.1 * f64::sin(now.get())], dt)
     });
     assert_eq!(kinds(&driven.audit(&pendulum_subject())), ["not-reproducible"]);
+}
+
+#[test]
+fn an_observation_of_a_moment_within_the_step_has_its_age() {
+    // Four inner steps, of which the simulator stores the observation after the first ones.
+    for (stored, age) in [(4, 0.0), (3, 0.25), (2, 0.5), (1, 0.75)] {
+        let seen = RefCell::new(vec![0.0, 0.0]);
+        let mut simulator = Simulator::new(|x, u, dt| {
+            let mut x = x.to_vec();
+            for k in 1..=4 {
+                x = pendulum(&x, u, dt / 4.0);
+                if k == stored {
+                    seen.replace(x.clone());
+                }
+            }
+            x
+        });
+        simulator.observe = Some(Box::new(|_| vec![seen.borrow()[0].sin(), seen.borrow()[0].cos()]));
+        let report = simulator.audit(&pendulum_subject());
+        let wanted = if age > 0.0 { vec!["stale-observation"] } else { vec![] };
+        assert_eq!(kinds(&report), wanted, "{:?}", report.findings);
+        let found = report.memory.unwrap().staleness();
+        // The motion bends by ω dt = 3 % within a step.
+        assert!((found - age).abs() < 0.03, "{found} {age}");
+    }
+    // One of the state that is asked for, and one in single precision.
+    let seen = RefCell::new(vec![0.0, 0.0]);
+    let mut simulator = Simulator::new(|x, u, dt| {
+        let next = pendulum(x, u, dt);
+        seen.replace(next.clone());
+        next
+    });
+    simulator.observe = Some(Box::new(|x| vec![x[0].cos(), f64::from(seen.borrow()[1] as f32)]));
+    assert_eq!(kinds(&simulator.audit(&pendulum_subject())), [""; 0]);
+}
+
+#[test]
+fn the_age_within_a_step_of_one_length_is_named_as_not_examined() {
+    let mut subject = pendulum_subject();
+    subject.has_fixed_dt = true;
+    let mut simulator = Simulator::new(pendulum);
+    simulator.observe = Some(Box::new(<[f64]>::to_vec));
+    let report = simulator.audit(&subject);
+    let named = "observations that are old by up to a step".to_owned();
+    assert!(report.verdict.not_examined.contains(&named), "{}", report.answer);
 }

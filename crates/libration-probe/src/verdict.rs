@@ -1,0 +1,116 @@
+//! The verdict of an audit: the one source of its sentences, its title and its exit code.
+
+use libration_report::notation::{number, plural};
+use libration_report::verdict::{Outcome, Verdict};
+
+use crate::FindingKind::{GrowsAlways, UnstableStep};
+use crate::{Finding, Observed, ProbeReport, Subject};
+
+/// Growth per step that is no rounding.
+const GROWTH: f64 = 1e-9;
+
+/// What the fastest mode of the step says of its stability.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Growth {
+    /// No mode grows.
+    None,
+    /// A mode grows, and does so in the system.
+    OfSystem,
+    /// A mode grows by the step alone, or much faster than in the system.
+    OfStep,
+    /// A mode grows, and whether it does so in the system is unknown.
+    Unknown,
+}
+
+impl ProbeReport {
+    /// The verdict on what was examined.
+    pub(crate) fn judge(&self, subject: &Subject) -> Verdict {
+        let faults: Vec<&Finding> =
+            self.findings.iter().filter(|finding| finding.is_fault).collect();
+        let mut verdict = match faults[..] {
+            [only] => Verdict::new(Outcome::Fault, only.text.clone()),
+            [first, ..] => Verdict::new(
+                Outcome::Fault,
+                format!("{}, the first: {}", plural(faults.len(), "fault"), first.text),
+            ),
+            [] => self.without_fault(),
+        };
+        verdict.not_examined.extend(subject.not_examined.iter().cloned());
+        verdict.not_examined.extend(self.not_examined().into_iter().map(str::to_owned));
+        verdict
+    }
+
+    fn without_fault(&self) -> Verdict {
+        if self.step.is_none() {
+            return Verdict::unknown("the step was not linearised: its results near the state are not finite");
+        }
+        if !self.is_differentiable() {
+            return Verdict::unknown("the step has no derivative at this state");
+        }
+        let is_unstable = |finding: &&Finding| matches!(finding.kind, UnstableStep | GrowsAlways);
+        if let Some(finding) = self.findings.iter().find(is_unstable) {
+            return Verdict::unknown(finding.text.clone());
+        }
+        if self.growth() == Growth::Unknown {
+            return Verdict::unknown(format!(
+                "a mode grows by a factor of {} per step, and whether it grows in the system, too, is unknown",
+                number(self.spectral_radius, 6)
+            ));
+        }
+        let energy = self.defects.as_ref().and_then(|defects| defects.energy.as_ref());
+        if self.is_conservative && energy.is_some_and(|energy| energy.is_unexamined()) {
+            return Verdict::unknown(
+                "whether the energy is conserved: its run leaves the finite numbers with shorter steps, too, or has few periods of the slowest mode",
+            );
+        }
+        let checks = match self.modes.is_empty() {
+            true => String::new(),
+            false => format!("spectral radius {}", number(self.spectral_radius, 7)),
+        };
+        Verdict::new(Outcome::NoFault, checks)
+    }
+
+    /// What the fastest mode says.
+    pub(crate) fn growth(&self) -> Growth {
+        let is_found = |finding: &Finding| matches!(finding.kind, UnstableStep | GrowsAlways);
+        let Some(leading) = self.modes.first() else { return Growth::None };
+        if leading.radius <= 1.0 + GROWTH || leading.step.growth_rate <= 10.0 * leading.error {
+            return Growth::None;
+        }
+        if self.flow.is_some() && self.findings.iter().any(is_found) {
+            return Growth::OfStep;
+        }
+        match leading.flow {
+            Some(flow) if flow.growth_rate > 10.0 * leading.error => Growth::OfSystem,
+            // Along a motion the rates change within a step, and say nothing of its stability.
+            Some(_) if !self.equilibrium.holds => Growth::None,
+            _ => Growth::Unknown,
+        }
+    }
+
+    fn not_examined(&self) -> Vec<&'static str> {
+        let mut parts = Vec::new();
+        if self.step.is_none() {
+            return parts;
+        }
+        if self.flow.is_none() {
+            parts.push("modes of the system and the longest stable step");
+        } else if !self.equilibrium.holds {
+            parts.push("stability along the motion");
+        }
+        if self.order.is_none() {
+            parts.push("order and integrator");
+        }
+        if self.memory.as_ref().is_some_and(|memory| {
+            let is_of_step = matches!(memory.observed, Some(Observed::Asked));
+            is_of_step && memory.observed_age.is_none()
+        }) {
+            parts.push("observations that are old by up to a step");
+        }
+        let energy = self.defects.as_ref().and_then(|defects| defects.energy.as_ref());
+        if energy.is_some_and(|energy| energy.is_unexamined()) {
+            parts.push("drift of the energy");
+        }
+        parts
+    }
+}

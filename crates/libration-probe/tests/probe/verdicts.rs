@@ -1,0 +1,185 @@
+//! Verdicts follow from what the audit measured: an energy that runs away and a step that is unstable are faults, and what is unknown is not good.
+
+use libration_probe::{ProbeReport, Subject};
+use libration_report::verdict::Outcome;
+
+use crate::simulators::{Simulator, kinds, pendulum, pendulum_energy, pendulum_subject};
+
+type Rates = fn(&[f64]) -> [f64; 2];
+
+fn hardening(x: &[f64]) -> [f64; 2] {
+    [x[1], -10.0 * x[0] - x[0].powi(3)]
+}
+
+fn hardening_energy(x: &[f64]) -> f64 {
+    x[1] * x[1] / 2.0 + 5.0 * x[0] * x[0] + x[0].powi(4) / 4.0
+}
+
+fn explicit_euler(f: Rates, x: &[f64], dt: f64) -> Vec<f64> {
+    let k = f(x);
+    vec![x[0] + dt * k[0], x[1] + dt * k[1]]
+}
+
+fn rk4(f: Rates, x: &[f64], dt: f64) -> Vec<f64> {
+    let at = |k: [f64; 2], h: f64| [x[0] + h * k[0], x[1] + h * k[1]];
+    let a = f(x);
+    let b = f(&at(a, dt / 2.0));
+    let c = f(&at(b, dt / 2.0));
+    let d = f(&at(c, dt));
+    (0..2).map(|i| x[i] + dt / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i])).collect()
+}
+
+fn verlet(f: Rates, x: &[f64], dt: f64) -> Vec<f64> {
+    let v = x[1] + dt / 2.0 * f(x)[1];
+    let q = x[0] + dt * v;
+    vec![q, v + dt / 2.0 * f(&[q, v])[1]]
+}
+
+/// A motion that is no equilibrium.
+fn motion(state: [f64; 2], dt: f64, is_conservative: bool) -> Subject {
+    let mut subject = Subject::new("spring", state.to_vec(), vec![], dt);
+    subject.equilibrium = Some(false);
+    subject.is_conservative = is_conservative;
+    subject
+}
+
+fn change(report: &ProbeReport) -> f64 {
+    report.defects.as_ref().unwrap().energy.as_ref().unwrap().change.unwrap()
+}
+
+#[test]
+fn an_energy_that_diverges_in_the_run_of_the_audit_is_a_fault() {
+    for is_conservative in [true, false] {
+        let report = Simulator::new(|x, _, dt| explicit_euler(hardening, x, dt))
+            .with_energy(hardening_energy)
+            .audit(&motion([1.0, 0.0], 0.05, is_conservative));
+        assert_eq!(kinds(&report), ["energy-drift"], "{}", report.answer);
+        assert_eq!(report.verdict.outcome, Outcome::Fault);
+        assert!(report.answer.contains("the energy diverges") && !report.answer.contains("No fault"));
+    }
+    // The same motion by a symplectic method.
+    let report = Simulator::new(|x, _, dt| verlet(hardening, x, dt))
+        .with_energy(hardening_energy)
+        .audit(&motion([1.0, 0.0], 0.05, true));
+    assert_eq!((kinds(&report), report.verdict.outcome), (vec![], Outcome::NoFault));
+    assert_eq!(report.verdict.not_examined, ["stability along the motion"]);
+}
+
+#[test]
+fn a_loss_of_the_step_is_a_fault_from_a_percent_of_the_energy_on() {
+    // RK4 at ωh loses (ωh)⁶/72 of the energy per step, to first order.
+    let oscillator: Rates = |x| [x[1], -x[0]];
+    for (h, is_fault) in [(0.1_f64, false), (0.15, false), (0.2, true), (0.3, true)] {
+        let mut subject = motion([1.0, 0.0], h, true);
+        subject.equilibrium = None;
+        subject.state = vec![0.0, 0.0];
+        let report = Simulator::new(|x, _, dt| rk4(oscillator, x, dt))
+            .with_energy(|x| (x[0] * x[0] + x[1] * x[1]) / 2.0)
+            .audit(&subject);
+        let lost = 20_000.0 * h.powi(6) / 72.0;
+        // Windows are centred on the first and the last sixteenth.
+        let wanted = (-lost * 15.0 / 16.0).exp() - (-lost / 16.0).exp();
+        // The next term of the loss is of relative order (ωh)².
+        assert!((change(&report) / wanted - 1.0).abs() < h * h, "{} {wanted}", change(&report));
+        assert_eq!(wanted < -0.01, is_fault);
+        assert_eq!(kinds(&report) == ["energy-drift"], is_fault, "{h} {}", report.answer);
+        assert_eq!(report.holds(), !is_fault);
+        // Without an energy the modes have it.
+        let report = Simulator::new(|x, _, dt| rk4(oscillator, x, dt)).audit(&subject);
+        assert_eq!(kinds(&report) == ["energy-drift"], is_fault, "{h} {}", report.answer);
+    }
+}
+
+#[test]
+fn growth_by_the_step_is_a_fault_with_and_without_a_word_on_conservation() {
+    // Partly implicit positions: det A = 1 + 0.4 ω²h².
+    let growing = |x: &[f64], _: &[f64], dt: f64| {
+        let v = x[1] - dt * 9.0 * x[0].sin();
+        vec![x[0] + dt * (0.6 * v + 0.4 * x[1]), v]
+    };
+    for is_conservative in [true, false] {
+        let mut subject = motion([1.0, 0.0], 0.02, is_conservative);
+        let report = Simulator::new(growing).with_energy(pendulum_energy).audit(&subject);
+        assert!(kinds(&report).contains(&"energy-drift"), "{}", report.answer);
+        assert_eq!(report.verdict.outcome, Outcome::Fault);
+        // At rest the modes say the same without an energy.
+        (subject.state, subject.equilibrium) = (vec![0.0, 0.0], None);
+        let report = Simulator::new(growing).audit(&subject);
+        assert_eq!(kinds(&report), ["grows-always"]);
+        assert_eq!(report.verdict.outcome, Outcome::Fault, "{}", report.answer);
+        assert!(report.answer.contains("the step is unstable"), "{}", report.answer);
+    }
+}
+
+#[test]
+fn growth_of_the_system_is_no_fault_of_its_step() {
+    // Inverted oscillators leave the finite numbers at any step, also where their energy is conserved.
+    let inverted: Rates = |x| [x[1], x[0]];
+    let energy = |x: &[f64]| (x[1] * x[1] - x[0] * x[0]) / 2.0;
+    for is_conservative in [true, false] {
+        let mut subject = motion([0.0, 0.0], 0.1, is_conservative);
+        subject.equilibrium = None;
+        let report =
+            Simulator::new(|x, _, dt| verlet(inverted, x, dt)).with_energy(energy).audit(&subject);
+        assert_eq!(kinds(&report), [""; 0], "{}", report.answer);
+        assert_ne!(report.verdict.outcome, Outcome::Fault);
+        assert!(report.verdict.is_good() != is_conservative, "{}", report.answer);
+    }
+    // ẋ = x by backward Euler grows faster than the system, but by half a percent of its rate.
+    let subject = Subject::new("growth", vec![0.0], vec![], 0.01);
+    let report = Simulator::new(|x, _, dt| vec![x[0] / (1.0 - dt)])
+        .with_energy(|x| x[0] * x[0])
+        .audit(&subject);
+    assert_eq!(kinds(&report), [""; 0], "{}", report.answer);
+    // A limit cycle of van der Pol, from within.
+    let cycle: Rates = |x| [x[1], (1.0 - x[0] * x[0]) * x[1] - x[0]];
+    let report = Simulator::new(|x, _, dt| rk4(cycle, x, dt))
+        .with_energy(|x| (x[0] * x[0] + x[1] * x[1]) / 2.0)
+        .audit(&Subject::new("cycle", vec![0.0, 0.0], vec![], 0.01));
+    assert!(!kinds(&report).contains(&"energy-drift"), "{}", report.answer);
+}
+
+#[test]
+fn an_unstable_step_and_no_fault_are_never_in_one_text() {
+    let explicit = |x: &[f64], u: &[f64], dt: f64| {
+        vec![x[0] + dt * x[1], x[1] + dt * (-9.0 * x[0].sin() + u[0])]
+    };
+    let at = |angle: f64, dt: f64, has_fixed_dt: bool| {
+        let mut subject = pendulum_subject();
+        (subject.state[0], subject.dt, subject.has_fixed_dt) = (angle, dt, has_fixed_dt);
+        subject
+    };
+    let upright = core::f64::consts::PI;
+    for (report, outcome) in [
+        (Simulator::new(explicit).audit(&at(0.0, 0.01, false)), Outcome::Fault),
+        (Simulator::new(explicit).audit(&at(0.0, 0.01, true)), Outcome::Unknown),
+        (Simulator::new(pendulum).audit(&at(upright, 0.01, false)), Outcome::NoFault),
+        // With one length the growth may be that of the step.
+        (Simulator::new(pendulum).audit(&at(upright, 0.01, true)), Outcome::Unknown),
+        (Simulator::new(pendulum).audit(&at(0.0, 0.7, false)), Outcome::Fault),
+        (Simulator::new(pendulum).audit(&at(0.0, 0.7, true)), Outcome::Unknown),
+        // On a motion the limit at a point is no proof.
+        (Simulator::new(pendulum).audit(&at(0.4, 0.7, false)), Outcome::Unknown),
+    ] {
+        assert_eq!(report.verdict.outcome, outcome, "{}", report.answer);
+        let says = |part: &str| report.answer.contains(part);
+        assert!(!(says("is unstable") && says("No fault")), "{}", report.answer);
+        assert_eq!(says("No fault"), outcome == Outcome::NoFault, "{}", report.answer);
+        assert_eq!(says("is unknown"), outcome == Outcome::Unknown, "{}", report.answer);
+        assert_eq!(report.holds(), outcome == Outcome::NoFault);
+        let page = libration_probe::page(&report);
+        assert_eq!(page.contains("has no fault"), outcome == Outcome::NoFault);
+    }
+}
+
+#[test]
+fn a_step_without_a_derivative_has_no_good_verdict() {
+    // A contact that begins there.
+    let contact = |x: &[f64], _: &[f64], dt: f64| {
+        let v = x[1] - dt * 9.0 * x[0].max(0.0);
+        vec![x[0] + dt * v, v]
+    };
+    let report = Simulator::new(contact).audit(&Subject::new("contact", vec![0.0; 2], vec![], 0.1));
+    assert!(kinds(&report).contains(&"not-differentiable"), "{}", report.answer);
+    assert_eq!(report.verdict.outcome, Outcome::Unknown, "{}", report.answer);
+}

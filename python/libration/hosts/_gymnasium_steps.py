@@ -1,0 +1,181 @@
+"""Steps of an environment from any state, through its wrappers."""
+
+from __future__ import annotations
+
+import copy
+import numbers
+import warnings
+from collections.abc import Sequence
+from typing import Any
+
+import gymnasium
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+# Calls after which an environment should have forgotten what was before, as in the audit of a step.
+CALLS = 64
+# Changes of one call from which its effect on later ones shows, also of wrappers that draw random numbers.
+IMPULSES = 16
+_PLAIN = (numbers.Number, str, bytes, np.ndarray, np.generic, tuple, list, dict, type(None))
+_FIXED = (numbers.Number, str, bytes, np.generic, type(None))
+
+
+class Steps:
+    """The steps of an environment, whose state is set before each of them.
+
+    Each step also sets all other plain attributes of the environment to what they were, unless they are a memory: then, and in
+    wrappers, they live on from call to call.
+    """
+
+    def __init__(
+        self, outer: Any, state: str, clock: str | None, action: str | None, fixed: Any, angles: tuple[int, ...], is_wrapped: bool
+    ) -> None:
+        self.outer, self.inner = outer, outer.unwrapped
+        self.names, self.fixed, self.angles = (state, clock, action), fixed, list(angles)
+        self.is_single = self.keeps_attributes = self.draws = False
+        self.count: int | None = None
+        self.observation: Array | None = None
+        self.is_observed = _is_numeric(outer.observation_space)
+        plain = {name: value for name, value in vars(self.inner).items() if isinstance(value, _PLAIN)}
+        self.plain = {name: value for name, value in plain.items() if isinstance(value, _FIXED)}
+        self.containers = copy.deepcopy({name: value for name, value in plain.items() if name not in (*self.plain, state)})
+        generator: Any = getattr(self.inner, "np_random", None)
+        self.bits = copy.deepcopy(generator.bit_generator.state) if hasattr(generator, "bit_generator") else None
+        # Wrappers draw from the same generator.
+        self.holds_generator = not is_wrapped
+        if is_wrapped:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                outer.reset(seed=0)
+        self._count_steps()
+
+    def _count_steps(self) -> None:
+        """Count the steps that wrappers take at once; they never see the end of an episode."""
+        original = self.inner.step
+        self.calls = 0
+
+        def counted(action: Any) -> Any:
+            self.calls += 1
+            observation, reward, _, _, info = original(action)
+            return observation, reward, False, False, info
+
+        self.inner.step = counted
+
+    def step(self, states: Array, actions: Array, dt: float) -> Array:
+        states, actions = np.asarray(states, dtype=np.float64), np.asarray(actions, dtype=np.float64)
+        if states.ndim != 2 or len(actions) != len(states):
+            raise ValueError(f"states and actions have shapes {states.shape} and {actions.shape}; expected a row for each state")
+        after = np.full(states.shape, np.nan)
+        with warnings.catch_warnings():
+            # Of steps after the end of an episode.
+            warnings.simplefilter("ignore")
+            for row, (state, action) in enumerate(zip(states, actions)):
+                if np.isfinite(state).all() and np.isfinite(action).all():
+                    after[row] = self._one(state, action, dt)
+        return after
+
+    def _one(self, state: Array, action: Array, dt: float) -> Array:
+        inner, (state_name, clock, action_name) = self.inner, self.names
+        attributes = vars(inner)
+        if not self.keeps_attributes:
+            attributes.update(self.plain)
+            if self.containers:
+                attributes.update(copy.deepcopy(self.containers))
+        holds_generator = self.holds_generator and self.bits is not None
+        if holds_generator:
+            inner.np_random.bit_generator.state = self.bits
+        if clock is not None:
+            setattr(inner, clock, float(dt) / (self.count or 1))
+        setattr(inner, state_name, state.copy())
+        if action_name is not None:
+            setattr(inner, action_name, float(action[0]))
+        self.calls = 0
+        observation = self.outer.step(action.copy() if self.fixed is None else self.fixed)[0]
+        if self.count is None:
+            self.count = self.calls
+        if self.calls != self.count or self.count == 0:
+            raise ValueError(
+                f"wrappers take {self.calls} steps of the environment in one, and {self.count} before; expected always as many, at least one"
+            )
+        if self.is_observed:
+            self.observation = _numbers(self.outer.observation_space, observation)
+        found = getattr(inner, state_name)
+        self.is_single |= getattr(found, "dtype", None) == np.float32
+        if holds_generator and not self.draws:
+            self.draws = inner.np_random.bit_generator.state != self.bits
+        after = np.array(found, dtype=np.float64)
+        if self.angles:
+            after[self.angles] -= 2 * np.pi * np.round((after[self.angles] - state[self.angles]) / (2 * np.pi))
+        return after
+
+    def settle(self) -> None:
+        """Leave the generator alone from now on if no step has drawn from it."""
+        self.holds_generator &= self.draws
+
+    def observe(self, states: Array) -> Array:
+        """Return the observation that the last step returned, for each state."""
+        assert self.observation is not None
+        return np.tile(self.observation, (len(states), 1))
+
+    def responses(self, state: Array, action: Array, changed: tuple[Array, Array, Any], dt: float) -> list[tuple[set[int], set[int]]] | None:
+        """Return, of calls with another state, action or discrete action, the numbers of the later calls whose states and whose observations
+        differ: 0 is the call itself. None if calls with the same values vary.
+        """
+        base_fixed = self.fixed
+
+        def result(x: Array, u: Array) -> tuple[bytes, bytes]:
+            after = self._one(x, u, dt)
+            return after.tobytes(), b"" if self.observation is None else self.observation.tobytes()
+
+        found = []
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            for impulse in range(IMPULSES):
+                # Pauses, since a delay may depend on the number of the call.
+                for _ in range((CALLS if impulse == 0 else 0) + impulse % 5):
+                    result(state, action)
+                base = result(state, action)
+                if result(state, action) != base:
+                    return None
+                self.fixed = changed[2]
+                late: tuple[set[int], set[int]] = (set(), set())
+                for call in range(CALLS + 1):
+                    answer = result(*changed[:2]) if call == 0 else result(state, action)
+                    self.fixed = base_fixed
+                    for place, own, other in zip(late, answer, base):
+                        if own != other:
+                            place.add(call)
+                found.append(late)
+        return found
+
+    def other_actions(self) -> list[int]:
+        """Return the discrete actions besides the one that is fixed."""
+        space = self.outer.action_space
+        return [one for one in range(int(space.start), int(space.start + space.n)) if one != self.fixed]
+
+    def has_memory(self, state: Array, action: Array, changes: Sequence[tuple[Array, Array, Any]], dt: float) -> bool | None:
+        """Whether results depend on earlier calls; None if they vary by themselves."""
+        for changed in changes:
+            found = self.responses(state, action, changed, dt)
+            if found is None:
+                return None
+            if any(call > 0 for both in found for one in both for call in one):
+                return True
+        return False
+
+
+def _is_numeric(space: Any) -> bool:
+    """Whether observations are real numbers: small changes of a state change them."""
+    if isinstance(space, gymnasium.spaces.Box):
+        return bool(np.issubdtype(space.dtype, np.floating))
+    if isinstance(space, gymnasium.spaces.Dict):
+        return all(_is_numeric(one) for one in space.spaces.values())
+    return isinstance(space, gymnasium.spaces.Tuple) and all(_is_numeric(one) for one in space.spaces)
+
+
+def _numbers(space: Any, observation: Any) -> Array:
+    if isinstance(space, gymnasium.spaces.Box):
+        return np.array(observation, dtype=np.float64).ravel()
+    return np.array(gymnasium.spaces.flatten(space, observation), dtype=np.float64)

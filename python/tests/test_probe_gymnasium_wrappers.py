@@ -1,0 +1,247 @@
+"""Audits of environments as they are given: through their wrappers, with the observations that ``step`` returns."""
+
+from collections import deque
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium import wrappers
+from gymnasium.spaces import Box, Discrete
+
+import libration
+from libration import probe
+
+# Those without an attribute of their timestep.
+TIMESTEPS = {"MountainCarContinuous-v0": 1.0, "MountainCar-v0": 1.0}
+
+
+class Late(gymnasium.Wrapper):
+    """Actions are used ``steps`` steps later."""
+
+    def __init__(self, env, steps=1):
+        super().__init__(env)
+        self.waiting, self.steps = deque(), steps
+
+    def reset(self, **keywords):
+        self.waiting = deque([self.idle] * self.steps)
+        return self.env.reset(**keywords)
+
+    @property
+    def idle(self):
+        space = self.env.action_space
+        return 1 if isinstance(space, Discrete) else np.zeros(space.shape)
+
+    def step(self, action):
+        self.waiting.append(action)
+        return self.env.step(self.waiting.popleft())
+
+
+class Stale(gymnasium.Wrapper):
+    """Observations are those of the step before."""
+
+    def reset(self, **keywords):
+        self.last, info = self.env.reset(**keywords)
+        return self.last, info
+
+    def step(self, action):
+        shown = self.last
+        self.last, *rest = self.env.step(action)
+        return (shown, *rest)
+
+
+class Scaled(gymnasium.ActionWrapper):
+    """Half of each action."""
+
+    def action(self, action):
+        return 0.5 * action
+
+
+class Sluggish(gymnasium.Wrapper):
+    """Actions go through a filter whose state the environment does not show."""
+
+    def reset(self, **keywords):
+        self.held = np.zeros(self.env.action_space.shape)
+        return self.env.reset(**keywords)
+
+    def step(self, action):
+        self.held = 0.8 * self.held + 0.2 * np.asarray(action)
+        return self.env.step(self.held)
+
+
+class Slider(gymnasium.Env):
+    """A mass on a spring, v' = v + dt (u - 4 q - v/5) and q' = q + dt v', which may use the action before, or observe the state before."""
+
+    action_space = Box(-1, 1, (1,), np.float64)
+    observation_space = Box(-9, 9, (2,), np.float64)
+    dt = 0.05
+
+    def __init__(self, late=False, stale=False):
+        self.late, self.stale, self.state, self.held = late, stale, None, [0.0]
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.state, self.held = np.zeros(2), [0.0]
+        return self.state, {}
+
+    def step(self, action):
+        q, v = before = self.state
+        used, self.held = (self.held[0] if self.late else float(action[0])), [float(action[0])]
+        v = v + self.dt * (used - 4 * q - 0.2 * v)
+        self.state = np.array([q + self.dt * v, v])
+        return before if self.stale else self.state, 0.0, False, False, {}
+
+
+A, B = np.array([[1 - 4 * 0.05**2, 0.05 * 0.99], [-4 * 0.05, 0.99]]), np.array([[0.05**2], [0.05]])
+
+
+def kinds(report):
+    return [finding["kind"] for finding in report.findings]
+
+
+def made(name):
+    return gymnasium.make(name, disable_env_checker=True)
+
+
+def audit(name, *wrapped):
+    """The audit of an environment by its name in wrappers, each a function or a class."""
+    env = Slider() if name == "Slider" else made(name)
+    for wrapper in wrapped:
+        env = wrapper(env)
+    return probe.gymnasium(env, dt=TIMESTEPS.get(name))
+
+
+def late_by(steps):
+    return lambda env: Late(env, steps)
+
+
+@pytest.mark.parametrize(
+    "wrapper",
+    [
+        Scaled,
+        lambda env: wrappers.TransformAction(env, lambda u: 0.5 * u, env.action_space),
+        # From ±2 to ±1.
+        lambda env: wrappers.RescaleAction(env, np.float64(-2), np.float64(2)),
+        lambda env: Scaled(wrappers.ClipAction(env)),
+    ],
+)
+def test_scaled_actions_scale_the_effect_of_the_action(wrapper):
+    report = audit("Slider", wrapper)
+    assert report.A == pytest.approx(A, abs=1e-9) and report.B == pytest.approx(B / 2, rel=1e-9)
+    assert report.findings == [] and report.verdict["outcome"] == "no-fault"
+    assert "actions and observations go through" in " ".join(report.notes)
+
+
+def test_half_of_the_torque_of_a_pendulum_has_half_of_its_effect():
+    # 3/(m l²) of the torque per second, by symplectic Euler in steps of 0.05 s.
+    report = audit("Pendulum-v1", Scaled)
+    assert report.B == pytest.approx(np.array([[0.0075], [0.15]]) / 2, rel=1e-9) and report.holds
+
+
+def test_repeated_actions_are_one_longer_step_and_leave_the_system_as_it_is():
+    report = audit("Slider", lambda env: wrappers.RepeatAction(env, 4))
+    assert report.results["dt"] == 0.2 and report.A == pytest.approx(np.linalg.matrix_power(A, 4), abs=1e-9)
+    flow = np.reshape(report.results["flow"]["a"], (2, 2))
+    assert flow == pytest.approx(np.array([[0.0, 1.0], [-4.0, -0.2]]), abs=1e-7)
+
+
+def test_late_and_sluggish_continuous_actions_are_found():
+    report = audit("Slider", late_by(2))
+    assert kinds(report) == ["late-command"] and report.hidden_latency[0]["late_steps"] == 2.0
+    assert report.verdict["outcome"] == "fault" and report.B == pytest.approx(B, rel=1e-9)
+    assert kinds(audit("Slider", Sluggish)) == ["hidden-state"]
+
+
+@pytest.mark.parametrize(("name", "steps"), [("CartPole-v1", 0), ("CartPole-v1", 1), ("MountainCar-v0", 3)])
+def test_late_discrete_actions_are_found_and_those_in_time_are_said_to_be(name, steps):
+    report = audit(name, late_by(steps))
+    (latency,) = report.hidden_latency
+    assert (latency["input"], latency["late_steps"]) == ("discrete action", steps)
+    assert ("late-command" in kinds(report)) == (steps > 0) and report.holds == (steps == 0), report.answer
+
+
+@pytest.mark.parametrize("name", ["Slider", "CartPole-v1"])
+def test_sticky_actions_are_found(name):
+    report = audit(name, lambda env: wrappers.StickyAction(env, 0.25))
+    assert {"irregular-delay", "late-command", "not-reproducible"} & set(kinds(report)) and not report.holds
+
+
+@pytest.mark.parametrize("name", ["Slider", "CartPole-v1"])
+@pytest.mark.parametrize(("wrapper", "steps"), [(Stale, 1), (lambda env: wrappers.DelayObservation(env, 2), 2)])
+def test_old_observations_are_found(name, wrapper, steps):
+    report = audit(name, wrapper)
+    assert "stale-observation" in kinds(report) and not report.holds, report.answer
+    assert report.results["memory"]["observation"]["mean"] == steps
+
+
+def test_observations_with_noise_are_found():
+    draw = np.random.default_rng(1)
+    report = audit("Slider", lambda env: wrappers.TransformObservation(env, lambda y: y + 0.01 * draw.normal(size=2), None))
+    assert kinds(report) == ["not-reproducible"] and "observations of the same state vary" in report.answer
+
+
+@pytest.mark.parametrize(
+    ("wrapper", "name"),
+    [
+        (wrappers.NormalizeObservation, "NormalizeObservation"),
+        (lambda env: wrappers.FrameStackObservation(env, 3), "FrameStackObservation"),
+        (lambda env: wrappers.TimeAwareObservation(wrappers.TimeLimit(env, 9)), "TimeAwareObservation"),
+    ],
+)
+def test_wrappers_whose_observations_are_no_function_of_the_state_are_named(wrapper, name):
+    report = audit("Slider", Scaled, wrapper)
+    assert report.B == pytest.approx(B / 2, rel=1e-9)
+    assert f"1 wrapper ({name})" in report.verdict["not_examined"] and f"1 wrapper ({name})" in report.answer
+
+
+def test_observations_that_are_functions_of_the_state_have_no_finding():
+    for wrapper in (
+        lambda env: wrappers.RescaleObservation(env, np.float64(-1), np.float64(1)),
+        lambda env: wrappers.TransformObservation(env, lambda y: np.sin(y[:1]), Box(-1, 1, (1,), np.float64)),
+        lambda env: wrappers.FlattenObservation(wrappers.ReshapeObservation(env, (2, 1))),
+    ):
+        report = audit("Slider", wrapper)
+        assert kinds(report) == [] and report.results["memory"]["observed"] == "asked"
+
+
+def test_a_discretised_action_is_in_time():
+    report = audit("Slider", lambda env: wrappers.DiscretizeAction(env, 5))
+    assert report.hidden_latency[0]["late_steps"] == 0.0 and report.B.shape == (2, 0)
+
+
+def test_wrappers_of_rewards_records_and_time_limits_do_not_matter():
+    def many(env):
+        env = wrappers.RecordEpisodeStatistics(wrappers.TimeLimit(wrappers.ClipReward(env, -1, 1), 3))
+        return wrappers.Autoreset(env)
+
+    report = audit("Slider", many)
+    assert report.B == pytest.approx(B, rel=1e-9) and report.holds
+    assert report.verdict["not_examined"] == ["rewards and ends of episodes"]
+
+
+def test_a_memory_of_the_environment_itself_is_found():
+    assert kinds(audit("Slider")) == []
+    late = probe.gymnasium(Slider(late=True))
+    assert kinds(late) == ["late-command"] and late.hidden_latency[0]["late_steps"] == 1.0
+    assert late.B == pytest.approx(B, rel=1e-9)
+    assert kinds(probe.gymnasium(Slider(stale=True))) == ["stale-observation"]
+
+
+def test_an_attribute_in_place_of_a_discrete_action_is_as_late_as_the_action():
+    report = probe.gymnasium(Late(made("CartPole-v1"), 1), 0.0, action_attribute="force_mag", state=[0.0] * 4)
+    force, action = report.hidden_latency
+    assert force["late_steps"] is None and action["late_steps"] == 1.0
+    advice = report.advise(libration.LQR(np.eye(4), np.eye(1)))
+    assert '"latency" = [0.02]' in advice.request
+
+
+def test_an_environment_without_a_timestep_has_one_only():
+    report = audit("MountainCar-v0")
+    assert report.largest_dt is None and report.order is None
+    assert "modes of the system and the longest stable step" in report.verdict["not_examined"]
+
+
+def test_environments_whose_state_cannot_be_set_are_refused_with_the_reason():
+    with pytest.raises(ValueError, match="state and time step are in the engine.*help: libration.analyze"):
+        probe.gymnasium(libration.envs.PendulumEnv())
+    with pytest.raises(TypeError, match="several environments; expected a single one"):
+        probe.gymnasium(gymnasium.make_vec("CartPole-v1", 2))
