@@ -38,6 +38,8 @@ def description_of(host: Host) -> dict[str, Any]:
             "a": host.reference_A.tolist(),
             "b": host.reference_B.tolist(),
         }
+    if host.operating_point is not None:
+        described["operating_point"] = host.operating_point
     if host.delays:
         described["stated_delays"] = list(host.delays)
     if host.recordings:

@@ -4,7 +4,7 @@ use libration::linear::{Matrix, Signal};
 use serde::Deserialize;
 use thiserror::Error;
 
-use crate::{Recording, Reference, Subject, SubjectError};
+use crate::{OperatingPoint, Recording, Reference, Subject, SubjectError};
 
 /// The description of a simulator.
 #[derive(Clone, Debug, Deserialize)]
@@ -41,6 +41,7 @@ pub struct Description {
     stated_delays: Vec<f64>,
     #[serde(default)]
     recordings: Vec<Recording>,
+    operating_point: Option<OperatingPoint>,
     /// Whether the simulator computes energies.
     #[serde(default)]
     pub energy: bool,
@@ -116,6 +117,7 @@ impl Description {
         subject.stated_delays = self.stated_delays;
         subject.validity = self.validity;
         subject.recordings = self.recordings;
+        subject.operating_point = self.operating_point;
         subject.invocation = self.invocation;
         subject.check()?;
         Ok(subject)

@@ -41,6 +41,7 @@ mod mode_plane;
 mod modes;
 mod noise_free_matrix;
 mod observed;
+mod operating_point;
 mod page;
 mod prober;
 mod process_group;
@@ -73,8 +74,8 @@ pub use finding::Finding;
 pub use finding_kind::FindingKind;
 pub use first_difference::{FirstDifference, ulps};
 pub use gains::{
-    GainReport, IntegratorRow, JointRow, ServoError, ServoIntegrator, ServoMode, Servos,
-    ServosDescription, gains, gains_page,
+    GainReport, IntegratorRow, JointRow, MeasuredGains, ServoError, ServoGain, ServoIntegrator,
+    ServoMode, ServoRow, Servos, ServosDescription, Torque, gains, gains_page,
 };
 pub use hidden_latency::HiddenLatency;
 pub use impulse::Lateness;
@@ -84,6 +85,7 @@ pub use matrix_step::MatrixStep;
 pub use memory::Memory;
 pub use modes::{ProbedMode, Rates};
 pub use observed::Observed;
+pub use operating_point::{LargestChange, OperatingPoint, StandingRun};
 pub use page::page;
 pub use process_group::end_programs;
 pub use recognition::{Candidate, Match, Recognition};

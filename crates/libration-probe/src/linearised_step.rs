@@ -2,7 +2,7 @@
 
 use libration::linear::{LinearPlant, Matrix};
 
-use crate::differences::{Jacobian, jacobian};
+use crate::differences::{Jacobian, jacobian, quick_jacobian};
 use crate::prober::Prober;
 use crate::{BlackBoxError, Subject};
 
@@ -36,6 +36,20 @@ impl LinearisedStep {
     /// The same without actions, for fewer calls.
     pub(crate) fn of_states(prober: &mut Prober<'_>, dt: f64) -> Result<Self, BlackBoxError> {
         LinearisedStep::by(prober, &[], &[], dt)
+    }
+
+    /// The same by few short differences, for searches.
+    pub(crate) fn quick(prober: &mut Prober<'_>, dt: f64) -> Result<Self, BlackBoxError> {
+        let subject = prober.subject;
+        let n = subject.state.len();
+        let of = |points: &Matrix| {
+            let actions = |_, j: usize| subject.action[j];
+            let actions = Matrix::from_fn(points.rows(), subject.action.len(), actions);
+            prober.step(points, &actions, dt)
+        };
+        let Jacobian { values, errors } = quick_jacobian(of, &subject.state, &subject.state_scale)?;
+        let [b, b_errors] = [(); 2].map(|()| Matrix::zeros(n, 0));
+        Ok(LinearisedStep { dt, a: values, b, a_errors: errors, b_errors })
     }
 
     /// The derivatives by the states and by these actions, which are all or none.

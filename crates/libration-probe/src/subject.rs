@@ -5,6 +5,8 @@ use libration_report::notation::plural;
 use serde::Deserialize;
 use thiserror::Error;
 
+use crate::OperatingPoint;
+
 /// What is known of a simulator before its first step.
 #[derive(Clone, Debug)]
 pub struct Subject {
@@ -50,6 +52,8 @@ pub struct Subject {
     pub stated_delays: Vec<f64>,
     /// Recordings of the simulator that should have the same bits.
     pub recordings: Vec<Recording>,
+    /// Where the state is from a requested one from which it was searched for.
+    pub operating_point: Option<OperatingPoint>,
     /// The command that repeats the audit.
     pub invocation: String,
 }
@@ -119,6 +123,7 @@ impl Subject {
             reference: None,
             stated_delays: Vec::new(),
             recordings: Vec::new(),
+            operating_point: None,
             invocation: String::new(),
         }
     }

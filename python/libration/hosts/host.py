@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Callable
+from typing import Any, Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,5 +72,7 @@ class Host:
     """Names and pairs of recordings that should have the same bits, steps × components or steps × environments × components."""
     memory: bool = False
     """Whether each row continues a simulation: what is no state lives on from call to call."""
+    operating_point: dict[str, Any] | None = None
+    """Where the point is from a requested one from which it was searched for: its changes, its residual and changed contacts."""
     reset: Callable[[], None] = field(default=lambda: None)
     """Forget what earlier calls left; it has an effect with memory only."""

@@ -7,6 +7,9 @@ use libration_probe::{BlackBoxError, ChildProcess};
 
 use crate::error::Failure;
 
+/// The least time that a Python program has to import its packages and to compile a model.
+const LOADING: Duration = Duration::from_secs(60);
+
 /// Starts the program for a model, and returns it with the first line of its output.
 pub(super) fn start(
     python: &str,
@@ -31,7 +34,10 @@ pub(super) fn start(
     if let Some(deadline) = deadline {
         child.set_deadline(deadline);
     }
-    let line = child.description().map_err(|error| match error {
+    let line = child.description(LOADING).map_err(|error| match error {
+        BlackBoxError::NoAnswer { .. } => {
+            Failure::run(format!("{error} (--timeout); expected a description of the model; help: a longer --timeout"))
+        }
         BlackBoxError::TimeLimit { .. } => {
             Failure::run(format!("{error} (--time-limit); expected a longer limit"))
         }

@@ -77,9 +77,10 @@ fn check_suffix(path: Option<&Path>) -> Result<(), Failure> {
 /// The failure of an audit. Only simulators of `--command` have options for their typical deviations and their state.
 fn failure(args: &ProbeArgs, error: &BlackBoxError) -> Failure {
     let message = error.to_string();
-    let [scale, state] = match args.command {
-        Some(_) => [" (--state-scale)", " (--state, --action)"],
-        None => [""; 2],
+    let [scale, state] = match (&args.command, &args.mujoco) {
+        (Some(_), _) => [" (--state-scale)", " (--state, --action)"],
+        (None, Some(_)) => [" (--state-scale)", ""],
+        (None, None) => [""; 2],
     };
     Failure::run(message.replace(" (state_scale)", scale).replace(" (state, action)", state))
 }
@@ -153,6 +154,12 @@ fn mujoco_model(
     };
     option("keyframe", args.keyframe.clone());
     option("dt", args.dt.map(|dt| format!("{dt:?}")));
+    option(
+        "state-scale",
+        args.state_scale.as_ref().map(|scale| {
+            scale.values().iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(",")
+        }),
+    );
     if args.settle {
         options.push("--settle".into());
     }
