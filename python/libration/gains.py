@@ -171,7 +171,7 @@ class Gains:
         integrator that MuJoCo does not have the result is that of the servo model alone. The other parameters are those of
         :func:`libration.hosts.mujoco_host`.
         """
-        from .hosts import mujoco_gains
+        from .hosts._mujoco_gains import mujoco_gains
 
         described, host, servos = mujoco_gains(
             model, data, keyframe=keyframe, state=state, dt=dt, integrator=integrator, substeps=substeps

@@ -15,7 +15,7 @@ pub struct Jacobian {
 /// functions that bend on a thousandth of the scale.
 const STEPS: usize = 11;
 /// Those of searches, which need many Jacobians.
-const QUICK: core::ops::Range<usize> = 3..7;
+const QUICK: core::ops::Range<usize> = 5..9;
 /// Further steps of variables whose derivatives have not settled, and the error relative to a row from which they have not.
 const MORE_STEPS: usize = 5;
 const SETTLED: f64 = 1e-5;

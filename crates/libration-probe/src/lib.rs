@@ -55,6 +55,7 @@ mod rounding;
 mod settled_order;
 mod settling;
 mod shorter_step;
+mod step_equilibrium;
 mod subject;
 mod summary;
 

@@ -214,6 +214,11 @@ impl Subject {
         Ok(())
     }
 
+    /// Whether the simulator is MuJoCo.
+    pub(crate) fn is_mujoco(&self) -> bool {
+        self.version.as_ref().is_some_and(|version| version.starts_with("MuJoCo"))
+    }
+
     /// The name of state `i` with its unit.
     pub(crate) fn state_name(&self, i: usize) -> String {
         with_unit(&self.states[i])

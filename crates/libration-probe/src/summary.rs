@@ -101,6 +101,16 @@ impl ProbeReport {
             }
             None => {}
         }
+        if let Some(from) = limit.and_then(|limit| limit.rests_elsewhere_from) {
+            text += &format!(
+                "; longer steps were examined at their own equilibria, which are other states from {} s on",
+                number(from, 3)
+            );
+            let is_mujoco = self.version.as_ref().is_some_and(|v| v.starts_with("MuJoCo"));
+            if is_mujoco && !text.contains("refsafe") {
+                text += " (refsafe: contacts give way where dt exceeds half the time constant of solref)";
+            }
+        }
         Some(text + ".")
     }
 

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 from .host import Host
 
 if TYPE_CHECKING:
-    from ._mujoco_gains import mujoco_gains
     from ._mujoco_servos import mujoco_servos
     from .fmu import fmu_host, fmu_plant
     from .gymnasium import gymnasium_host
@@ -21,7 +20,6 @@ _ADAPTERS = {
     "fmu_plant": "fmu",
     "gymnasium_host": "gymnasium",
     "jax_host": "jax",
-    "mujoco_gains": "_mujoco_gains",
     "mujoco_host": "mujoco",
     "mujoco_servos": "_mujoco_servos",
 }

@@ -66,7 +66,7 @@ pub(crate) struct GainsArgs {
 
 const EXAMPLES: &str = "\
 Examples:
-  libration gains --mujoco robot.xml --dt 0.005 --substeps 4 --page gains.html
+  libration gains --mujoco robot.xml --keyframe home --settle --page gains.html
   libration gains --inertia 0.02,0.01 --kp 400,300 --kv 2,1 --dt 0.005 --integrator implicitfast
   libration gains --matrices arm.json --dt 0.002
 

@@ -107,7 +107,7 @@ impl MeasuredGains {
         let mut prober = Prober::new(black_box, subject);
         prober.step_one(&subject.state, &subject.action, subject.dt)?;
         let equilibrium = Rest::measure(&mut prober)?;
-        let step = LinearisedStep::of_states(&mut prober, subject.dt)?;
+        let step = LinearisedStep::at(&mut prober, subject.dt)?;
         let error = step.relative_error_of_states(subject);
         let is_differentiable = step.is_finite() && error <= DIFFERENTIABLE;
         let flow = if is_differentiable { Flow::of(&mut prober, &step)? } else { None };
@@ -139,8 +139,8 @@ impl MeasuredGains {
             servos.iter().map(|servo| servo.kv).collect(),
         );
         let mut search =
-            Search { prober: &mut prober, kp, kv, dt: subject.dt, is_at_rest, outside: OUTSIDE };
-        let (outside, neutral_modes) = search.errors()?;
+            Search { prober: &mut prober, kp, kv, dt: subject.dt, is_at_rest, outside: OUTSIDE, is_quick: true };
+        let (outside, neutral_modes) = search.errors(&step.a)?;
         search.outside = outside;
         (report.neutral_modes, report.hidden_growth) = (neutral_modes, outside);
         report.grows = search.is_unstable(&step.a);

@@ -95,7 +95,7 @@ impl MeasuredGains {
         }
         if self.is_differentiable {
             sentences.extend(self.tightest());
-            if !report.holds && report.growth_in_continuous_time.is_none() {
+            if self.grows && report.growth_in_continuous_time.is_none() {
                 sentences.push(report.substeps_in_words().trim().to_owned());
             }
         }

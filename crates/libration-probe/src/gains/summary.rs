@@ -190,6 +190,7 @@ impl GainReport {
     /// The fewest substeps, as a sentence.
     pub(super) fn substeps_in_words(&self) -> String {
         match self.fewest_substeps {
+            Some(1) => " One substep holds them.".to_owned(),
             Some(substeps) => format!(" {substeps} substeps hold them."),
             None => format!(" No number of substeps up to {MOST_SUBSTEPS} holds them."),
         }

@@ -13,6 +13,7 @@ mod finding_kinds;
 mod first_difference;
 mod gains;
 mod jacobians;
+mod measured_gains;
 mod memory;
 #[path = "../../src/noise_free_matrix.rs"]
 mod noise_free_matrix;
