@@ -72,6 +72,9 @@ pub(crate) struct ProbeArgs {
     /// Write the step as a plant in continuous time to FILE.toml, for `advise --plant` and `analyze --plant`
     #[arg(long, value_name = "FILE")]
     pub(crate) save_plant: Option<PathBuf>,
+    /// Leave neutral positions out of the plant of --save-plant, such as where a free base stands
+    #[arg(long, requires = "save_plant")]
+    pub(crate) without_neutral: bool,
     /// Print the result as JSON, with all digits
     #[arg(long)]
     pub(crate) json: bool,

@@ -19,7 +19,7 @@ const GROWTH_ON_A_MOTION: f64 = 0.01;
 /// Relative distances from a predicted limit at which steps are measured.
 const BESIDE: f64 = 1e-3;
 /// Relative accuracy of limits by prediction, and by measured steps alone.
-const RESOLUTION: [f64; 2] = [1e-9, 1e-4];
+const RESOLUTION: [f64; 2] = [1e-9, 1e-3];
 /// The gain in units of the given one at which the absence of a limit is measured.
 pub(super) const FAR: f64 = 1e3;
 /// Part of the largest entry of a row by which quick differences may be off.
@@ -50,12 +50,20 @@ pub(super) fn by_step_alone(step: &Matrix, outside: f64) -> Option<f64> {
 }
 
 impl Search<'_, '_> {
-    /// The step with these gains; the given ones are set again.
+    /// The step with these gains by few differences, if they suffice at the given gains; the given ones are set again.
     pub(super) fn step(&mut self, gains: &Gains, dt: f64) -> Result<Matrix, BlackBoxError> {
         self.prober.set_gains(&gains.0, &gains.1)?;
         let step = self.linearised(dt);
         self.prober.set_gains(&self.kp, &self.kv)?;
         Ok(step?.a)
+    }
+
+    /// Whether the step with these gains is stable, by all differences.
+    fn holds(&mut self, gains: &Gains) -> Result<bool, BlackBoxError> {
+        self.prober.set_gains(&gains.0, &gains.1)?;
+        let step = LinearisedStep::of_states(self.prober, self.dt);
+        self.prober.set_gains(&self.kp, &self.kv)?;
+        Ok(!self.is_unstable(&step?.a))
     }
 
     fn linearised(&mut self, dt: f64) -> Result<LinearisedStep, BlackBoxError> {
@@ -117,10 +125,7 @@ impl Search<'_, '_> {
         if self.agrees(predicted, given, apart, change)? {
             return Ok(predicted);
         }
-        GainLimits::search(given, unit, RESOLUTION[1], &mut |gain| {
-            let step = self.step(&change(gain), self.dt)?;
-            Ok(!self.is_unstable(&step))
-        })
+        GainLimits::search(given, unit, RESOLUTION[1], &mut |gain| self.holds(&change(gain)))
     }
 
     /// Whether measured steps are stable and unstable where the prediction says so.
@@ -142,8 +147,7 @@ impl Search<'_, '_> {
             wanted.extend([(least * (1.0 - BESIDE), false), (least * (1.0 + BESIDE), true)]);
         }
         for (gain, is_stable) in wanted {
-            let step = self.step(&change(gain), self.dt)?;
-            if self.is_unstable(&step) == is_stable {
+            if self.holds(&change(gain))? != is_stable {
                 return Ok(false);
             }
         }

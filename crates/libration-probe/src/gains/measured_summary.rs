@@ -106,7 +106,7 @@ impl MeasuredGains {
         }
         if self.neutral_modes > 0 && self.is_differentiable {
             sentences.push(format!(
-                "{} neutral within errors, as those of a free base or of a joint without stiffness.",
+                "{} neutral within errors, as those of a free base, or of joints without damping or stiffness.",
                 match self.neutral_modes {
                     1 => "1 mode is".to_owned(),
                     several => format!("{} are", plural(several, "mode")),

@@ -21,6 +21,10 @@ impl GainReport {
         self.largest_factor = measured.largest_factor;
         self.least_factor = measured.least_factor;
         self.fewest_substeps = measured.fewest_substeps;
+        // Limits of the servo model are not those of the simulator.
+        for joint in &mut self.joints {
+            (joint.largest_kp, joint.largest_kv) = (f64::NAN, f64::NAN);
+        }
         for servo in &measured.servos {
             let own = |joint: &&mut super::JointRow| Some(&joint.name) == servo.joint.as_ref();
             if let Some(joint) = self.joints.iter_mut().find(own) {
