@@ -45,6 +45,8 @@ def description_of(host: Host) -> dict[str, Any]:
             described[key] = list(value)
     if host.measured_inputs:
         described["measured_inputs"] = [{"name": name, "late_steps": late, "varies": varies} for name, late, varies in host.measured_inputs]
+    if host.operating_point is not None:
+        described["operating_point"] = host.operating_point
     if host.delays:
         described["stated_delays"] = list(host.delays)
     if host.recordings:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from os import PathLike
 from pathlib import Path
-from typing import Any, Sequence
+from typing import Any, Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +14,7 @@ from . import _native
 from ._json import json_text
 from ._keywords import check_keywords
 from ._settings import count, positive
-from ._step_functions import names, numbers_of
+from ._step_functions import contiguous, names, numbers_of
 
 __all__ = ["GainReport", "Gains", "gains"]
 
@@ -46,6 +46,22 @@ class GainReport:
     def largest_factor(self) -> float:
         """The largest factor of all gains of position, with the same gains of velocity; infinite if there is no limit."""
         return _limit(self.results["largest_factor"])
+
+    @property
+    def largest_kv(self) -> dict[str, float]:
+        """The largest gain of velocity of each joint, with all others as they are; infinite if there is no limit."""
+        return {joint["name"]: _limit(joint["largest_kv"]) for joint in self.results["joints"]}
+
+    @property
+    def measured(self) -> dict[str, Any] | None:
+        """The step of the simulator itself with these gains: its modes and the limits of each servo. None of a servo model alone."""
+        found: dict[str, Any] | None = self.results["measured"]
+        return found
+
+    @property
+    def verdict(self) -> dict[str, Any]:
+        """The outcome, its evidence, and what was not examined."""
+        return dict(self.results["verdict"])
 
     @property
     def largest_kp(self) -> dict[str, float]:
@@ -92,6 +108,7 @@ class Gains:
         dt: float,
         integrator: str = "symplectic-euler",
         substeps: int = 1,
+        held_torque: bool = False,
         stiffness: ArrayLike | None = None,
         damping: ArrayLike | None = None,
         joints: Sequence[str] | None = None,
@@ -111,6 +128,9 @@ class Gains:
             ``"implicitfast"``, ``"implicit"``, ``"rk4"``, ``"backward-euler"``, …
         substeps:
             Steps of the integrator in each time step.
+        held_torque:
+            Whether the torques of servos are computed once per time step and held over its substeps, as by a controller outside of the
+            simulator (default: anew in each substep).
         stiffness, damping:
             Those of joints besides their servos.
         joints:
@@ -125,6 +145,8 @@ class Gains:
         for name, value in (("kv", kv), ("stiffness", stiffness), ("damping", damping)):
             if value is not None:
                 described[name] = _entries(name, value)
+        if held_torque:
+            described["torque"] = "held"
         if joints is not None:
             described["joints"] = _names(joints)
         return _report(described, positive("dt", dt), substeps, integrator)
@@ -143,27 +165,39 @@ class Gains:
     ) -> GainReport:
         """Return whether the servos of a MuJoCo model hold: an ``MjModel``, or the path of an XML or MJB file.
 
-        The servos are all actuators, by the derivatives of their forces; gravity and springs of joints and tendons are the stiffness.
-        ``dt`` and ``integrator`` are those of the model by default. Contacts and other constraints have no part in the result. The other
-        parameters are those of :func:`libration.hosts.mujoco_host`.
+        The verdict and the limits are those of the measured step of ``mj_step``, as in :func:`libration.probe`, with contacts, limits and
+        equality constraints as they are at the point. A servo model stands beside it: all actuators, by the derivatives of their forces;
+        gravity and springs of joints and tendons are the stiffness. ``dt`` and ``integrator`` are those of the model by default; with an
+        integrator that MuJoCo does not have the result is that of the servo model alone. The other parameters are those of
+        :func:`libration.hosts.mujoco_host`.
         """
-        from .hosts import mujoco_servos
+        from .hosts._mujoco_gains import mujoco_gains
 
-        described = mujoco_servos(model, data, keyframe=keyframe, state=state)
+        described, host, servos = mujoco_gains(
+            model, data, keyframe=keyframe, state=state, dt=dt, integrator=integrator, substeps=substeps
+        )
         own_dt, own = described.pop("dt"), described.pop("integrator")
         if integrator is None and own not in _INTEGRATORS:
             allowed = ", ".join(_INTEGRATORS)
             raise ValueError(f"the integrator of the model is {own!r}; expected {allowed}; help: give integrator, or use probe.mujoco")
-        return _report(described, positive("dt", own_dt if dt is None else dt), substeps, integrator or own)
+        return _report(described, own_dt, substeps, integrator or own, host.step, servos.set)
 
 
 gains = Gains()
 
 
-def _report(described: dict[str, Any], dt: float, substeps: int, integrator: str) -> GainReport:
+def _report(
+    described: dict[str, Any],
+    dt: float,
+    substeps: int,
+    integrator: str,
+    step: Callable[..., Any] | None = None,
+    set_gains: Callable[..., None] | None = None,
+) -> GainReport:
     if not isinstance(integrator, str):
         raise TypeError(f"integrator must be a string, not {type(integrator).__name__}")
-    answer, page = _native._gains(json.dumps(described), dt, count("substeps", substeps, 1, 1000), integrator)
+    parts = count("substeps", substeps, 1, 1000)
+    answer, page = _native._gains(json.dumps(described), dt, parts, integrator, step and contiguous(step, 2), set_gains)
     return GainReport(json.loads(answer), page)
 
 

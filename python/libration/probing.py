@@ -158,6 +158,7 @@ class Probe:
         keyframe: str | int | None = None,
         state: str | None = None,
         dt: float | None = None,
+        state_scale: ArrayLike | None = None,
         conservative: bool = False,
     ) -> ProbeReport:
         """Audit a MuJoCo model: an ``MjModel``, or the path of an XML or MJB file. Requires the package ``mujoco``.
@@ -172,21 +173,23 @@ class Probe:
             ``"given"``, ``"keyframe"``, ``"default"`` or ``"settled"``, see :func:`libration.hosts.mujoco_host`.
         dt:
             Timestep in s (default: that of the model).
+        state_scale:
+            Typical deviations of the states, or one number for all (default: the larger of 1 and the absolute state).
         conservative:
             Whether the model conserves energy, so that a drift that does not depend on the timestep is a fault.
         """
         from .hosts import mujoco_host
 
         host = mujoco_host(model, data, keyframe=keyframe, state=state, dt=dt, memory=None)
-        keywords = {"keyframe": keyframe, "state": state, "dt": dt, "conservative": conservative}
+        keywords = {"keyframe": keyframe, "state": state, "dt": dt, "state_scale": state_scale, "conservative": conservative}
         invocation = python_call("libration.probe.mujoco", [Probe.mujoco], {"model": model, "data": data, **keywords}, ("model", "data"))
-        if isinstance(model, (str, PathLike)) and data is None and state in (None, "settled"):
+        if isinstance(model, (str, PathLike)) and data is None and state_scale is None and state in (None, "settled"):
             words = ["libration", "probe", "--mujoco", str(model)]
             words += [] if keyframe is None else ["--keyframe", str(keyframe)]
             words += [] if dt is None else ["--dt", repr(host.dt)]
             words += ["--settle"] * (state == "settled") + ["--conservative"] * bool(conservative)
             invocation = shlex.join(words)
-        return self.host(host, conservative=conservative, invocation=invocation)
+        return self.host(host, state_scale=state_scale, conservative=conservative, invocation=invocation)
 
     def gymnasium(self, env: Any, action: Any = None, *, conservative: bool = False, **keywords: Any) -> ProbeReport:
         """Audit an environment of Gymnasium with a state and a timestep as attributes, see :func:`libration.hosts.gymnasium_host`."""
@@ -236,11 +239,21 @@ class Probe:
         return self.host(host, conservative=conservative, invocation=invocation)
 
     @check_keywords
-    def host(self, host: Host, *, conservative: bool = False, invocation: str = "", threads: int | None = None) -> ProbeReport:
+    def host(
+        self,
+        host: Host,
+        *,
+        state_scale: ArrayLike | None = None,
+        conservative: bool = False,
+        invocation: str = "",
+        threads: int | None = None,
+    ) -> ProbeReport:
         """Audit a :class:`libration.hosts.Host`.
 
         Parameters
         ----------
+        state_scale:
+            Typical deviations of the states, or one number for all (default: the larger of 1 and the absolute state).
         invocation:
             The command or call that repeats the audit, for its page (default: none).
         threads:
@@ -252,6 +265,9 @@ class Probe:
         number("exchange_latency", host.exchange_latency, "finite and at least 0", lambda x: 0 <= x < math.inf)
         described = description_of(host)
         described.update(conservative=bool(conservative), invocation=str(invocation))
+        if state_scale is not None:
+            count = len(host.state)
+            described["state_scale"] = vector("state_scale", np.broadcast_to(state_scale, count) if np.ndim(state_scale) == 0 else state_scale).tolist()
         if "mass" in described:
             described["mass"] = inertia(described["mass"], len(host.positions))
         watch = None if host.observe is None else observations_of(host.observe, True)

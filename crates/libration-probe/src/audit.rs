@@ -4,7 +4,7 @@ use crate::findings::{of_bits, of_report};
 use crate::held_action::HeldAction;
 use crate::memory_finding::of_memory;
 use crate::prober::Prober;
-use crate::{Bits, BlackBox, BlackBoxError, Memory, ProbeReport, Settling, Subject};
+use crate::{Bits, BlackBox, BlackBoxError, Finding, Memory, ProbeReport, Settling, Subject};
 
 /// Rounding of results relative to them from which differences allow for it.
 const ALLOWED_FOR: f64 = 1e-11;
@@ -45,7 +45,7 @@ fn examine(
     let calls = if is_held { 0 } else { memory.calls.unwrap_or(memory.tried) };
     prober.memory = if calls == 0 { 0 } else { calls + 2 };
     prober.has_state_memory = memory.state.last.unwrap_or(0) > 0;
-    let mut findings = Vec::new();
+    let mut findings: Vec<Finding> = Vec::new();
     let bits = Bits::check(prober)?;
     let rounding = bits.rounding.as_ref().map_or(0.0, |rounding| rounding.results);
     prober.coarseness = if rounding > ALLOWED_FOR { rounding } else { 0.0 };
@@ -66,6 +66,11 @@ fn examine(
         of_report(&report, subject, &mut findings);
     }
     report.memory = Some(memory);
+    // Before all others: they are about this state.
+    let of_point = report.operating_point.as_ref().and_then(|point| point.finding(&report.modes));
+    if let Some(finding) = of_point {
+        findings.insert(0, finding);
+    }
     let longest_dt = report.largest_dt.as_ref().and_then(|limit| limit.dt);
     for finding in &mut findings {
         finding.help = finding.kind.help(subject.dt, longest_dt);

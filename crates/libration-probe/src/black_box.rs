@@ -33,6 +33,14 @@ pub trait BlackBox {
         Ok(None)
     }
 
+    /// Sets the gains of position and velocity of all servos, with their forces at the point as they are; false if this is not possible.
+    ///
+    /// # Errors
+    /// The simulator fails.
+    fn set_gains(&mut self, _kp: &[f64], _kv: &[f64]) -> Result<bool, BlackBoxError> {
+        Ok(false)
+    }
+
     /// Starts the simulator anew, as a new process; false if this is not possible.
     ///
     /// # Errors
@@ -53,6 +61,14 @@ pub enum BlackBoxError {
     TimeLimit {
         /// The program.
         program: String,
+    },
+    /// An answer took too long.
+    #[error("`{program}` gave no answer within {seconds} s; expected a line for each line, flushed at once")]
+    NoAnswer {
+        /// The program.
+        program: String,
+        /// The time that an answer has.
+        seconds: f64,
     },
     /// A result has the wrong shape.
     #[error("the {what} of {rows} states are {found}; expected {expected}")]

@@ -36,6 +36,8 @@ pub struct ChildProcess {
     /// Lines that were answered.
     answered: u64,
     reads_description: bool,
+    /// The least time for a description.
+    loading: Duration,
 }
 
 /// Environment variables of a program that differ from those of this process; without a value, it does not have them.
@@ -142,16 +144,27 @@ impl ChildProcess {
             has_energy: false,
             answered: 0,
             reads_description: false,
+            loading: Duration::ZERO,
         })
     }
 
-    /// The first line of a program that describes itself before its first step. It may answer a line `energy x₁ … xₙ`.
+    /// The first line of a program that describes itself before its first step. It may answer a line `energy x₁ … xₙ`. The line may
+    /// take the time of an answer, or `loading` if that is longer.
     ///
     /// # Errors
     /// There is no line in time.
-    pub fn description(&mut self) -> Result<String, BlackBoxError> {
+    pub fn description(&mut self, loading: Duration) -> Result<String, BlackBoxError> {
         self.reads_description = true;
-        self.next_line()
+        self.loading = loading;
+        self.first_line()
+    }
+
+    fn first_line(&mut self) -> Result<String, BlackBoxError> {
+        let patience = self.patience;
+        self.patience = patience.max(self.loading);
+        let line = self.next_line();
+        self.patience = patience;
+        line
     }
 
     /// The end of the audit, at which the wait for an answer ends as well.
@@ -181,10 +194,10 @@ impl ChildProcess {
                     program: self.words.first().cloned().unwrap_or_default(),
                 })
             }
-            Err(RecvTimeoutError::Timeout) => Err(self.failed(&format!(
-                "gave no answer within {} s; expected a line for each line, flushed at once",
-                self.patience.as_secs_f64()
-            ))),
+            Err(RecvTimeoutError::Timeout) => Err(BlackBoxError::NoAnswer {
+                program: self.words.first().cloned().unwrap_or_default(),
+                seconds: self.patience.as_secs_f64(),
+            }),
             Err(RecvTimeoutError::Disconnected) => Err(self.ended("")),
         }
     }
@@ -286,11 +299,16 @@ impl BlackBox for ChildProcess {
         (0..states.rows()).map(of).collect::<Result<_, _>>().map(Some)
     }
 
+    fn set_gains(&mut self, kp: &[f64], kv: &[f64]) -> Result<bool, BlackBoxError> {
+        let line = format!("gains {}\n", joined(kp.iter().chain(kv)));
+        self.ask(&line, 1).map(|_| true)
+    }
+
     fn restart(&mut self) -> Result<bool, BlackBoxError> {
         self.running = Running::start(&self.words, &self.environment)?;
         self.answered = 0;
         if self.reads_description {
-            self.next_line()?;
+            self.first_line()?;
         }
         Ok(true)
     }

@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use thiserror::Error;
 
-use crate::{MeasuredInput, Recording, Reference, Subject, SubjectError};
+use crate::{MeasuredInput, OperatingPoint, Recording, Reference, Subject, SubjectError};
 
 /// The description of a simulator.
 #[derive(Clone, Debug, Deserialize)]
@@ -50,6 +50,7 @@ pub struct Description {
     not_examined: Vec<String>,
     #[serde(default)]
     recordings: Vec<Recording>,
+    operating_point: Option<OperatingPoint>,
     /// Whether the simulator computes energies.
     #[serde(default)]
     pub energy: bool,
@@ -147,6 +148,7 @@ impl Description {
         subject.not_examined = self.not_examined;
         subject.validity = self.validity;
         subject.recordings = self.recordings;
+        subject.operating_point = self.operating_point;
         subject.invocation = self.invocation;
         subject.check()?;
         Ok(subject)

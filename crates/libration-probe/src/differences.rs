@@ -14,6 +14,13 @@ pub struct Jacobian {
 /// Steps relative to the scale of a variable: 1/16, 1/64, … The first ones suit smooth functions, to rounding. The last ones suit
 /// functions that bend on a thousandth of the scale.
 const STEPS: usize = 11;
+/// Those of searches, which need many Jacobians.
+const QUICK: core::ops::Range<usize> = 5..9;
+/// Further steps of variables whose derivatives have not settled, and the error relative to a row from which they have not.
+const MORE_STEPS: usize = 5;
+const SETTLED: f64 = 1e-5;
+/// Errors by which estimates of longer and shorter steps may be apart.
+const APART: f64 = 3.0;
 /// Steps at which the slopes on both sides are compared.
 const MIDDLE: core::ops::Range<usize> = 3..8;
 const LEAST_STEPS: usize = 3;
@@ -25,19 +32,42 @@ const CLOSE: usize = 10;
 /// Central differences of falling steps are extrapolated to zero by Richardson's scheme, and each entry is that of the smallest
 /// estimated error (C. J. F. Ridders, Advances in Engineering Software 4, 1982). The estimate includes the rounding of the
 /// function, by second differences at close points (J. J. Moré and S. M. Wild, SIAM Journal on Scientific Computing 33, 2011). At a
-/// kink it includes half the difference of the slopes on both sides. Steps to where the function is not finite are left out.
+/// kink it includes half the difference of the slopes on both sides. Steps to where the function is not finite are left out. Estimates
+/// of long steps that those of shorter ones contradict are none: such steps straddle a part of the function that bends. The steps
+/// become shorter until the estimates settle, or their rounding grows.
 ///
 /// `coarseness` is the rounding of values relative to them that close points do not show, such as that of single precision; else 0.
 ///
 /// # Errors
 /// Those of the function.
 pub fn jacobian<E>(
-    mut function: impl FnMut(&Matrix) -> Result<Matrix, E>,
+    function: impl FnMut(&Matrix) -> Result<Matrix, E>,
     z: &[f64],
     scale: &[f64],
     coarseness: f64,
 ) -> Result<Jacobian, E> {
-    let points = Points::new(z, scale);
+    jacobian_by(function, z, scale, coarseness, 0..STEPS)
+}
+
+/// The same by the short steps [`QUICK`] alone.
+pub(crate) fn quick_jacobian<E>(
+    function: impl FnMut(&Matrix) -> Result<Matrix, E>,
+    z: &[f64],
+    scale: &[f64],
+) -> Result<Jacobian, E> {
+    jacobian_by(function, z, scale, 0.0, QUICK)
+}
+
+fn jacobian_by<E>(
+    mut function: impl FnMut(&Matrix) -> Result<Matrix, E>,
+    z: &[f64],
+    scale: &[f64],
+    coarseness: f64,
+    steps: core::ops::Range<usize>,
+) -> Result<Jacobian, E> {
+    let all: Vec<usize> = (0..z.len()).collect();
+    let is_quick = steps == QUICK;
+    let points = Points::new(z, scale, &all, steps);
     let values = function(&points.states)?;
     let centre = values.row(0);
     let mut noise = noise(&values);
@@ -48,36 +78,59 @@ pub fn jacobian<E>(
     let mut found =
         Jacobian { values: Matrix::zeros(rows, columns), errors: Matrix::zeros(rows, columns) };
     for j in 0..columns {
-        let pairs: Vec<Pair<'_>> = (0..STEPS)
-            .map(|k| {
-                let at = points.index(j, k);
-                let width = points.states[(at, j)] - points.states[(at + 1, j)];
-                Pair { step: k, above: values.row(at), below: values.row(at + 1), width }
-            })
-            .collect();
-        for (i, (value, error)) in column(centre, &noise, &pairs).into_iter().enumerate() {
-            found.values[(i, j)] = value;
-            found.errors[(i, j)] = error;
-        }
+        found.set_column(j, column(centre, &noise, &points.pairs(&values, j, j)));
+    }
+    let unsettled = found.unsettled(scale);
+    if unsettled.is_empty() || is_quick {
+        return Ok(found);
+    }
+    let finer = Points::new(z, scale, &unsettled, STEPS..STEPS + MORE_STEPS);
+    let fine = function(&finer.states)?;
+    for (place, &j) in unsettled.iter().enumerate() {
+        let mut pairs = points.pairs(&values, j, j);
+        pairs.extend(finer.pairs(&fine, place, j));
+        found.set_column(j, column(centre, &noise, &pairs));
     }
     Ok(found)
 }
 
-/// All points of a Jacobian: the centre, close points, and pairs on both sides in each variable.
+impl Jacobian {
+    fn set_column(&mut self, j: usize, entries: Vec<(f64, f64)>) {
+        for (i, (value, error)) in entries.into_iter().enumerate() {
+            self.values[(i, j)] = value;
+            self.errors[(i, j)] = error;
+        }
+    }
+
+    /// The variables by which a derivative has a large error beside the largest one of its row.
+    fn unsettled(&self, scale: &[f64]) -> Vec<usize> {
+        let (rows, columns) = (self.values.rows(), self.values.columns());
+        let size = |i: usize| {
+            (0..columns).map(|j| (self.values[(i, j)] * scale[j]).abs()).fold(0.0, f64::max)
+        };
+        let sizes: Vec<f64> = (0..rows).map(size).collect();
+        let is_unsettled =
+            |j: &usize| (0..rows).any(|i| self.errors[(i, *j)] * scale[*j] > SETTLED * sizes[i]);
+        (0..columns).filter(is_unsettled).collect()
+    }
+}
+
+/// Points of a Jacobian: the centre, close points, and pairs on both sides in some of the variables.
 struct Points {
     states: Matrix,
+    steps: core::ops::Range<usize>,
 }
 
 impl Points {
-    fn new(z: &[f64], scale: &[f64]) -> Self {
+    fn new(z: &[f64], scale: &[f64], variables: &[usize], steps: core::ops::Range<usize>) -> Self {
         let n = z.len();
         let mut rows: Vec<Vec<f64>> = vec![z.to_vec()];
         for k in 0..CLOSE {
             let shift = (k as f64 - CLOSE as f64 / 2.0) * 2.0_f64.powi(-40);
             rows.push(z.iter().zip(scale).map(|(z, scale)| z + shift * scale).collect());
         }
-        for j in 0..n {
-            for k in 0..STEPS {
+        for &j in variables {
+            for k in steps.clone() {
                 let step = scale[j] * 2.0_f64.powi(-4 - 2 * k as i32);
                 for side in [step, -step] {
                     let mut point = z.to_vec();
@@ -86,12 +139,18 @@ impl Points {
                 }
             }
         }
-        Points { states: Matrix::from_fn(rows.len(), n, |i, j| rows[i][j]) }
+        Points { states: Matrix::from_fn(rows.len(), n, |i, j| rows[i][j]), steps }
     }
 
-    /// The row of the upper point of step `k` in variable `j`; the lower one follows.
-    fn index(&self, j: usize, k: usize) -> usize {
-        1 + CLOSE + 2 * (j * STEPS + k)
+    /// The pairs of the variable `j`, which has this place among the variables.
+    fn pairs<'a>(&self, values: &'a Matrix, place: usize, j: usize) -> Vec<Pair<'a>> {
+        let first = 1 + CLOSE + 2 * place * self.steps.len();
+        let pair = |(k, step)| {
+            let at = first + 2 * k;
+            let width = self.states[(at, j)] - self.states[(at + 1, j)];
+            Pair { step, above: values.row(at), below: values.row(at + 1), width }
+        };
+        self.steps.clone().enumerate().map(pair).collect()
     }
 }
 
@@ -154,6 +213,7 @@ fn entry(i: usize, centre: f64, noise: f64, pairs: &[Pair<'_>]) -> (f64, f64) {
             bends.push(bend);
         }
     }
+    let mut estimates = uncontradicted(&estimates);
     estimates.sort_by(|a, b| a.1.total_cmp(&b.1));
     estimates.truncate(LEAST_STEPS);
     let (value, mut error) = estimates[0];
@@ -170,4 +230,18 @@ fn entry(i: usize, centre: f64, noise: f64, pairs: &[Pair<'_>]) -> (f64, f64) {
         }
     }
     (value, error)
+}
+
+/// The estimates without those of long steps that two of shorter steps contradict, beyond the errors of both.
+fn uncontradicted(estimates: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let contradicts = |(a, a_error): (f64, f64), (b, b_error): (f64, f64)| {
+        (a - b).abs() > APART * (a_error + b_error)
+    };
+    let is_contradicted = |k: &usize| {
+        estimates[k + 1..].iter().filter(|later| contradicts(estimates[*k], **later)).count() >= 2
+    };
+    let first = (0..estimates.len()).rev().find(is_contradicted).map_or(0, |k| k + 1);
+    // Fewer are left by noise alone, whose errors are all too small.
+    let first = first.min(estimates.len() - LEAST_STEPS);
+    estimates[first..].to_vec()
 }

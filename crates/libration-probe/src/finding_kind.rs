@@ -50,6 +50,8 @@ pub enum FindingKind {
     GrowsAlways,
     /// The result holds for a part of the states only.
     LimitedValidity,
+    /// The state is not the requested one, or does not hold.
+    OperatingPoint,
     /// The state is no equilibrium.
     NoEquilibrium,
     /// The step has no derivative at the state.
@@ -62,7 +64,7 @@ pub enum FindingKind {
 
 impl FindingKind {
     /// All kinds.
-    pub const ALL: [FindingKind; 24] = [
+    pub const ALL: [FindingKind; 25] = [
         FindingKind::NotReproducible,
         FindingKind::SharedGenerator,
         FindingKind::SameNoise,
@@ -83,6 +85,7 @@ impl FindingKind {
         FindingKind::UnstableStep,
         FindingKind::GrowsAlways,
         FindingKind::LimitedValidity,
+        FindingKind::OperatingPoint,
         FindingKind::NoEquilibrium,
         FindingKind::NotDifferentiable,
         FindingKind::Nonlinear,
@@ -112,6 +115,7 @@ impl FindingKind {
             FindingKind::UnstableStep => "unstable-step",
             FindingKind::GrowsAlways => "grows-always",
             FindingKind::LimitedValidity => "limited-validity",
+            FindingKind::OperatingPoint => "operating-point",
             FindingKind::NoEquilibrium => "no-equilibrium",
             FindingKind::NotDifferentiable => "not-differentiable",
             FindingKind::Nonlinear => "nonlinear",
@@ -182,6 +186,9 @@ impl FindingKind {
             }
             FindingKind::LimitedValidity => {
                 "audit again at each other state in which the simulator runs, such as without these contacts"
+            }
+            FindingKind::OperatingPoint => {
+                "raise the gains of position, or give commands that hold the requested state; if the state that was found is meant, make it a keyframe"
             }
             FindingKind::NoEquilibrium => {
                 "audit at an equilibrium (MuJoCo: `--settle`); if the motion is meant, add `--moving` (Python: `equilibrium=False`)"

@@ -1,6 +1,7 @@
 //! The longest stable step.
 
 use libration::linear::{Complex64, eigenvalues};
+use libration_report::notation::number;
 use serde::Serialize;
 
 use crate::BlackBoxError;
@@ -8,6 +9,7 @@ use crate::flow::Flow;
 use crate::linearised_step::{LinearisedStep, largest_scaled};
 use crate::modes::{eigenvalue_errors, name_mode};
 use crate::prober::{Prober, row};
+use crate::step_equilibrium::step_equilibrium;
 
 /// Least distance from the unit circle that counts as outside.
 const OUTSIDE: f64 = 1e-12;
@@ -49,6 +51,8 @@ pub struct LargestStep {
     pub turns: f64,
     /// Why the search ended, if it did not find a limit.
     pub reason: Option<String>,
+    /// The shortest step that was tried whose equilibrium is another state, in s: that of contacts which rest deeper in longer steps.
+    pub rests_elsewhere_from: Option<f64>,
 }
 
 impl LargestStep {
@@ -67,9 +71,10 @@ impl LargestStep {
             mode: String::new(),
             turns: 0.0,
             reason: None,
+            rests_elsewhere_from: None,
         };
-        let at = |prober: &mut Prober<'_>, dt: f64| Trial::at(prober, &rates, dt);
-        let own = at(prober, start)?;
+        let mut state = prober.subject.state.clone();
+        let own = Trial::at(prober, &rates, &mut state, start)?;
         let is_unstable = own.is_unstable();
         if let Some(z) = own.leaving.filter(|_| is_unstable) {
             found.turns = z.arg().abs() / core::f64::consts::TAU;
@@ -87,7 +92,10 @@ impl LargestStep {
                 found.grows_always = is_unstable;
                 return Ok(found);
             }
-            let other = at(prober, next)?;
+            let other = Trial::at(prober, &rates, &mut state, next)?;
+            if other.rests_elsewhere {
+                found.rests_elsewhere_from.get_or_insert(next);
+            }
             if other.is_unknown {
                 found.tried_up_to = dt;
                 found.reason = Some(format!("a step of {next:.4} s has no derivative"));
@@ -95,13 +103,20 @@ impl LargestStep {
             }
             if other.moves && !is_unstable {
                 found.tried_up_to = dt;
-                found.reason =
-                    Some(format!("the state is no equilibrium of a step of {next:.4} s"));
+                let why = if prober.subject.is_mujoco() {
+                    ": contacts rest deeper where dt exceeds half the time constant of solref (refsafe)"
+                } else {
+                    ""
+                };
+                found.reason = Some(format!(
+                    "no equilibrium of a step of {} s was found near the state{why}",
+                    number(next, 4)
+                ));
                 return Ok(found);
             }
             if other.is_unstable() != is_unstable {
                 let (low, high) = if is_unstable { (next, dt) } else { (dt, next) };
-                return found.bisect(prober, &rates, low, high);
+                return found.bisect(prober, &rates, &mut state, [low, high]);
             }
             dt = next;
             found.tried_up_to = found.tried_up_to.max(dt);
@@ -112,16 +127,16 @@ impl LargestStep {
         mut self,
         prober: &mut Prober<'_>,
         rates: &FlowRates,
-        mut low: f64,
-        mut high: f64,
+        state: &mut Vec<f64>,
+        [mut low, mut high]: [f64; 2],
     ) -> Result<Self, BlackBoxError> {
-        let mut leaving = Trial::at(prober, rates, high)?;
+        let mut leaving = Trial::at(prober, rates, state, high)?;
         for _ in 0..BISECTIONS {
             if high - low <= RESOLUTION * high {
                 break;
             }
             let middle = low + (high - low) / 2.0;
-            let trial = Trial::at(prober, rates, middle)?;
+            let trial = Trial::at(prober, rates, state, middle)?;
             if trial.is_unstable() {
                 high = middle;
                 leaving = trial;
@@ -135,7 +150,7 @@ impl LargestStep {
         }
         // At the step of the subject, too: slow transients of stiff contacts look like growth close to the limit.
         let start = prober.subject.dt.min(low / 2.0);
-        let [half, own] = [low / 2.0, start].map(|dt| Trial::at(prober, rates, dt));
+        let [half, own] = [low / 2.0, start].map(|dt| Trial::at(prober, rates, state, dt));
         let (half, own) = (half?, own?);
         let remains = half.excess > REMAINS * leaving.excess && half.excess > half.error;
         self.grows_always = remains && own.excess > own.error;
@@ -165,12 +180,12 @@ impl FlowRates {
 }
 
 /// Whether a step of this length moves the state, such as that of contacts which give way by the length of the step.
-fn moves(prober: &mut Prober<'_>, dt: f64) -> Result<bool, BlackBoxError> {
+fn moves(prober: &mut Prober<'_>, state: &[f64], dt: f64) -> Result<bool, BlackBoxError> {
     let subject = prober.subject;
     let actions = row(&subject.action);
-    let next = prober.step(&row(&subject.state), &actions, dt)?;
-    let moved = |i: usize| (next[(0, i)] - subject.state[i]).abs() / subject.state_scale[i];
-    Ok((0..subject.state.len()).any(|i| moved(i) > MOVED))
+    let next = prober.step(&row(state), &actions, dt)?;
+    let moved = |i: usize| (next[(0, i)] - state[i]).abs() / subject.state_scale[i];
+    Ok((0..state.len()).any(|i| moved(i) > MOVED))
 }
 
 /// A step of a trial length.
@@ -183,13 +198,27 @@ struct Trial {
     /// Its factor.
     leaving: Option<Complex64>,
     is_unknown: bool,
-    /// Whether the state of an equilibrium moves under a step of this length.
+    /// Whether the state of an equilibrium moves under a step of this length, and none was found near it that does not.
     moves: bool,
+    /// Whether another state is the equilibrium of a step of this length.
+    rests_elsewhere: bool,
 }
 
 impl Trial {
-    fn at(prober: &mut Prober<'_>, flow: &FlowRates, dt: f64) -> Result<Self, BlackBoxError> {
-        let step = LinearisedStep::of_states(prober, dt)?;
+    /// A step at the equilibrium near `state`, which becomes it.
+    fn at(
+        prober: &mut Prober<'_>,
+        flow: &FlowRates,
+        state: &mut Vec<f64>,
+        dt: f64,
+    ) -> Result<Self, BlackBoxError> {
+        let mut moves = flow.is_at_rest && moves(prober, state, dt)?;
+        let mut rests_elsewhere = false;
+        if moves && let Some(found) = step_equilibrium(prober, state, dt)? {
+            *state = found;
+            (moves, rests_elsewhere) = (false, true);
+        }
+        let step = LinearisedStep::of_states_at(prober, state, dt)?;
         let mut factors = match step.a.is_finite() {
             true => eigenvalues(&step.a).unwrap_or_default(),
             false => Vec::new(),
@@ -198,7 +227,6 @@ impl Trial {
         let errors = eigenvalue_errors(&step.a, &step.a_errors, &factors);
         // At least that of an entry: errors of a solver of constraints are not independent.
         let of_entries = largest_scaled(&step.a_errors, prober.subject) / ERRORS;
-        let moves = flow.is_at_rest && moves(prober, dt)?;
         let mut found = Trial {
             step,
             excess: 0.0,
@@ -206,6 +234,7 @@ impl Trial {
             leaving: None,
             is_unknown: factors.is_empty(),
             moves,
+            rests_elsewhere,
         };
         // The modes of the step and of the flow in the order of their growth: what the fastest of the flow carry out is theirs.
         for (k, (z, error)) in factors.iter().zip(errors).enumerate() {

@@ -40,9 +40,11 @@ mod memory;
 mod memory_finding;
 mod mode_plane;
 mod modes;
+mod neutral_modes;
 mod noise_free_matrix;
 mod observation_age;
 mod observed;
+mod operating_point;
 mod page;
 mod prober;
 mod process_group;
@@ -56,6 +58,7 @@ mod rounding;
 mod settled_order;
 mod settling;
 mod shorter_step;
+mod step_equilibrium;
 mod subject;
 mod summary;
 mod verdict;
@@ -76,8 +79,8 @@ pub use finding::Finding;
 pub use finding_kind::FindingKind;
 pub use first_difference::{FirstDifference, ulps};
 pub use gains::{
-    GainReport, IntegratorRow, JointRow, ServoError, ServoIntegrator, ServoMode, Servos,
-    ServosDescription, gains, gains_page,
+    GainReport, IntegratorRow, JointRow, MeasuredGains, ServoError, ServoGain, ServoIntegrator,
+    ServoMode, ServoRow, Servos, ServosDescription, Torque, gains, gains_page,
 };
 pub use hidden_latency::HiddenLatency;
 pub use impulse::Lateness;
@@ -87,7 +90,9 @@ pub use matrices::Matrices;
 pub use matrix_step::MatrixStep;
 pub use memory::Memory;
 pub use modes::{ProbedMode, Rates};
+pub use neutral_modes::WithoutNeutral;
 pub use observed::Observed;
+pub use operating_point::{LargestChange, OperatingPoint, StandingRun};
 pub use page::page;
 pub use process_group::end_programs;
 pub use recognition::{Candidate, Match, Recognition};

@@ -2,7 +2,7 @@
 
 use libration::linear::{LinearPlant, Matrix};
 
-use crate::differences::{Jacobian, jacobian};
+use crate::differences::{Jacobian, jacobian, quick_jacobian};
 use crate::prober::Prober;
 use crate::{BlackBoxError, Subject};
 
@@ -29,26 +29,49 @@ pub(crate) struct LinearisedStep {
 impl LinearisedStep {
     /// That of a step of `dt` seconds at the state and the action of the subject.
     pub(crate) fn at(prober: &mut Prober<'_>, dt: f64) -> Result<Self, BlackBoxError> {
-        let Subject { action, action_scale, .. } = prober.subject;
-        LinearisedStep::by(prober, action, action_scale, dt)
+        let Subject { state, action, action_scale, .. } = prober.subject;
+        LinearisedStep::by(prober, state, [action, action_scale], dt)
     }
 
     /// The same without actions, for fewer calls.
     pub(crate) fn of_states(prober: &mut Prober<'_>, dt: f64) -> Result<Self, BlackBoxError> {
-        LinearisedStep::by(prober, &[], &[], dt)
+        LinearisedStep::of_states_at(prober, &prober.subject.state, dt)
     }
 
-    /// The derivatives by the states and by these actions, which are all or none.
+    /// The same at another state.
+    pub(crate) fn of_states_at(
+        prober: &mut Prober<'_>,
+        state: &[f64],
+        dt: f64,
+    ) -> Result<Self, BlackBoxError> {
+        LinearisedStep::by(prober, state, [&[]; 2], dt)
+    }
+
+    /// The same by few short differences, for searches.
+    pub(crate) fn quick(prober: &mut Prober<'_>, dt: f64) -> Result<Self, BlackBoxError> {
+        let subject = prober.subject;
+        let n = subject.state.len();
+        let of = |points: &Matrix| {
+            let actions = |_, j: usize| subject.action[j];
+            let actions = Matrix::from_fn(points.rows(), subject.action.len(), actions);
+            prober.step(points, &actions, dt)
+        };
+        let Jacobian { values, errors } = quick_jacobian(of, &subject.state, &subject.state_scale)?;
+        let [b, b_errors] = [(); 2].map(|()| Matrix::zeros(n, 0));
+        Ok(LinearisedStep { dt, a: values, b, a_errors: errors, b_errors })
+    }
+
+    /// The derivatives at a state by the states and by these actions with their scales, which are all or none.
     fn by(
         prober: &mut Prober<'_>,
-        actions: &[f64],
-        action_scale: &[f64],
+        state: &[f64],
+        [actions, action_scale]: [&[f64]; 2],
         dt: f64,
     ) -> Result<Self, BlackBoxError> {
         let subject = prober.subject;
         let n = subject.state.len();
         let coarseness = prober.coarseness;
-        let z = [&subject.state[..], actions].concat();
+        let z = [state, actions].concat();
         let scale = [&subject.state_scale[..], action_scale].concat();
         let of = |points: &Matrix| {
             let rows = points.rows();

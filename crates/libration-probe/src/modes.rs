@@ -116,7 +116,7 @@ fn flow_values(flow: &Flow, of_step: &[Complex64]) -> Vec<Complex64> {
 }
 
 /// The values of `others` in the order of the nearest of `values`.
-fn matched(values: &[Complex64], others: &[Complex64]) -> Vec<Complex64> {
+pub(crate) fn matched(values: &[Complex64], others: &[Complex64]) -> Vec<Complex64> {
     let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
     for (i, a) in values.iter().enumerate() {
         pairs.extend(others.iter().enumerate().map(|(j, b)| ((a - b).norm(), i, j)));

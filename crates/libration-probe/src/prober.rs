@@ -43,6 +43,10 @@ impl<'a> Prober<'a> {
         self.black_box.is_batched()
     }
 
+    pub(crate) fn set_gains(&mut self, kp: &[f64], kv: &[f64]) -> Result<bool, BlackBoxError> {
+        self.black_box.set_gains(kp, kv)
+    }
+
     pub(crate) fn restart(&mut self) -> Result<bool, BlackBoxError> {
         self.black_box.restart()
     }

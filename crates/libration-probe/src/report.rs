@@ -17,7 +17,7 @@ use crate::reference_check::ReferenceCheck;
 use crate::rest::Rest;
 use crate::{
     Bits, BlackBoxError, Confirmation, Convergence, Defects, DelayAudit, InnerStep, LargestStep, Match,
-    Memory, Recognition, Subject,
+    Memory, OperatingPoint, Recognition, Subject,
 };
 
 /// Largest relative error of a row at which the step counts as differentiable.
@@ -54,6 +54,8 @@ pub struct ProbeReport {
     pub is_conservative: bool,
     /// Whether the state is an equilibrium.
     pub equilibrium: Rest,
+    /// Where it is from the requested state, if it was searched for.
+    pub operating_point: Option<OperatingPoint>,
     /// Whether half a step gives the same bits as a step.
     pub ignores_dt: bool,
     /// Inner steps of a fixed length; none if there is no evidence of them.
@@ -130,6 +132,7 @@ impl ProbeReport {
                 change: f64::NAN,
                 state: String::new(),
             },
+            operating_point: subject.operating_point.clone(),
             ignores_dt: false,
             inner_step: None,
             step: None,

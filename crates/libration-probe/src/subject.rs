@@ -5,6 +5,8 @@ use libration_report::notation::plural;
 use serde::Deserialize;
 use thiserror::Error;
 
+use crate::OperatingPoint;
+
 /// What is known of a simulator before its first step.
 #[derive(Clone, Debug)]
 pub struct Subject {
@@ -56,6 +58,8 @@ pub struct Subject {
     pub not_examined: Vec<String>,
     /// Recordings of the simulator that should have the same bits.
     pub recordings: Vec<Recording>,
+    /// Where the state is from a requested one from which it was searched for.
+    pub operating_point: Option<OperatingPoint>,
     /// The command that repeats the audit.
     pub invocation: String,
 }
@@ -140,6 +144,7 @@ impl Subject {
             measured_inputs: Vec::new(),
             not_examined: Vec::new(),
             recordings: Vec::new(),
+            operating_point: None,
             invocation: String::new(),
         }
     }
@@ -228,6 +233,11 @@ impl Subject {
             return error("joint_damping", has(damping.len(), "number"), expected);
         }
         Ok(())
+    }
+
+    /// Whether the simulator is MuJoCo.
+    pub(crate) fn is_mujoco(&self) -> bool {
+        self.version.as_ref().is_some_and(|version| version.starts_with("MuJoCo"))
     }
 
     /// The name of state `i` with its unit.

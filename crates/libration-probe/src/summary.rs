@@ -11,6 +11,10 @@ impl ProbeReport {
     /// The answer in a few sentences: faults first.
     pub(crate) fn summary(&self) -> String {
         let mut sentences = Vec::new();
+        let is_fault = self.findings.iter().any(|f| f.kind == FindingKind::OperatingPoint);
+        sentences.extend(
+            self.operating_point.as_ref().filter(|_| !is_fault).and_then(|point| point.sentence()),
+        );
         let faults = self.findings.iter().filter(|finding| finding.is_fault).count();
         match (self.verdict.outcome, faults) {
             (Outcome::Fault, 1) => {
@@ -104,6 +108,16 @@ impl ProbeReport {
                 text += &format!("; no limit was found up to a step of {longest} s{why}");
             }
             None => {}
+        }
+        if let Some(from) = limit.and_then(|limit| limit.rests_elsewhere_from) {
+            text += &format!(
+                "; longer steps were examined at their own equilibria, which are other states from {} s on",
+                number(from, 3)
+            );
+            let is_mujoco = self.version.as_ref().is_some_and(|v| v.starts_with("MuJoCo"));
+            if is_mujoco && !text.contains("refsafe") {
+                text += " (refsafe: contacts give way where dt exceeds half the time constant of solref)";
+            }
         }
         Some(text + ".")
     }

@@ -2,8 +2,8 @@
 
 use libration::linear::Matrix;
 use libration_probe::{
-    BlackBox, BlackBoxError, Description, FirstDifference, ServoIntegrator, ServosDescription,
-    gains, gains_page, jacobian, page, probe,
+    BlackBox, BlackBoxError, Description, FirstDifference, MeasuredGains, ServoIntegrator,
+    ServosDescription, gains, gains_page, jacobian, page, probe,
 };
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -17,6 +17,7 @@ struct PythonStep<'py> {
     observe: Option<Bound<'py, PyAny>>,
     energy: Option<Bound<'py, PyAny>>,
     restart: Option<Bound<'py, PyAny>>,
+    set_gains: Option<Bound<'py, PyAny>>,
     is_batched: bool,
     /// The exception of a function, to be raised again.
     raised: Option<PyErr>,
@@ -82,6 +83,12 @@ impl BlackBox for PythonStep<'_> {
         self.called(result).map(Some)
     }
 
+    fn set_gains(&mut self, kp: &[f64], kv: &[f64]) -> Result<bool, BlackBoxError> {
+        let Some(set_gains) = &self.set_gains else { return Ok(false) };
+        let result = set_gains.call1((kp.to_vec(), kv.to_vec())).map(|_| true);
+        self.called(result)
+    }
+
     fn restart(&mut self) -> Result<bool, BlackBoxError> {
         let Some(restart) = &self.restart else { return Ok(false) };
         let result = restart.call0().map(|_| true);
@@ -104,7 +111,7 @@ pub(crate) fn _probe(
     let subject = Description::parse(description).and_then(Description::subject);
     let subject = subject.map_err(|error| wrong(&error))?;
     let mut black_box =
-        PythonStep { py, step, observe, energy, restart, is_batched: batched, raised: None };
+        PythonStep { py, step, observe, energy, restart, set_gains: None, is_batched: batched, raised: None };
     match probe(&mut black_box, &subject) {
         Ok(report) => {
             let json = serde_json::to_string(&report).map_err(|error| wrong(&error))?;
@@ -128,13 +135,16 @@ pub(crate) fn _first_difference(
     Ok(found.map(|d| (d.index, d.first, d.second, d.ulps, d.differing)))
 }
 
-/// Whether the gains of servos hold. Gives JSON and a page.
+/// Whether the gains of servos hold, in a step if one is given. Gives JSON and a page.
 #[pyfunction]
 pub(crate) fn _gains(
+    py: Python<'_>,
     description: &str,
     dt: f64,
     substeps: u32,
     integrator: &str,
+    step: Option<Bound<'_, PyAny>>,
+    set_gains: Option<Bound<'_, PyAny>>,
 ) -> PyResult<(String, String)> {
     let wrong = |error: &dyn core::fmt::Display| value_error(error.to_string());
     let described: ServosDescription =
@@ -145,7 +155,24 @@ pub(crate) fn _gains(
         let names: Vec<&str> = ServoIntegrator::names().collect();
         unknown("integrator", integrator, names)
     })?;
-    let report = gains(&servos, dt, substeps, found, described.notes);
+    let mut report = gains(&servos, dt, substeps, found, described.notes);
+    if let (Some(step), Some(description)) = (step, described.step) {
+        let subject = description.subject().map_err(|error| wrong(&error))?;
+        let mut black_box = PythonStep {
+            py,
+            step,
+            observe: None,
+            energy: None,
+            restart: None,
+            set_gains,
+            is_batched: true,
+            raised: None,
+        };
+        match MeasuredGains::measure(&mut black_box, &subject, &described.servos, substeps) {
+            Ok(measured) => report = report.with_measured(measured, &described.other_servos),
+            Err(error) => return Err(black_box.raised.unwrap_or_else(|| wrong(&error))),
+        }
+    }
     let json = serde_json::to_string(&report).map_err(|error| wrong(&error))?;
     Ok((json, gains_page(&report)))
 }

@@ -25,7 +25,10 @@ def _arguments() -> argparse.Namespace:
     of_mujoco.add_argument("--keyframe", help="name or number of a keyframe")
     of_mujoco.add_argument("--dt", type=float, help="timestep in s")
     of_mujoco.add_argument("--settle", action="store_true", help="start from a settled equilibrium")
-    of_mujoco.add_argument("--gains", action="store_true", help="print inertia and gains, and end")
+    of_mujoco.add_argument("--state-scale", help="typical deviations of the states, or one number for all")
+    of_mujoco.add_argument("--gains", action="store_true", help="describe servos, and step with gains that lines `gains kp… kv…` set")
+    of_mujoco.add_argument("--integrator", help="integrator for --gains")
+    of_mujoco.add_argument("--substeps", type=int, default=1, help="substeps for --gains")
     return parser.parse_args()
 
 
@@ -52,22 +55,47 @@ def _answer(host: Host, line: str) -> str:
     return " ".join(repr(float(x)) for x in host.step(states, actions, numbers[-1])[0])
 
 
+def _scale(text: str, count: int) -> list[float]:
+    """Return a typical deviation for each state."""
+    numbers = [float(word) for word in text.split(",")]
+    if len(numbers) not in (1, count):
+        raise ValueError(f"--state-scale has {len(numbers)} numbers; expected 1 or {count}")
+    return numbers * count if len(numbers) == 1 else numbers
+
+
+def _gains(arguments: argparse.Namespace) -> int:
+    from ._mujoco_gains import mujoco_gains
+
+    state = "settled" if arguments.settle else None
+    keywords = {"dt": arguments.dt, "integrator": arguments.integrator, "substeps": arguments.substeps}
+    described, host, gains = mujoco_gains(arguments.file, keyframe=_keyframe(arguments), state=state, **keywords)
+    print(json.dumps(described), flush=True)
+    for line in sys.stdin:
+        if line.startswith("gains"):
+            numbers = [float(word) for word in line.split()[1:]]
+            gains.set(numbers[: len(numbers) // 2], numbers[len(numbers) // 2 :])
+            print("1", flush=True)
+        else:
+            print(_answer(host, line), flush=True)
+    return 0
+
+
 def main() -> int:
     arguments = _arguments()
     try:
         if arguments.gains:
-            from ._mujoco_servos import mujoco_servos
-
-            print(json.dumps(mujoco_servos(arguments.file, keyframe=_keyframe(arguments))), flush=True)
-            return 0
+            return _gains(arguments)
         host = _host(arguments)
+        described = description_of(host)
+        if arguments.state_scale is not None:
+            described["state_scale"] = _scale(arguments.state_scale, len(host.state))
     except ModuleNotFoundError as error:
         print(f"error: {error}; help: pip install 'libration[mujoco]' for this interpreter, {sys.executable}", flush=True)
         return 2
     except (TypeError, ValueError) as error:
         print("error: " + " ".join(str(error).split()), flush=True)
         return 2
-    print(json.dumps(description_of(host)), flush=True)
+    print(json.dumps(described), flush=True)
     for line in sys.stdin:
         print(_answer(host, line), flush=True)
     return 0

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ._mujoco_coordinates import Coordinates
 from ._mujoco_names import state_names
+from ._mujoco_operating_point import is_near
 
 Array = NDArray[np.float64]
 
@@ -17,6 +18,8 @@ BALANCE = 1e-6
 """Largest sum of forces at an equilibrium, relative to the sum of their absolute values."""
 MOST_ITERATIONS = 50
 MOST_STEPS = 20_000
+# Damped steps after which Newton's method searches near the point: contacts close in them.
+_SHORT_RELAXATIONS = (10, 30, 100, 300, 1000)
 
 
 def imbalance(model: Any, data: Any) -> tuple[float, int]:
@@ -58,23 +61,28 @@ def is_equilibrium(model: Any, data: Any) -> bool:
 def settle(model: Any, data: Any) -> str:
     """Move the data to an equilibrium; return how it was found.
 
-    Newton's method searches first, then after a relaxation: a simulation whose velocities are set to zero whenever the kinetic energy
-    falls. Commands stay as they are.
+    The equilibrium near the point comes first, by Newton's method from the point, and then after short relaxations in which contacts
+    close. A relaxation is a simulation whose velocities are set to zero whenever the kinetic energy falls. A long one follows if
+    there is none: it ends wherever the model comes to rest. Commands stay as they are.
 
     Raises
     ------
     ValueError
-        If neither finds an equilibrium; the message has the state that accelerates most.
+        If no search finds an equilibrium; the message has the state that accelerates most.
     """
     data.qvel[:] = 0
     start = data.qpos.copy(), data.act.copy()
-    mujoco.mj_forward(model, data)
-    if data.ncon == 0:
+    steps, relaxed = 0, start
+    for most in (0, *_SHORT_RELAXATIONS):
+        data.qpos[:], data.act[:], data.qvel[:] = *relaxed, 0
+        steps += _relax(model, data, most - steps) if most else 0
+        relaxed = data.qpos.copy(), data.act.copy()
         iterations = _newton(model, data)
-        if is_equilibrium(model, data):
-            return f"Newton's method found the equilibrium in {iterations} iterations"
-        data.qpos[:], data.act[:] = start
-    steps = _relax(model, data)
+        if is_equilibrium(model, data) and is_near(model, start[0], data.qpos):
+            how = f"{iterations} iterations of Newton's method"
+            return f"{how} found the equilibrium near the request" + (f" after {steps} damped steps" if steps else "")
+    data.qpos[:], data.act[:], data.qvel[:] = *relaxed, 0
+    steps += _relax(model, data, MOST_STEPS)
     iterations = _newton(model, data)
     if is_equilibrium(model, data):
         return f"a damped simulation of {steps} steps and {iterations} iterations of Newton's method found the equilibrium"
@@ -134,10 +142,10 @@ def _newton(model: Any, data: Any) -> int:
     return iterations
 
 
-def _relax(model: Any, data: Any) -> int:
-    """Simulate with velocities that are set to zero whenever the kinetic energy falls."""
+def _relax(model: Any, data: Any, most: int) -> int:
+    """Simulate at most so many steps with velocities that are set to zero whenever the kinetic energy falls."""
     step = 0
-    for step in range(1, MOST_STEPS + 1):
+    for step in range(1, most + 1):
         mujoco.mj_step(model, data)
         if not np.isfinite(data.qacc).all() or np.any(np.abs(data.qpos) > 1e6):
             break

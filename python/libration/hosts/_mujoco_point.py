@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._settings import nearest
-from ._mujoco_equilibrium import settle
+from ._mujoco_equilibrium import imbalance, settle
 from ._mujoco_names import number_of_actuators
+from ._mujoco_operating_point import operating_point_of, standing_of
 
 Array = NDArray[np.float64]
 
@@ -39,8 +40,13 @@ def model_of(model: Any) -> tuple[Any, str]:
     return own, bytes(own.names).split(b"\0", 1)[0].decode() or "MuJoCo model"
 
 
-def point_of(model: Any, data: Any, keyframe: str | int | None, state: str | None, dt: float) -> tuple[Any, list[str]]:
-    """Return data at the point, and notes of what it is."""
+def point_of(
+    model: Any, data: Any, keyframe: str | int | None, state: str | None, dt: float
+) -> tuple[Any, list[str], dict[str, Any] | None]:
+    """Return data at the point, notes of what it is, and where it is from the requested one if it was searched for.
+
+    An equilibrium is that of steps of ``dt``: contacts rest deeper where the timestep changes their stiffness.
+    """
     if state is not None and state not in STATES:
         raise ValueError(f"state is {state!r}: {nearest(str(state), STATES)}")
     if data is not None and keyframe is not None:
@@ -76,10 +82,19 @@ def point_of(model: Any, data: Any, keyframe: str | int | None, state: str | Non
         for warning in point.warning:
             warning.number = 1
         time, notes = point.time, [notes[0].replace("the point is", "the search for an equilibrium begins at")]
+        model.opt.timestep = dt
+        start = copy_of(model, point)
+        start.qvel[:] = 0
+        mujoco.mj_forward(model, start)
         notes.append(settle(model, point))
+        end = copy_of(model, point)
+        mujoco.mj_forward(model, end)
+        where = operating_point_of(model, start, end, notes[-1], imbalance(model, end)[0])
+        where["run"] = standing_of(model, start)
         point.time = time
         space_queues(model, point, dt, np.array(point.ctrl))
-    return point, notes
+        return point, notes, where
+    return point, notes, None
 
 
 def _keyframe(model: Any, keyframe: str | int) -> int:

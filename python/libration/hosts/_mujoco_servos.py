@@ -48,7 +48,7 @@ def mujoco_servos(
     own, _ = model_of(model)
     if not own.nu:
         raise ValueError("model has no actuators; expected servos: actuators whose forces depend on positions")
-    point, notes = point_of(own, data, keyframe, state, float(own.opt.timestep))
+    point, notes, _ = point_of(own, data, keyframe, state, float(own.opt.timestep))
     forward = copy_of(own, point)
     mujoco.mj_forward(own, forward)
     notes += notes_of(own, forward, False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Callable
+from typing import Any, Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,5 +83,7 @@ class Host:
     measured_inputs: tuple[tuple[str, float, bool], ...] = ()
     """Inputs whose lateness the host measures, discrete ones and those whose delay varies at random: their names, the steps by which they
     are late on average, and whether that varies."""
+    operating_point: dict[str, Any] | None = None
+    """Where the point is from a requested one from which it was searched for: its changes, its residual and changed contacts."""
     reset: Callable[[], None] = field(default=lambda: None)
     """Forget what earlier calls left; it has an effect with memory only."""

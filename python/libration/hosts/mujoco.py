@@ -53,7 +53,7 @@ def mujoco_host(
         Name or number of a keyframe that is the point.
     state:
         ``"given"`` (that of ``data``), ``"keyframe"`` (the one given or the first), ``"default"`` (``qpos0``), or ``"settled"``: the
-        equilibrium that Newton's method or a damped simulation finds from there (default: what is given).
+        equilibrium near it that Newton's method finds, or else that of a damped simulation from there (default: what is given).
     dt:
         Timestep in s at which the step is described (default: that of the model).
     memory:
@@ -65,13 +65,27 @@ def mujoco_host(
     TypeError, ValueError
         For a file that does not compile, an unknown keyframe, a state that is not finite, or no equilibrium; the message names it.
     """
+    return host_at_point(model, data, keyframe=keyframe, state=state, dt=dt, memory=memory)[0]
+
+
+def host_at_point(
+    model: Any,
+    data: Any,
+    *,
+    keyframe: str | int | None,
+    state: str | None,
+    dt: float | None,
+    memory: bool | None,
+    is_audited: bool = True,
+) -> tuple[Host, Any, Any]:
+    """Return the host of :func:`mujoco_host`, the model that it steps, and the point; without recordings and references if not audited."""
     own, title = model_of(model)
     if memory is None:
         memory = bool(np.any(np.asarray(getattr(own, "actuator_delay", ())) > 0))
     # An automatic reset would hide a divergence.
     own.opt.disableflags |= int(getattr(mujoco.mjtDisableBit, "mjDSBL_AUTORESET", 0))
     timestep = positive("dt", own.opt.timestep if dt is None else dt)
-    point, notes = point_of(own, data, keyframe, state, timestep)
+    point, notes, where = point_of(own, data, keyframe, state, timestep)
     own.opt.timestep = timestep
     coordinates = Coordinates(own, point.qpos)
     simulation = _Simulation(own, point, coordinates, memory)
@@ -85,8 +99,8 @@ def mujoco_host(
         moves = "velocities are not zero" if np.any(forward.qvel) else f"forces leave {worst:.2g} of their size"
         notes.append(f"the point is no equilibrium: {moves}" + (f" at {state_names(own)[number]}" if own.nv and worst > 0 else ""))
     notes += notes_of(own, forward, memory)
-    reference_a, reference_b = _reference(own, point, coordinates, simulation, start, action, notes)
-    return Host(
+    reference_a, reference_b = _reference(own, point, coordinates, simulation, start, action, notes) if is_audited else (None, None)
+    host = Host(
         step=simulation.step,
         state=start,
         action=action,
@@ -96,7 +110,7 @@ def mujoco_host(
         title=title,
         integrator=_INTEGRATORS[int(own.opt.integrator)],
         version=f"MuJoCo {mujoco.__version__}",
-        energy=simulation.energy,
+        energy=simulation.energy if is_audited else None,
         mass=inertia_of(own, forward),
         positions=tuple((k, own.nv + k) for k in range(own.nv)),
         equilibrium=rest,
@@ -108,10 +122,12 @@ def mujoco_host(
         joint_damping=tuple(float(damping) for damping in np.asarray(own.dof_damping).reshape(-1)),
         delays=_delays_of(own),
         joints=joint_names(own),
-        recordings=recordings_of(own, point),
+        recordings=recordings_of(own, point) if is_audited else (),
         memory=memory,
         reset=simulation.reset,
+        operating_point=where,
     )
+    return host, own, point
 
 
 def _delays_of(model: Any) -> tuple[float, ...]:

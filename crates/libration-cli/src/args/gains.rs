@@ -37,6 +37,9 @@ pub(crate) struct GainsArgs {
     /// Steps of the integrator in each time step
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) substeps: u32,
+    /// The torques of servos are computed once per time step, and held over its substeps [default: anew in each substep]
+    #[arg(long)]
+    pub(crate) held_torque: bool,
     /// Integrator, also by a simulator's name, e.g. euler, implicitfast, rk4
     /// [default: that of the model, or symplectic-euler]
     #[arg(long, value_name = "NAME", value_parser = integrator)]
@@ -44,6 +47,9 @@ pub(crate) struct GainsArgs {
     /// Keyframe of the MuJoCo model, by name or number [default: the default pose]
     #[arg(long, value_name = "NAME", conflicts_with_all = ["inertia", "matrices"])]
     pub(crate) keyframe: Option<String>,
+    /// Start from the equilibrium of the MuJoCo model near its keyframe
+    #[arg(long, conflicts_with_all = ["inertia", "matrices"])]
+    pub(crate) settle: bool,
     /// Longest time for an answer of the program, in s
     #[arg(long, value_name = "SECONDS", value_parser = timeout, default_value = "10", allow_hyphen_values = true)]
     pub(crate) timeout: Duration,
@@ -60,11 +66,11 @@ pub(crate) struct GainsArgs {
 
 const EXAMPLES: &str = "\
 Examples:
-  libration gains --mujoco robot.xml --dt 0.005 --substeps 4 --page gains.html
+  libration gains --mujoco robot.xml --keyframe home --settle --page gains.html
   libration gains --inertia 0.02,0.01 --kp 400,300 --kv 2,1 --dt 0.005 --integrator implicitfast
   libration gains --matrices arm.json --dt 0.002
 
-Exit codes: 0 the gains hold; 1 they do not, or a failed run; 2 invalid input.";
+Exit codes: 0 the gains hold; 1 they do not, or that is unknown, or a failed run; 2 invalid input.";
 
 fn integrator(name: &str) -> Result<ServoIntegrator, String> {
     ServoIntegrator::from_name(name).ok_or_else(|| {

@@ -36,8 +36,8 @@ pub(crate) struct ProbeArgs {
     /// Names of the actions of --command [default: u1, u2, …]
     #[arg(long, value_name = "NAMES", value_delimiter = ',', conflicts_with_all = ["mujoco", "matrices"])]
     pub(crate) action_names: Vec<String>,
-    /// Typical deviations of the states of --command [default: the larger of 1 and the absolute state]
-    #[arg(long, value_name = "NUMBERS", value_parser = number::coordinates, conflicts_with_all = ["mujoco", "matrices"])]
+    /// Typical deviations of the states; of --mujoco also one number for all [default: the larger of 1 and the absolute state]
+    #[arg(long, value_name = "NUMBERS", value_parser = number::coordinates, conflicts_with_all = ["matrices"])]
     pub(crate) state_scale: Option<Coordinates>,
     /// Typical deviations of the actions of --command [default: the larger of 1 and the absolute action]
     #[arg(long, value_name = "NUMBERS", value_parser = number::coordinates, conflicts_with_all = ["mujoco", "matrices"])]
@@ -45,7 +45,7 @@ pub(crate) struct ProbeArgs {
     /// Keyframe of the MuJoCo model, by name or number [default: the default pose]
     #[arg(long, value_name = "NAME", conflicts_with_all = ["command", "matrices"])]
     pub(crate) keyframe: Option<String>,
-    /// Start from the equilibrium into which the MuJoCo model settles
+    /// Start from the equilibrium of the MuJoCo model near its keyframe, or else from that into which it settles
     #[arg(long, conflicts_with_all = ["command", "matrices"])]
     pub(crate) settle: bool,
     /// The simulator has this time step only
@@ -72,6 +72,9 @@ pub(crate) struct ProbeArgs {
     /// Write the step as a plant in continuous time to FILE.toml, for `advise --plant` and `analyze --plant`
     #[arg(long, value_name = "FILE")]
     pub(crate) save_plant: Option<PathBuf>,
+    /// Leave neutral positions out of the plant of --save-plant, such as where a free base stands
+    #[arg(long, requires = "save_plant")]
+    pub(crate) without_neutral: bool,
     /// Print the result as JSON, with all digits
     #[arg(long)]
     pub(crate) json: bool,

@@ -3,9 +3,11 @@
 use std::fmt::Write as _;
 
 use libration_probe::{
-    GainReport, ServoIntegrator, ServosDescription, gains, gains_page, parse_printable,
+    ChildProcess, GainReport, MeasuredGains, ServoIntegrator, ServosDescription, Torque, gains,
+    gains_page, parse_printable,
 };
-use libration_report::notation::number;
+use libration_report::notation::{cut_off, number};
+use libration_report::verdict::exit_code;
 use serde_json::json;
 
 use super::mujoco;
@@ -18,7 +20,10 @@ use crate::terminal;
 /// Whether gains hold: prints the report.
 pub(crate) fn run(args: &GainsArgs) -> Result<(), Failure> {
     let page = ResultFile::create("--page", args.page.as_deref())?;
-    let description = described(args)?;
+    let (mut description, mut child) = described(args)?;
+    if args.held_torque {
+        description.torque = Torque::Held;
+    }
     let servos =
         description.servos().map_err(|error| Failure::usage(named(args, &error.to_string())))?;
     let Some(dt) = args.dt.or(description.dt) else {
@@ -36,6 +41,17 @@ pub(crate) fn run(args: &GainsArgs) -> Result<(), Failure> {
         })?,
     };
     let mut report = gains(&servos, dt, args.substeps, integrator, description.notes);
+    // Torques that a simulator holds are not those of its own servos.
+    let step = description.step.filter(|_| !args.held_torque);
+    if let (Some(child), Some(step)) = (&mut child, step) {
+        let subject = step.subject().map_err(Failure::run)?;
+        let measured =
+            MeasuredGains::measure(child, &subject, &description.servos, args.substeps)
+                .map_err(Failure::run)?;
+        report = report.with_measured(measured, &description.other_servos);
+    } else if args.mujoco.is_some() {
+        report.answer = format!("By a servo model, not by a measured step: {}", report.answer);
+    }
     report.repeat_command = command_line();
     let text = match args.json {
         true => serde_json::to_string_pretty(&report).map_err(Failure::run)? + "\n",
@@ -43,30 +59,38 @@ pub(crate) fn run(args: &GainsArgs) -> Result<(), Failure> {
     };
     terminal::print(&text)?;
     page.write(|| gains_page(&report))?;
-    if report.holds { Ok(()) } else { Err(Failure::Disagreement) }
+    if exit_code([&report.verdict]) == 0 { Ok(()) } else { Err(Failure::Disagreement) }
 }
 
-/// The servos of the options.
-fn described(args: &GainsArgs) -> Result<ServosDescription, Failure> {
+/// The servos of the options, and the program that steps them, if there is one.
+fn described(args: &GainsArgs) -> Result<(ServosDescription, Option<ChildProcess>), Failure> {
     let numbers =
         |given: &Option<Coordinates>| given.as_ref().map(|numbers| numbers.values().to_vec());
     let parse =
         |text: &str| parse_printable::<ServosDescription>(text).map_err(|error| error.to_string());
     if let Some(path) = &args.mujoco {
         let mut words = vec!["--gains".to_owned()];
-        if let Some(keyframe) = &args.keyframe {
-            words.extend(["--keyframe".to_owned(), keyframe.clone()]);
+        let mut option = |name: &str, value: Option<String>| {
+            words.extend(value.into_iter().flat_map(|value| [format!("--{name}"), value]));
+        };
+        option("keyframe", args.keyframe.clone());
+        option("dt", args.dt.map(|dt| format!("{dt:?}")));
+        option("integrator", args.integrator.map(|integrator| integrator.name().to_owned()));
+        option("substeps", Some(args.substeps.to_string()));
+        if args.settle {
+            words.push("--settle".into());
         }
-        let (_, text) = mujoco::start(&args.python, path, &words, args.timeout, None)?;
-        return parse(&text).map_err(Failure::run);
+        let (child, text) = mujoco::start(&args.python, path, &words, args.timeout, None)?;
+        return Ok((parse(&text).map_err(Failure::run)?, Some(child)));
     }
     if let Some(path) = &args.matrices {
         let text = libration_settings::read_text(path).map_err(|error| {
             Failure::usage(format!("cannot read `{}` (--matrices): {error}", path.display()))
         })?;
-        return parse(&text).map_err(|why| {
+        let description = parse(&text).map_err(|why| {
             Failure::usage(format!("cannot use `{}` (--matrices): {why}", path.display()))
-        });
+        })?;
+        return Ok((description, None));
     }
     let value = json!({
         "mass": numbers(&args.inertia),
@@ -74,7 +98,7 @@ fn described(args: &GainsArgs) -> Result<ServosDescription, Failure> {
         "kv": numbers(&args.kv),
         "damping": numbers(&args.damping),
     });
-    parse(&value.to_string()).map_err(Failure::usage)
+    Ok((parse(&value.to_string()).map_err(Failure::usage)?, None))
 }
 
 /// A field of servos as the option that sets it.
@@ -102,18 +126,26 @@ fn describe(report: &GainReport) -> String {
         f64::INFINITY => "no limit".to_owned(),
         0.0 => "none holds".to_owned(),
         x if x.is_nan() => "-".to_owned(),
-        x => rounded(x),
+        x => number(cut_off(x, 6), 6),
     };
     let known = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), rounded);
     let _ = writeln!(
         text,
-        "\n{:<24} {:>12} {:>12} {:>12} {:>10} {:>12} {:>10} {:>12}",
-        "joint", "inertia", "kp", "kv", "wh", "largest wh", "damping", "largest kp"
+        "\n{:<24} {:>12} {:>12} {:>12} {:>10} {:>12} {:>10} {:>12} {:>12}",
+        "joint",
+        "inertia",
+        "kp",
+        "kv",
+        "wh",
+        "largest wh",
+        "damping",
+        "largest kp",
+        "largest kv"
     );
     for joint in &report.joints {
         let _ = writeln!(
             text,
-            "{:<24} {:>12} {:>12} {:>12} {:>10} {:>12} {:>10} {:>12}",
+            "{:<24} {:>12} {:>12} {:>12} {:>10} {:>12} {:>10} {:>12} {:>12}",
             joint.name,
             rounded(joint.inertia),
             rounded(joint.kp),
@@ -121,24 +153,33 @@ fn describe(report: &GainReport) -> String {
             rounded(joint.turn),
             limit(joint.largest_turn),
             known(joint.damping_ratio),
-            limit(joint.largest_kp)
+            limit(joint.largest_kp),
+            limit(joint.largest_kv)
         );
+    }
+    if let Some(measured) = &report.measured {
+        measured_tables(measured, limit, &mut text);
     }
     let _ = writeln!(
         text,
-        "\n{:<36} {:>12} {:>10} {:>10} {:>10} {:>14}",
-        "mode in", "Hz", "wh", "damping", "|z|", "added damping"
+        "\n{:<36} {:>12} {:>10} {:>10} {:>18} {:>14}",
+        if report.measured.is_some() { "mode of the servo model" } else { "mode in" },
+        "Hz",
+        "wh",
+        "damping",
+        "|z|",
+        "added damping"
     );
     for mode in &report.modes {
         let names: Vec<&str> = mode.joints.iter().map(|(name, _)| name.as_str()).collect();
         let _ = writeln!(
             text,
-            "{:<36} {:>12} {:>10} {:>10} {:>10} {:>14}",
+            "{:<36} {:>12} {:>10} {:>10} {:>18} {:>14}",
             names.join(", "),
             rounded(mode.frequency),
             rounded(mode.turn),
             known(mode.damping_ratio),
-            rounded(mode.radius),
+            mode.radii.iter().map(|radius| rounded(*radius)).collect::<Vec<_>>().join(", "),
             known(mode.numerical_damping)
         );
     }
@@ -159,4 +200,41 @@ fn describe(report: &GainReport) -> String {
     }
     let _ = writeln!(text, "repeat with: {}", report.repeat_command);
     text
+}
+
+/// Adds the limits of servos and the modes of the measured step.
+fn measured_tables(measured: &MeasuredGains, limit: impl Fn(f64) -> String, text: &mut String) {
+    let _ = writeln!(
+        text,
+        "\n{:<36} {:>12} {:>12} {:>12} {:>12}",
+        "servo, in the measured step", "kp", "largest kp", "kv", "largest kv"
+    );
+    for servo in &measured.servos {
+        let _ = writeln!(
+            text,
+            "{:<36} {:>12} {:>12} {:>12} {:>12}",
+            servo.name,
+            rounded(servo.kp),
+            limit(servo.largest_kp),
+            rounded(servo.kv),
+            limit(servo.largest_kv)
+        );
+    }
+    let _ = writeln!(
+        text,
+        "\n{:<36} {:>12} {:>12} {:>12} {:>12}",
+        "mode of the measured step", "|z|", "growth 1/s", "of system", "freq. Hz"
+    );
+    for mode in &measured.modes {
+        let of_system = mode.flow.map(|flow| flow.growth_rate);
+        let _ = writeln!(
+            text,
+            "{:<36} {:>12} {:>12} {:>12} {:>12}",
+            mode.names(),
+            number(mode.radius, 8),
+            rounded(mode.step.growth_rate),
+            of_system.map_or_else(|| "-".to_owned(), rounded),
+            rounded(mode.step.frequency)
+        );
+    }
 }

@@ -33,6 +33,8 @@ fn search_path() -> Option<OsString> {
     let kept = env::join_paths(env::split_paths(&given).filter(|folder| elsewhere(folder))).ok()?;
     Some(kept).filter(|kept| !kept.is_empty())
 }
+/// The least time that a Python program has to import its packages and to compile a model.
+const LOADING: Duration = Duration::from_secs(60);
 
 /// Starts the program for a model, and returns it with the first line of its output.
 pub(super) fn start(
@@ -61,7 +63,10 @@ pub(super) fn start(
     if let Some(deadline) = deadline {
         child.set_deadline(deadline);
     }
-    let line = child.description().map_err(|error| match error {
+    let line = child.description(LOADING).map_err(|error| match error {
+        BlackBoxError::NoAnswer { .. } => {
+            Failure::run(format!("{error} (--timeout); expected a description of the model; help: a longer --timeout"))
+        }
         BlackBoxError::TimeLimit { .. } => {
             Failure::run(format!("{error} (--time-limit); expected a longer limit"))
         }

@@ -56,7 +56,20 @@ pub(crate) fn run(args: &ProbeArgs, quiet: bool) -> Result<(), Failure> {
         let plant = report.modified_flow.as_ref().ok_or_else(|| {
             Failure::run("--save-plant: the step is no exact step of a plant in continuous time: a mode changes its sign from step to step, or the step was not linearised")
         })?;
-        plant_file.write(|| plant_text(&report, plant))?;
+        let neutral = report.neutral_states();
+        if !neutral.is_empty() && !args.without_neutral && !quiet {
+            terminal::say(&format!(
+                "note: nothing depends on {} of the plant; --without-neutral leaves such states out, which `advise` cannot stabilise without an input on them",
+                neutral.join(", ")
+            ));
+        }
+        let reduced = report.without_neutral().filter(|_| args.without_neutral);
+        let all: Vec<usize> = (0..report.states.len()).collect();
+        let (plant, kept) = match &reduced {
+            Some(reduced) => (&reduced.plant, &reduced.kept),
+            None => (plant, &all),
+        };
+        plant_file.write(|| plant_text(&report, plant, kept))?;
     }
     match exit_code([&report.verdict]) {
         GOOD => Ok(()),
@@ -82,9 +95,10 @@ fn check_suffix(path: Option<&Path>) -> Result<(), Failure> {
 /// The failure of an audit. Only simulators of `--command` have options for their typical deviations and their state.
 fn failure(args: &ProbeArgs, error: &BlackBoxError) -> Failure {
     let message = error.to_string();
-    let [scale, state] = match args.command {
-        Some(_) => [" (--state-scale)", " (--state, --action)"],
-        None => [""; 2],
+    let [scale, state] = match (&args.command, &args.mujoco) {
+        (Some(_), _) => [" (--state-scale)", " (--state, --action)"],
+        (None, Some(_)) => [" (--state-scale)", ""],
+        (None, None) => [""; 2],
     };
     Failure::run(message.replace(" (state_scale)", scale).replace(" (state, action)", state))
 }
@@ -158,6 +172,12 @@ fn mujoco_model(
     };
     option("keyframe", args.keyframe.clone());
     option("dt", args.dt.map(|dt| format!("{dt:?}")));
+    option(
+        "state-scale",
+        args.state_scale.as_ref().map(|scale| {
+            scale.values().iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(",")
+        }),
+    );
     if args.settle {
         options.push("--settle".into());
     }
@@ -202,7 +222,7 @@ fn matrices(args: &ProbeArgs, path: &Path) -> Result<(Box<dyn BlackBox>, Subject
 }
 
 /// The plant as the keys of a plant file.
-fn plant_text(report: &ProbeReport, plant: &Matrices) -> String {
+fn plant_text(report: &ProbeReport, plant: &Matrices, kept: &[usize]) -> String {
     let matrix = |matrix: &Matrix| {
         let row = |i: usize| {
             let numbers: Vec<String> = matrix.row(i).iter().map(|x| format!("{x:?}")).collect();
@@ -218,7 +238,7 @@ fn plant_text(report: &ProbeReport, plant: &Matrices) -> String {
          states = [{}]\ninputs = [{}]\na = [\n{}]\nb = [\n{}]\n",
         printable(&report.title),
         report.dt,
-        names(&report.states),
+        names(&kept.iter().map(|k| report.states[*k].clone()).collect::<Vec<_>>()),
         names(&report.inputs),
         matrix(&plant.a),
         matrix(&plant.b),

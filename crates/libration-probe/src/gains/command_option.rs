@@ -26,9 +26,15 @@ pub(super) fn with_option(command: &str, option: &str, value: &str) -> Option<St
     Some(kept.join(" "))
 }
 
+/// A command with a flag; none if it has it, or is no command of a terminal.
+pub(super) fn with_flag(command: &str, flag: &str) -> Option<String> {
+    let has = command.split(' ').any(|word| word == flag);
+    (is_command(command) && !has).then(|| format!("{command} {flag}"))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::with_option;
+    use super::{with_flag, with_option};
 
     #[test]
     fn an_option_takes_the_place_of_the_given_one() {
@@ -39,5 +45,8 @@ mod tests {
             assert_eq!(with(command).as_deref(), Some("libration gains --dt 1 --substeps 4"));
         }
         assert_eq!(with("libration.gains(model)"), None);
+        let settled = with_flag("libration gains --dt 1", "--settle");
+        assert_eq!(settled.as_deref(), Some("libration gains --dt 1 --settle"));
+        assert_eq!(with_flag("libration gains --settle", "--settle"), None);
     }
 }

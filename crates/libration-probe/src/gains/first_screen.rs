@@ -2,8 +2,9 @@
 
 use libration_report::notation::{cut_off, number};
 use libration_report::page::{Bar, Highlight};
+use libration_report::verdict::Outcome;
 
-use super::command_option::{is_command, with_option};
+use super::command_option::{is_command, with_flag, with_option};
 use super::{GainReport, JointRow};
 
 /// Joints whose limits are shown as bars, the tightest first.
@@ -11,10 +12,12 @@ const MOST_BARS: usize = 6;
 
 /// The verdict.
 pub(super) fn title(report: &GainReport) -> &'static str {
-    match (report.growth_in_continuous_time, report.holds) {
+    match (report.growth_in_continuous_time, report.verdict.outcome) {
+        (_, Outcome::Unknown) => "Whether the gains hold is unknown",
         (Some(_), _) => "The motion is unstable in continuous time, whatever the step",
-        (None, true) => "The gains hold",
-        (None, false) => "The gains do not hold",
+        (None, _) if report.holds => "The gains hold",
+        (None, _) if report.unstable_without_servos => "The step is unstable without any servo",
+        (None, _) => "The gains do not hold",
     }
 }
 
@@ -53,6 +56,15 @@ pub(super) fn numbers(report: &GainReport) -> Vec<Highlight> {
 
 /// The largest factor of a mode in an exact substep; none if a mode has no damping ratio.
 fn exact_radius(report: &GainReport) -> Option<f64> {
+    if let Some(measured) = &report.measured {
+        let h = report.dt / f64::from(report.substeps);
+        let all: Option<Vec<f64>> = measured
+            .modes
+            .iter()
+            .map(|mode| Some((mode.flow?.growth_rate * h).exp()))
+            .collect();
+        return all?.into_iter().reduce(f64::max);
+    }
     let of_mode = |turn: f64, ratio: Option<f64>| {
         let ratio = ratio?;
         // Beyond critical damping the slower of the two decays counts.
@@ -92,6 +104,11 @@ pub(super) fn actions(report: &GainReport) -> Vec<String> {
         ];
     }
     let mut all = Vec::new();
+    if report.verdict.outcome == Outcome::Unknown {
+        let settled = with_flag(command, "--settle");
+        all.push(format!("Examine an equilibrium near the point{}", then(settled.as_deref())));
+        return all;
+    }
     if !report.holds {
         if let Some(fewest) = report.fewest_substeps {
             let changed = with_option(command, "--substeps", &fewest.to_string());

@@ -2,15 +2,23 @@
 
 mod command_option;
 mod first_screen;
+mod gain_limits;
+mod gain_search;
+mod measured;
+mod measured_summary;
 mod page;
 mod report;
 mod servo_integrator;
 mod servo_mode;
 mod servos;
 mod stable_factors;
+mod summary;
+mod torque;
 
+pub use measured::{MeasuredGains, ServoGain, ServoRow};
 pub use page::gains_page;
 pub use report::{GainReport, IntegratorRow, JointRow, gains};
 pub use servo_integrator::ServoIntegrator;
 pub use servo_mode::ServoMode;
 pub use servos::{ServoError, Servos, ServosDescription};
+pub use torque::Torque;

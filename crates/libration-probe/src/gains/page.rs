@@ -6,7 +6,7 @@ use libration_report::record::{Cell, Table};
 use libration_report::report;
 
 use super::first_screen::{actions, bars, numbers, title};
-use super::{GainReport, ServoIntegrator};
+use super::{GainReport, MeasuredGains, ServoIntegrator, ServoMode};
 
 /// The report as an HTML page.
 pub fn gains_page(report: &GainReport) -> String {
@@ -28,11 +28,19 @@ pub fn gains_page(report: &GainReport) -> String {
     page.heading("How much does each joint allow?");
     page.paragraph(
         "ω, its limit and the damping ratio are those of the joint alone: ω² is its stiffness, with that of the gain of position, divided by \
-         its inertia; h is the length of a substep. The largest gain of position is that with all couplings and with all other gains as \
-         they are.",
+         its inertia; h is the length of a substep. The largest gains are those with all couplings and with all other gains as they are.",
     );
-    let columns =
-        ["joint", "inertia", "kp", "kv", "ωh", "largest ωh", "damping ratio", "largest kp"];
+    let columns = [
+        "joint",
+        "inertia",
+        "kp",
+        "kv",
+        "ωh",
+        "largest ωh",
+        "damping ratio",
+        "largest kp",
+        "largest kv",
+    ];
     let mut table = Table::new("joints", &columns);
     for joint in &report.joints {
         table.push([
@@ -44,10 +52,17 @@ pub fn gains_page(report: &GainReport) -> String {
             limit(joint.largest_turn, 4),
             known(joint.damping_ratio),
             limit(joint.largest_kp, 5),
+            limit(joint.largest_kv, 5),
         ]);
     }
     page.table(&table, 5);
-    page.heading("What do all joints do together?");
+    if let Some(measured) = &report.measured {
+        measured_tables(&mut page, measured, limit);
+    }
+    page.heading(match report.measured.is_some() {
+        true => "What does the servo model predict, without contacts and constraints?",
+        false => "What do all joints do together?",
+    });
     let columns =
         ["mode in", "frequency (Hz)", "ωh", "damping ratio", "|z|", "damping that the step adds"];
     let mut table = Table::new("modes", &columns);
@@ -58,7 +73,7 @@ pub fn gains_page(report: &GainReport) -> String {
             Cell::rounded(mode.frequency, 4),
             Cell::rounded(mode.turn, 4),
             known(mode.damping_ratio),
-            Cell::rounded(mode.radius, 5),
+            factors(mode).into(),
             known(mode.numerical_damping),
         ]);
     }
@@ -92,4 +107,42 @@ pub fn gains_page(report: &GainReport) -> String {
         env!("CARGO_PKG_VERSION"),
     );
     report::render_page(&page, &sub)
+}
+
+/// Limits and modes of the measured step.
+fn measured_tables(page: &mut Page, measured: &MeasuredGains, limit: impl Fn(f64, usize) -> Cell) {
+    page.heading("What does the step of the simulator do with each servo?");
+    page.paragraph(
+        "The step was measured with contacts, limits and constraints as they are at the point. A largest gain is that with all others as \
+         they are.",
+    );
+    let mut table = Table::new("servos", &["servo", "kp", "largest kp", "kv", "largest kv"]);
+    for servo in &measured.servos {
+        table.push([
+            servo.name.clone().into(),
+            Cell::rounded(servo.kp, 4),
+            limit(servo.largest_kp, 5),
+            Cell::rounded(servo.kv, 4),
+            limit(servo.largest_kv, 5),
+        ]);
+    }
+    page.table(&table, 5);
+    let columns = ["mode in", "|z|", "growth rate (1/s)", "of the system (1/s)", "frequency (Hz)"];
+    let mut table = Table::new("measured modes", &columns);
+    for mode in &measured.modes {
+        let flow = mode.flow.map(|flow| Cell::rounded(flow.growth_rate, 5));
+        table.push([
+            mode.names().into(),
+            Cell::rounded(mode.radius, 7),
+            Cell::rounded(mode.step.growth_rate, 5),
+            flow.unwrap_or_else(|| Cell::absent("—")),
+            Cell::rounded(mode.step.frequency, 5),
+        ]);
+    }
+    page.table(&table, 5);
+}
+
+/// The sizes of the factors of a mode, the largest first.
+fn factors(mode: &ServoMode) -> String {
+    mode.radii.iter().map(|radius| number(*radius, 5)).collect::<Vec<_>>().join(", ")
 }

@@ -1,26 +1,29 @@
 //! The report on gains.
 
-use libration::linear::eigenvalues;
-use libration_report::notation::number;
+use libration::linear::{Matrix, eigenvalues};
+use libration_report::verdict::Verdict;
 use serde::{Serialize, Serializer};
 
+use super::gain_limits::GainLimits;
+use super::measured::MeasuredGains;
 use super::servo_mode::{ServoMode, modes};
 use super::stable_factors::{StableFactors, growth, is_stable};
-use super::{ServoIntegrator, Servos};
+use super::{ServoIntegrator, Servos, Torque};
 
 /// Most substeps that are tried.
-const MOST_SUBSTEPS: u32 = 1000;
+pub(super) const MOST_SUBSTEPS: u32 = 1000;
+/// Relative accuracy of the limit of a gain.
+const RESOLUTION: f64 = 1e-9;
 /// Part of the fastest rate below which growth is rounding.
 const ROUNDING: f64 = 1e-7;
-/// What no linear analysis has.
-const LIMITATION: &str = "The analysis is linear: contact, friction and limits of forces are not in it. A gain that holds in free motion may be unstable in contact.";
-
 /// The results; the fields are the keys of `gains --json`. Infinite limits are `null` there.
 #[derive(Clone, Debug, Serialize)]
 pub struct GainReport {
     /// The answer in a few sentences.
     pub answer: String,
-    /// Whether the gains hold.
+    /// Whether the step is stable with these gains: by the measured step, if there is one, else by the servo model.
+    pub verdict: Verdict,
+    /// Whether the verdict is good.
     pub holds: bool,
     /// The growth rate in 1/s of a motion that grows in continuous time, whatever the step; none if no motion does.
     pub growth_in_continuous_time: Option<f64>,
@@ -28,11 +31,17 @@ pub struct GainReport {
     pub dt: f64,
     /// Steps of the integrator in it.
     pub substeps: u32,
+    /// When torques are computed.
+    pub torque: Torque,
+    /// The step of the simulator itself; none of a servo model alone.
+    pub measured: Option<MeasuredGains>,
+    /// Whether the step is unstable without any gain, by springs or damping of the joints.
+    pub unstable_without_servos: bool,
     /// The integrator.
     pub integrator: &'static str,
     /// The same in running text.
     pub integrator_title: String,
-    /// The largest factor of a mode per substep.
+    /// The largest factor of a mode per substep; per step with held torques.
     pub spectral_radius: f64,
     /// The largest factor of all gains of position, with the same gains of velocity.
     #[serde(serialize_with = "limit")]
@@ -71,9 +80,12 @@ pub struct JointRow {
     /// The largest `ωh` of the joint alone with the same damping; not a number if ω is 0.
     #[serde(serialize_with = "limit")]
     pub largest_turn: f64,
-    /// Its largest gain of position, with all others as they are and with all couplings.
+    /// Its largest gain of position, with all others as they are and with all couplings; 0 if none is stable.
     #[serde(serialize_with = "limit")]
     pub largest_kp: f64,
+    /// The same of its gain of velocity.
+    #[serde(serialize_with = "limit")]
+    pub largest_kv: f64,
 }
 
 /// What an integrator does with the gains.
@@ -96,14 +108,14 @@ pub struct IntegratorRow {
     pub spectral_radius: f64,
 }
 
-fn limit<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+pub(super) fn limit<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
     match value.is_finite() {
         true => serializer.serialize_some(value),
         false => serializer.serialize_none(),
     }
 }
 
-/// Whether the gains of servos hold at steps of `dt` seconds in `substeps` parts.
+/// Whether the gains of servos hold at steps of `dt` seconds in `substeps` parts, by the servo model.
 pub fn gains(
     servos: &Servos,
     dt: f64,
@@ -111,10 +123,10 @@ pub fn gains(
     integrator: ServoIntegrator,
     notes: Vec<String>,
 ) -> GainReport {
-    let h = dt / f64::from(substeps);
     let row = |integrator: ServoIntegrator| {
-        let holds = is_stable(servos.step(integrator, h));
-        let factor = StableFactors::search(|factor| servos.with_factor(factor).step(integrator, h));
+        let step = |servos: &Servos| servos.period(integrator, dt, substeps);
+        let holds = is_stable(step(servos));
+        let factor = StableFactors::search(|factor| step(&servos.with_factor(factor)));
         IntegratorRow {
             name: integrator.name(),
             title: integrator.title(),
@@ -122,31 +134,44 @@ pub fn gains(
             largest_factor: factor.most,
             least_factor: factor.least,
             fewest_substeps: fewest_substeps(servos, dt, integrator),
-            spectral_radius: growth(servos.step(integrator, h)).exp(),
+            spectral_radius: growth(step(servos)).exp(),
         }
     };
     let integrators: Vec<IntegratorRow> = ServoIntegrator::all().map(row).collect();
     let known = integrators.iter().find(|row| row.name == integrator.name());
     let own = known.cloned().unwrap_or_else(|| row(integrator));
+    let length = match servos.torque {
+        Torque::EachSubstep => dt / f64::from(substeps),
+        Torque::Held => dt,
+    };
+    let parts = if servos.torque == Torque::Held { substeps } else { 1 };
+    let step = |length: f64| servos.period(integrator, length, parts);
+    let passive = is_stable(servos.passive().period(integrator, length, parts));
     let mut report = GainReport {
         answer: String::new(),
+        verdict: Verdict::unknown("no step was examined"),
         holds: own.holds,
         growth_in_continuous_time: continuous_growth(servos),
         dt,
         substeps,
+        torque: servos.torque,
+        measured: None,
+        unstable_without_servos: !own.holds && !passive,
         integrator: own.name,
         integrator_title: own.title,
         spectral_radius: own.spectral_radius,
         largest_factor: own.largest_factor,
         least_factor: own.least_factor,
         fewest_substeps: own.fewest_substeps,
-        joints: (0..servos.joints.len()).map(|i| joint_row(servos, i, integrator, h)).collect(),
-        modes: modes(servos, integrator, h),
+        joints: (0..servos.joints.len())
+            .map(|i| joint_row(servos, i, integrator, length, parts))
+            .collect(),
+        modes: modes(servos, step, length),
         integrators,
         notes,
         repeat_command: String::new(),
     };
-    report.answer = report.summary();
+    report.conclude();
     report
 }
 
@@ -159,7 +184,7 @@ fn continuous_growth(servos: &Servos) -> Option<f64> {
 }
 
 fn fewest_substeps(servos: &Servos, dt: f64, integrator: ServoIntegrator) -> Option<u32> {
-    let holds = |substeps: u32| is_stable(servos.step(integrator, dt / f64::from(substeps)));
+    let holds = |substeps: u32| is_stable(servos.period(integrator, dt, substeps));
     // Doubling finds a number that holds, bisection the fewest.
     let mut high = 1;
     while !holds(high) {
@@ -176,7 +201,14 @@ fn fewest_substeps(servos: &Servos, dt: f64, integrator: ServoIntegrator) -> Opt
     Some(high)
 }
 
-fn joint_row(servos: &Servos, i: usize, integrator: ServoIntegrator, h: f64) -> JointRow {
+/// The row of a joint in steps of `length` seconds, in parts if torques are held over them.
+fn joint_row(
+    servos: &Servos,
+    i: usize,
+    integrator: ServoIntegrator,
+    length: f64,
+    parts: u32,
+) -> JointRow {
     let alone = servos.alone(i);
     let (inertia, kp, kv) = (alone.mass[(0, 0)], alone.kp[(0, 0)], alone.kv[(0, 0)]);
     let stiffness = kp + alone.stiffness[(0, 0)];
@@ -184,100 +216,34 @@ fn joint_row(servos: &Servos, i: usize, integrator: ServoIntegrator, h: f64) -> 
     let damping = kv + alone.damping[(0, 0)];
     let damping_ratio = (omega > 0.0).then(|| damping / inertia / (2.0 * omega));
     // Longer steps change ωh at the same damping ratio.
-    let longest = StableFactors::search(|factor| alone.step(integrator, h * factor));
-    let factor =
-        StableFactors::search(|factor| servos.with_joint_factor(i, factor).step(integrator, h));
-    let largest_kp = if kp == 0.0 { f64::INFINITY } else { 0.0 + kp * factor.most };
+    let longest =
+        StableFactors::search(|factor| alone.period(integrator, length * factor, parts));
+    let step = |servos: &Servos| servos.period(integrator, length, parts);
+    // The whole row of a gain that is there; the entry of the joint of one that is not.
+    let largest_kp = match kp {
+        0.0 => largest(inertia / length.powi(2), kp, |kp| step(&servos.with_kp(i, kp))),
+        kp => kp * StableFactors::search(|factor| step(&servos.with_joint_factor(i, factor))).most,
+    };
     JointRow {
         name: servos.joints[i].name.clone(),
         inertia,
         kp,
         kv,
-        turn: omega * h,
+        turn: omega * length,
         damping_ratio,
-        largest_turn: if omega == 0.0 { f64::NAN } else { omega * h * longest.most },
-        largest_kp,
+        largest_turn: if omega == 0.0 { f64::NAN } else { omega * length * longest.most },
+        largest_kp: largest_kp.max(0.0),
+        largest_kv: largest(inertia / length, kv, |kv| step(&servos.with_kv(i, kv))),
     }
 }
 
-impl GainReport {
-    fn summary(&self) -> String {
-        let h = self.dt / f64::from(self.substeps);
-        let integrator = ServoIntegrator::label(self.integrator);
-        let of = if self.substeps == 1 {
-            format!("steps of {} s", number(h, 6))
-        } else {
-            format!("{} substeps of {} s", self.substeps, number(h, 4))
-        };
-        if let Some(growth) = self.growth_in_continuous_time {
-            let window = match (self.least_factor, self.largest_factor) {
-                (0.0, _) => String::new(),
-                (least, f64::INFINITY) => format!(
-                    " With {} and this step gains of position hold from {} times the given ones on.",
-                    integrator,
-                    number(least, 5)
-                ),
-                (least, most) => format!(
-                    " With {} and this step gains of position hold from {} to {} times the given ones.",
-                    integrator,
-                    number(least, 5),
-                    number(most, 5)
-                ),
-            };
-            return format!(
-                "The motion is unstable in continuous time, whatever the step: it grows by {} 1/s with these gains and stiffnesses.{window} {LIMITATION}",
-                number(growth, 5)
-            );
-        }
-        let mut text = if self.holds {
-            format!("The gains hold with {integrator} and {of}")
-        } else {
-            format!(
-                "The gains do not hold with {} and {of}: a mode grows by a factor {} per step",
-                integrator,
-                number(self.spectral_radius, 5)
-            )
-        };
-        text += &match self.largest_factor {
-            f64::INFINITY => "; no gain of position was found that does not.".to_owned(),
-            0.0 => "; no gain of position does.".to_owned(),
-            factor => {
-                let factor = number(factor, 5);
-                format!("; the largest gains of position are {factor} times the given ones.")
-            }
-        };
-        let worst = self
-            .joints
-            .iter()
-            .filter(|joint| joint.kp > 0.0)
-            .min_by(|a, b| (a.largest_kp / a.kp).total_cmp(&(b.largest_kp / b.kp)));
-        if let Some(joint) = worst.filter(|joint| joint.largest_kp.is_finite()) {
-            let most = match joint.largest_kp {
-                0.0 => "no gain of it holds".to_owned(),
-                most => format!("its gain is at most {}", number(most, 5)),
-            };
-            text += &format!(
-                " The joint with the least margin is {}: {most}, with all others as they are.",
-                joint.name
-            );
-        }
-        if !self.holds {
-            match self.fewest_substeps {
-                Some(substeps) => text += &format!(" {substeps} substeps hold them."),
-                None => {
-                    text += &format!(" No number of substeps up to {MOST_SUBSTEPS} holds them.")
-                }
-            }
-            let others: Vec<String> = self
-                .integrators
-                .iter()
-                .filter(|row| row.holds)
-                .map(|row| ServoIntegrator::label(row.name))
-                .collect();
-            if !others.is_empty() {
-                text += &format!(" They hold with {}.", others.join(", "));
-            }
-        }
-        format!("{text} {LIMITATION}")
+/// The largest gain with which a step is stable; `size` is one that is about the limit.
+fn largest(size: f64, given: f64, step: impl Fn(f64) -> Option<Matrix>) -> f64 {
+    let found = GainLimits::search(given, 1e-2 * size, RESOLUTION, &mut |gain| {
+        Ok::<_, core::convert::Infallible>(is_stable(step(gain)))
+    });
+    match found {
+        Ok(limits) => limits.most,
+        Err(never) => match never {},
     }
 }

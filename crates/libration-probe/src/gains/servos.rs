@@ -8,7 +8,8 @@ use libration_report::notation::plural;
 use serde::Deserialize;
 use thiserror::Error;
 
-use super::ServoIntegrator;
+use super::{ServoGain, ServoIntegrator, Torque};
+use crate::Description;
 
 /// Joints with servos: `M q̈ = −(K_p + K) q − (K_v + D) q̇` for small deviations.
 #[derive(Clone, Debug)]
@@ -25,6 +26,8 @@ pub struct Servos {
     pub stiffness: Matrix,
     /// Damping `D` of joints.
     pub damping: Matrix,
+    /// When torques are computed.
+    pub torque: Torque,
 }
 
 /// Servos as JSON: matrices, or vectors of their diagonals.
@@ -44,6 +47,17 @@ pub struct ServosDescription {
     pub dt: Option<f64>,
     /// The integrator of the simulator, if it has one.
     pub integrator: Option<String>,
+    /// When torques are computed.
+    #[serde(default)]
+    pub torque: Torque,
+    /// The step of the simulator, if it can be measured.
+    pub step: Option<Description>,
+    /// The servos of this step.
+    #[serde(default)]
+    pub servos: Vec<ServoGain>,
+    /// Actuators whose forces depend on the motion in another way.
+    #[serde(default)]
+    pub other_servos: Vec<String>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -112,6 +126,7 @@ impl ServosDescription {
             kv: optional("kv", &self.kv)?,
             stiffness: optional("stiffness", &self.stiffness)?,
             damping: optional("damping", &self.damping)?,
+            torque: self.torque,
         };
         check_inertia(&servos)?;
         servos.plant().map_err(ServoError::Names)?;
@@ -187,6 +202,26 @@ impl Servos {
         servos
     }
 
+    /// The same with another gain of position of one joint.
+    pub(super) fn with_kp(&self, joint: usize, kp: f64) -> Self {
+        let mut servos = self.clone();
+        servos.kp[(joint, joint)] = kp;
+        servos
+    }
+
+    /// The same with another gain of velocity of one joint.
+    pub(super) fn with_kv(&self, joint: usize, kv: f64) -> Self {
+        let mut servos = self.clone();
+        servos.kv[(joint, joint)] = kv;
+        servos
+    }
+
+    /// The joints without their servos.
+    pub(super) fn passive(&self) -> Self {
+        let n = self.joints.len();
+        Servos { kp: Matrix::zeros(n, n), kv: Matrix::zeros(n, n), ..self.clone() }
+    }
+
     /// Joint `i` alone, with all others at rest.
     pub(super) fn alone(&self, i: usize) -> Self {
         let entry = |matrix: &Matrix| matrix.block((i, i), (1, 1));
@@ -197,6 +232,7 @@ impl Servos {
             kv: entry(&self.kv),
             stiffness: entry(&self.stiffness),
             damping: entry(&self.damping),
+            torque: self.torque,
         }
     }
 

@@ -145,8 +145,8 @@ fn the_first_screen_has_the_verdict_the_limits_and_commands_with_other_options()
 #[test]
 fn numbers_of_any_size_have_a_few_digits() {
     let stiff = report(r#"{"mass": [1], "kp": [1e9]}"#, 0.01, 1, "symplectic-euler");
-    // 4/h² of 10⁹.
-    let part = "the largest gains of position are 4·10⁻⁵ times the given ones";
+    // Below 4/h² of 10⁹: a limit is not rounded up.
+    let part = "the largest gains of position are 3.9999·10⁻⁵ times the given ones";
     assert!(stiff.answer.contains(part), "{}", stiff.answer);
     let endless = report(r#"{"mass": [1], "kp": [1e300]}"#, 0.01, 1, "symplectic-euler");
     assert!(
@@ -168,5 +168,101 @@ fn numbers_of_any_size_have_a_few_digits() {
             !page.contains("NaN") && page.contains("1 joint ·") && page.contains("1 substep of")
         );
         assert!(serde_json::to_value(&free).unwrap()["joints"][0]["largest_turn"].is_null());
+    }
+}
+
+#[test]
+fn both_factors_of_a_real_pair_are_shown_and_the_larger_one_is_that_of_the_answer() {
+    for (kp, dt) in [(400.0, 0.1), (400.0, 0.02), (5000.0, 0.01), (90.0, 0.5), (1e4, 0.005)] {
+        let text = format!(r#"{{"mass": [0.02], "kp": [{kp}]}}"#);
+        let found = report(&text, dt, 1, "symplectic-euler");
+        // z² − (2 − a) z + 1 = 0 with a = kp dt²/M.
+        let half = 1.0 - kp * dt * dt / 0.04;
+        let mode = &found.modes[0];
+        if half.abs() <= 1.0 {
+            assert_eq!(mode.radii.len(), 1, "{:?}", mode.radii);
+            continue;
+        }
+        let largest = half.abs() + (half * half - 1.0).sqrt();
+        close(mode.radii[0], largest, 1e-9);
+        close(mode.radii[1], 1.0 / largest, 1e-9);
+        close(mode.radius, found.spectral_radius, 1e-9);
+        // It takes damping away.
+        assert!(mode.numerical_damping.unwrap() < 0.0);
+    }
+    let coupled = r#"{"mass": [[2, 0.9], [0.9, 0.5]], "kp": [5000, 5e4], "kv": [3, 1]}"#;
+    let found = report(coupled, 0.02, 1, "symplectic-euler");
+    let largest = found.modes.iter().map(|mode| mode.radius).fold(0.0, f64::max);
+    close(largest, found.spectral_radius, 1e-9);
+}
+
+#[test]
+fn the_largest_kv_is_that_of_its_characteristic_polynomial() {
+    let (m, h) = (2.0, 0.01);
+    for kp in [0.0, 100.0, 3e4] {
+        let text = format!(r#"{{"mass": [2], "kp": [{kp}], "kv": [3]}}"#);
+        // z = −1 at h²kp/m + 2hkv/m = 4: without kp at kv = 2m/h.
+        let wanted = (4.0 - h * h * kp / m) * m / (2.0 * h);
+        for integrator in ["symplectic-euler", "euler"] {
+            close(report(&text, h, 1, integrator).joints[0].largest_kv, wanted, 1e-6);
+        }
+        let implicit = report(&text, h, 1, "implicitfast");
+        assert_eq!(implicit.joints[0].largest_kv, f64::INFINITY);
+    }
+    // A gain that is not there has a limit, too, and one beyond it is the reason.
+    let none = report(r#"{"mass": [2], "kp": [100]}"#, h, 1, "symplectic-euler");
+    close(none.joints[0].largest_kv, (4.0 - h * h * 50.0) * m / (2.0 * h), 1e-6);
+    let beyond = report(r#"{"mass": [2], "kp": [0], "kv": [500]}"#, h, 1, "symplectic-euler");
+    assert!(!beyond.holds && beyond.joints[0].largest_kp == 0.0);
+    assert!(!beyond.answer.contains("no larger gain"), "{}", beyond.answer);
+    assert!(beyond.answer.contains("of velocity of joint 1 is at most 400;"), "{}", beyond.answer);
+}
+
+#[test]
+fn a_step_that_a_spring_of_a_joint_makes_unstable_is_not_blamed_on_a_servo() {
+    for (stiffness, damping) in [("1e6", "0"), ("5e4", "30"), ("0", "500"), ("4.1e4", "0"), ("1e9", "1")] {
+        let text = format!(
+            r#"{{"mass": [1, 1], "kp": [10, 10], "stiffness": [0, {stiffness}], "damping": [0, {damping}]}}"#
+        );
+        let found = report(&text, 0.01, 1, "symplectic-euler");
+        assert!(found.unstable_without_servos && !found.holds);
+        let answer = &found.answer;
+        assert!(answer.starts_with("The step is unstable without any servo"), "{answer}");
+    }
+    let of_servo = report(r#"{"mass": [1], "kp": [1e6], "stiffness": [10]}"#, 0.01, 1, "rk4");
+    assert!(!of_servo.unstable_without_servos && of_servo.answer.contains("do not hold"));
+}
+
+#[test]
+fn held_torques_have_the_limits_of_a_constant_force_over_all_substeps() {
+    // n substeps of kick and drift under a constant force: q' = q + dt v + c dt² F/m, v' = v + dt F/m with c = (n + 1)/(2n).
+    let (m, kv, dt) = (0.02_f64, 0.8_f64, 0.005_f64);
+    for n in [1_u32, 2, 4, 10] {
+        let text = format!(r#"{{"mass": [{m}], "kp": [1], "kv": [{kv}], "torque": "held"}}"#);
+        let found = report(&text, dt, n, "symplectic-euler");
+        let c = (f64::from(n) + 1.0) / (2.0 * f64::from(n));
+        let d = kv * dt / m;
+        // det < 1 and 1 + trace + det > 0 of [[1 − ac, dt (1 − dc)], [−a/dt, 1 − d]], a = kp dt²/m.
+        let of_determinant = if n == 1 { f64::INFINITY } else { d / (1.0 - c) };
+        let of_trace = if c > 0.5 { (4.0 - 2.0 * d) / (2.0 * c - 1.0) } else { f64::INFINITY };
+        let wanted = of_determinant.min(of_trace) * m / (dt * dt);
+        close(found.joints[0].largest_kp, wanted, 1e-6);
+        assert!(found.answer.contains("torques computed once per step and held"), "{}", found.answer);
+        let anew = report(&text.replace("held", "each-substep"), dt, n, "symplectic-euler");
+        let h = dt / f64::from(n);
+        close(anew.joints[0].largest_kp, (4.0 - 2.0 * h * kv / m) * m / (h * h), 1e-6);
+        if n > 1 {
+            assert!(anew.answer.contains("computed anew in each substep"), "{}", anew.answer);
+        }
+    }
+}
+
+#[test]
+fn a_verdict_of_a_servo_model_says_what_it_does_not_have() {
+    for text in [r#"{"mass": [1], "kp": [10]}"#, r#"{"mass": [1], "kp": [1e9]}"#] {
+        let found = report(text, 0.01, 1, "symplectic-euler");
+        assert_eq!(found.verdict.is_good(), found.holds);
+        assert!(found.verdict.not_examined[0].contains("contacts"));
+        assert_eq!(serde_json::to_value(&found).unwrap()["verdict"]["not_examined"][0], found.verdict.not_examined[0]);
     }
 }

@@ -37,3 +37,44 @@ fn points_at_which_the_function_is_not_finite_are_left_out() {
     assert!((found.values[(0, 0)] - 5.0).abs() <= found.errors[(0, 0)], "{found:?}");
     assert!(found.errors[(0, 0)] < 1e-9, "{found:?}");
 }
+
+/// A slope of −0.9 at zero, and of −1 beyond a width.
+fn bent(name: &str, x: f64, width: f64) -> f64 {
+    let part = match name {
+        "compact" => (1.0 - (x / width).abs()).max(0.0).powi(2) * x,
+        "quartic" => (1.0 - (x / width).powi(2)).max(0.0).powi(2) * x,
+        "gauss" => (-(x / width).powi(2)).exp() * x,
+        "tanh" => width * (x / width).tanh(),
+        "rational" => x / (1.0 + (x / width).powi(4)),
+        _ => width * (x / width).clamp(-1.0, 1.0),
+    };
+    0.1 * part - x
+}
+
+#[test]
+fn differences_become_shorter_until_a_bend_near_the_point_is_resolved() {
+    for name in ["compact", "quartic", "gauss", "tanh", "rational", "clamp"] {
+        for width in [3e-2, 3e-3, 3e-4] {
+            let found = of(|z| vec![bent(name, z[0], width)], &[0.0], &[1.0]);
+            let (value, error) = (found.values[(0, 0)], found.errors[(0, 0)]);
+            assert!((value + 0.9).abs() <= error.max(1e-14), "{name} {width}: {value} {error}");
+            // The second derivative of `compact` jumps: its differences fall with the step only, to 2⁻³² of the scale beside a width.
+            assert!(error < 1e-5, "{name} {width}: {value} {error}");
+        }
+    }
+}
+
+#[test]
+fn a_bend_is_resolved_beside_noise_as_that_of_a_solver() {
+    let hash = |x: f64| {
+        let bits = x.to_bits().wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(31);
+        (bits.wrapping_mul(0xD6E8_FEB8_6659_FD93) >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    for name in ["compact", "gauss", "tanh", "rational"] {
+        let noisy = |z: &[f64]| vec![bent(name, z[0], 3e-3) + 1e-10 * hash(z[0])];
+        let found = of(noisy, &[0.0], &[1.0]);
+        // Noise of 10⁻¹⁰ over a part of the width of 3·10⁻³.
+        assert!((found.values[(0, 0)] + 0.9).abs() < 1e-3, "{name}: {found:?}");
+        assert!(found.errors[(0, 0)] < 9e-3, "{name}: {found:?}");
+    }
+}

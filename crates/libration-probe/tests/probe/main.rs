@@ -14,6 +14,7 @@ mod first_difference;
 mod gains;
 mod inner_steps;
 mod jacobians;
+mod measured_gains;
 mod memory;
 #[path = "../../src/noise_free_matrix.rs"]
 mod noise_free_matrix;

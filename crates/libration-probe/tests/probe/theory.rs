@@ -264,7 +264,7 @@ fn an_integrator_is_named_only_where_its_results_are_its_own() {
 }
 
 #[test]
-fn the_search_for_a_limit_ends_where_the_equilibrium_moves_with_the_step() {
+fn the_search_for_a_limit_follows_an_equilibrium_that_moves_with_the_step() {
     // A spring whose rest gives way by dt beyond 0.05 s.
     let gives_way = |x: &[f64], _: &[f64], dt: f64| {
         let rest = -(dt - 0.05).max(0.0);
@@ -274,12 +274,28 @@ fn the_search_for_a_limit_ends_where_the_equilibrium_moves_with_the_step() {
     let subject = Subject::new("contact", vec![0.0, 0.0], vec![], 0.01);
     let report = Simulator::new(gives_way).audit(&subject);
     let limit = report.largest_dt.as_ref().unwrap();
+    // z = −1 at 9 h² + 2 · 0.3 h = 4, wherever the spring rests.
+    let wanted = (-0.3 + (0.09_f64 + 36.0).sqrt()) / 9.0;
+    close(limit.dt.unwrap(), wanted, 1e-5);
+    // Trials grow by a quarter.
+    let from = limit.rests_elsewhere_from.unwrap();
+    assert!((0.05..=0.0625).contains(&from), "{limit:?}");
+    assert!(report.answer.contains("at their own equilibria"), "{}", report.answer);
+}
+
+#[test]
+fn the_search_for_a_limit_ends_where_longer_steps_have_no_equilibrium() {
+    // A spring that pulls with 9 N at most, and a force that exceeds it from 0.059 s on.
+    let slips = |x: &[f64], _: &[f64], dt: f64| {
+        let push = 1000.0 * (dt - 0.05).max(0.0);
+        let v = x[1] + dt * (push - 9.0 * x[0].tanh() - 0.3 * x[1]);
+        vec![x[0] + dt * v, v]
+    };
+    let subject = Subject::new("contact", vec![0.0, 0.0], vec![], 0.01);
+    let report = Simulator::new(slips).audit(&subject);
+    let limit = report.largest_dt.as_ref().unwrap();
     assert_eq!(limit.dt, None);
     // Trials grow by a quarter.
-    assert!((0.04..=0.05).contains(&limit.tried_up_to), "{limit:?}");
-    assert!(
-        report.answer.contains("the state is no equilibrium of a step of"),
-        "{}",
-        report.answer
-    );
+    assert!((0.047..=0.059).contains(&limit.tried_up_to), "{limit:?}");
+    assert!(report.answer.contains("no equilibrium of a step of"), "{}", report.answer);
 }

@@ -1,0 +1,161 @@
+//! The verdict on measured gains and the answer, in sentences.
+
+use libration_report::notation::{cut_off, number, plural};
+use libration_report::verdict::{Outcome, Verdict};
+
+use super::gain_search::FAR;
+use super::measured::{MeasuredGains, ServoRow};
+use super::{GainReport, ServoIntegrator};
+
+/// Growth per step that errors may hide without a doubt about the verdict.
+const DOUBTFUL: f64 = 9e-5;
+
+impl MeasuredGains {
+    /// The verdict of the measured step.
+    pub(super) fn verdict(&self) -> Verdict {
+        let radius = number(self.spectral_radius, 7);
+        let point = self.operating_point.as_ref();
+        let verdict = if !self.is_differentiable {
+            Verdict::unknown(format!(
+                "the step has no derivative at this point (relative error {})",
+                number(self.error, 2)
+            ))
+        } else if let Some(point) = point.filter(|point| point.is_far()) {
+            Verdict::unknown(format!("the equilibrium that was found is {}", point.distance()))
+        } else if self.grows && (self.equilibrium.holds || self.unstable_without_servos.is_some()) {
+            Verdict::new(Outcome::Unstable, format!("spectral radius {radius} of the measured step"))
+        } else if let Some(point) = point.filter(|point| !point.run.stands) {
+            Verdict::unknown(format!("the equilibrium is {}{}", point.distance(), point.remedy()))
+        } else if self.grows {
+            Verdict::new(
+                Outcome::Unstable,
+                format!("a fast mode of deviations from the motion grows by {radius} per step"),
+            )
+        } else if !self.equilibrium.holds {
+            Verdict::unknown(format!(
+                "the point is no equilibrium: `{}` changes by {} per step; the largest factor of deviations from the motion is {radius}",
+                self.equilibrium.state,
+                number(self.equilibrium.change, 3)
+            ))
+        } else if self.hidden_growth > DOUBTFUL && self.spectral_radius > 1.0 + 1e-7 {
+            Verdict::unknown(format!(
+                "errors of the measured step may hide a growth of {} per step; spectral radius {radius}",
+                number(self.hidden_growth, 1)
+            ))
+        } else {
+            Verdict::new(Outcome::Stable, format!("spectral radius {radius} of the measured step"))
+        };
+        match &self.not_searched[..] {
+            [] => verdict,
+            some => verdict.without(format!("limits of the gains of {}", some.join(", "))),
+        }
+    }
+
+    /// The answer in a few sentences.
+    pub(super) fn summary(&self, report: &GainReport) -> String {
+        let (integrator, of) = (ServoIntegrator::label(report.integrator), report.steps());
+        let verdict = &report.verdict;
+        let mut sentences = Vec::new();
+        let point = self.operating_point.as_ref();
+        sentences.push(match verdict.outcome {
+            Outcome::Unknown => {
+                format!("Whether the gains hold is unknown: {}.", verdict.evidence)
+            }
+            Outcome::Unstable if report.growth_in_continuous_time.is_some() => format!(
+                "The motion is unstable in the system itself, whatever the step: a mode grows at {} 1/s ({}).{}",
+                number(report.growth_in_continuous_time.unwrap_or(0.0), 5),
+                self.leading(),
+                report.window()
+            ),
+            Outcome::Unstable if let Some(passive) = self.unstable_without_servos => format!(
+                "The step is unstable without any servo, with {integrator} and {of}: without gains a mode grows by a factor {} per step, with them by {} ({}). No gain is the reason.",
+                number(passive, 6),
+                number(self.spectral_radius, 6),
+                self.leading()
+            ),
+            Outcome::Unstable => format!(
+                "The gains do not hold with {integrator} and {of}: a mode of the measured step grows by a factor {} per step ({}){}",
+                number(self.spectral_radius, 6),
+                self.leading(),
+                report.factor()
+            ),
+            _ => format!(
+                "The gains hold with {integrator} and {of}: the largest factor of a mode of the measured step is {}{}",
+                number(self.spectral_radius, 7),
+                report.factor()
+            ),
+        });
+        if let Some(point) = point.filter(|_| verdict.outcome != Outcome::Unknown) {
+            if let Some(sentence) = point.sentence() {
+                sentences.insert(0, sentence);
+            }
+            if !point.run.stands {
+                sentences.push(format!("The request does not hold{}.", point.remedy()));
+            }
+        }
+        if self.is_differentiable {
+            sentences.extend(self.tightest());
+            if self.grows && report.growth_in_continuous_time.is_none() {
+                sentences.push(report.substeps_in_words().trim().to_owned());
+            }
+        }
+        if !self.equilibrium.holds {
+            sentences.push(
+                "At a point that is no equilibrium only fast modes count; `--settle` (Python: state=\"settled\") searches for the equilibrium near it.".into(),
+            );
+        }
+        if self.neutral_modes > 0 && self.is_differentiable {
+            sentences.push(format!(
+                "{} neutral within errors, as those of a free base, or of joints without damping or stiffness.",
+                match self.neutral_modes {
+                    1 => "1 mode is".to_owned(),
+                    several => format!("{} are", plural(several, "mode")),
+                }
+            ));
+        }
+        let limits = verdict.limits();
+        if !limits.is_empty() {
+            sentences.push(limits);
+        }
+        sentences.join(" ")
+    }
+
+    /// The states of the mode that grows fastest.
+    fn leading(&self) -> String {
+        let largest = self.modes.iter().max_by(|a, b| a.radius.total_cmp(&b.radius));
+        largest.map_or_else(String::new, |mode| mode.names())
+    }
+
+    /// The gains with the least margin, in sentences.
+    fn tightest(&self) -> Vec<String> {
+        let mut found = Vec::new();
+        type Gain = fn(&ServoRow) -> (f64, f64);
+        let gains: [(&str, Gain); 2] = [
+            ("kp", |servo| (servo.largest_kp, servo.kp)),
+            ("kv", |servo| (servo.largest_kv, servo.kv)),
+        ];
+        for (name, gain) in gains {
+            let limited = self.servos.iter().filter(|servo| {
+                let (largest, given) = gain(servo);
+                largest.is_finite() && largest > 0.0 && (given > 0.0 || name == "kv")
+            });
+            let margin = |servo: &ServoRow| gain(servo).0 / gain(servo).1.max(1e-300);
+            let tightest = limited.min_by(|a, b| margin(a).total_cmp(&margin(b)));
+            if let Some(servo) = tightest {
+                let (largest, given) = gain(servo);
+                found.push(format!(
+                    "The least margin of {name} has {}: at most {}, given {}, with all others as they are.",
+                    servo.name,
+                    number(cut_off(largest, 5), 5),
+                    number(given, 5)
+                ));
+            } else if name == "kp" && self.servos.iter().any(|servo| servo.kp > 0.0) && !self.grows {
+                found.push(format!(
+                    "No limit of {name} was found up to {} times the given ones.",
+                    number(FAR, 4)
+                ));
+            }
+        }
+        found
+    }
+}

@@ -1,0 +1,206 @@
+//! The verdict on gains and the answer, in sentences.
+
+use libration_report::notation::{cut_off, number};
+use libration_report::verdict::{Outcome, Verdict};
+
+use super::measured::MeasuredGains;
+use super::report::MOST_SUBSTEPS;
+use super::{GainReport, ServoIntegrator, Torque};
+
+/// What the servo model does not have.
+const NOT_MODELLED: &str = "contacts, constraints, friction and limits of forces";
+
+impl GainReport {
+    /// The same by the measured step of the simulator, whose verdict and limits take the place of those of the servo model. The step was
+    /// not changed in the gains of `others`.
+    #[must_use]
+    pub fn with_measured(mut self, measured: MeasuredGains, others: &[String]) -> Self {
+        self.spectral_radius = measured.spectral_radius;
+        self.growth_in_continuous_time = measured.growth_of_system;
+        self.unstable_without_servos = measured.unstable_without_servos.is_some();
+        self.largest_factor = measured.largest_factor;
+        self.least_factor = measured.least_factor;
+        self.fewest_substeps = measured.fewest_substeps;
+        // Limits of the servo model are not those of the simulator.
+        for joint in &mut self.joints {
+            (joint.largest_kp, joint.largest_kv) = (f64::NAN, f64::NAN);
+        }
+        for servo in &measured.servos {
+            let own = |joint: &&mut super::JointRow| Some(&joint.name) == servo.joint.as_ref();
+            if let Some(joint) = self.joints.iter_mut().find(own) {
+                (joint.largest_kp, joint.largest_kv) = (servo.largest_kp, servo.largest_kv);
+            }
+        }
+        self.measured = Some(measured);
+        self.conclude();
+        for other in others {
+            self.verdict.not_examined.push(format!("other gains of `{other}`"));
+        }
+        self
+    }
+
+    /// Sets the verdict and the answer.
+    pub(super) fn conclude(&mut self) {
+        self.verdict = match &self.measured {
+            Some(measured) => measured.verdict(),
+            None => self.verdict_of_model(),
+        };
+        self.holds = self.verdict.is_good();
+        self.answer = match &self.measured {
+            Some(measured) => measured.summary(self),
+            None => self.summary(),
+        };
+    }
+
+    fn verdict_of_model(&self) -> Verdict {
+        let radius = number(self.spectral_radius, 6);
+        let verdict = match self.growth_in_continuous_time {
+            Some(growth) => Verdict::new(
+                Outcome::Unstable,
+                format!("the motion grows at {} 1/s in continuous time", number(growth, 5)),
+            ),
+            None if self.holds => {
+                Verdict::new(Outcome::Stable, format!("spectral radius {radius} of the servo model"))
+            }
+            None => Verdict::new(
+                Outcome::Unstable,
+                format!("spectral radius {radius} of the servo model"),
+            ),
+        };
+        verdict.without(NOT_MODELLED)
+    }
+
+    /// The steps in words.
+    pub(super) fn steps(&self) -> String {
+        let h = self.dt / f64::from(self.substeps);
+        let torque = match (self.substeps, self.torque) {
+            (1, Torque::EachSubstep) => String::new(),
+            (_, torque) => format!(", {}", torque.in_words()),
+        };
+        match self.substeps {
+            1 => format!("steps of {} s{torque}", number(h, 6)),
+            substeps => format!("{substeps} substeps of {} s{torque}", number(h, 4)),
+        }
+    }
+
+    /// The range of factors that hold, where the given gains are unstable in continuous time; empty without one.
+    pub(super) fn window(&self) -> String {
+        let least = number(self.least_factor * (1.0 + 5e-6), 5);
+        match (self.least_factor, self.largest_factor) {
+            (0.0, _) => String::new(),
+            (_, f64::INFINITY) => {
+                format!(" With this step gains of position hold from {least} times the given ones on.")
+            }
+            (_, most) => format!(
+                " With {} and this step gains of position hold from {least} to {} times the given ones.",
+                ServoIntegrator::label(self.integrator),
+                number(cut_off(most, 5), 5)
+            ),
+        }
+    }
+
+    /// The largest common factor of gains of position, as the end of a sentence.
+    pub(super) fn factor(&self) -> String {
+        match self.largest_factor {
+            x if x.is_nan() => ".".to_owned(),
+            f64::INFINITY if self.holds => "; no larger gain of position was found that does not.".to_owned(),
+            f64::INFINITY => ".".to_owned(),
+            0.0 => "; no gain of position does.".to_owned(),
+            factor => {
+                let factor = number(cut_off(factor, 5), 5);
+                format!("; the largest gains of position are {factor} times the given ones.")
+            }
+        }
+    }
+
+    fn summary(&self) -> String {
+        let integrator = ServoIntegrator::label(self.integrator);
+        let of = self.steps();
+        let limits = format!("{}.", capitalised(&format!("{NOT_MODELLED} are not in this servo model")));
+        let limits =
+            format!("{limits} A gain that holds in free motion may be unstable in contact.");
+        if let Some(growth) = self.growth_in_continuous_time {
+            return format!(
+                "The motion is unstable in continuous time, whatever the step: it grows by {} 1/s with these gains and stiffnesses.{} {limits}",
+                number(growth, 5),
+                self.window()
+            );
+        }
+        if self.unstable_without_servos {
+            let stiffest = self.modes.first().map_or_else(String::new, |mode| {
+                mode.joints.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ")
+            });
+            return format!(
+                "The step is unstable without any servo: springs or damping of the joints turn the mode of {stiffest} too far in {of} with {integrator} (factor {} per step with the servos). No gain is the reason.{} {limits}",
+                number(self.spectral_radius, 5),
+                self.substeps_in_words()
+            );
+        }
+        let mut text = if self.holds {
+            format!("The gains hold with {integrator} and {of}")
+        } else {
+            format!(
+                "The gains do not hold with {integrator} and {of}: a mode grows by a factor {} per step",
+                number(self.spectral_radius, 5)
+            )
+        };
+        text += &self.factor();
+        text += &self.tightest();
+        if !self.holds {
+            text += &self.substeps_in_words();
+            let others: Vec<String> = self
+                .integrators
+                .iter()
+                .filter(|row| row.holds)
+                .map(|row| ServoIntegrator::label(row.name))
+                .collect();
+            if !others.is_empty() {
+                text += &format!(" They hold with {}.", others.join(", "));
+            }
+        }
+        format!("{text} {limits}")
+    }
+
+    /// The gains with the least margin, in sentences.
+    fn tightest(&self) -> String {
+        let limited = |largest: f64, given: f64| largest.is_finite() && given > 0.0;
+        let mut text = String::new();
+        let of_kp = self.joints.iter().filter(|joint| limited(joint.largest_kp, joint.kp));
+        let of_kp = of_kp.min_by(|a, b| (a.largest_kp / a.kp).total_cmp(&(b.largest_kp / b.kp)));
+        if let Some(joint) = of_kp {
+            let most = match joint.largest_kp {
+                0.0 => "no gain of it holds".to_owned(),
+                most => format!("its gain is at most {}", number(cut_off(most, 5), 5)),
+            };
+            text += &format!(
+                " The joint with the least margin is {}: {most}, with all others as they are.",
+                joint.name
+            );
+        }
+        let of_kv = self.joints.iter().filter(|joint| limited(joint.largest_kv, joint.kv));
+        let of_kv = of_kv.filter(|joint| joint.largest_kv > 0.0);
+        let of_kv = of_kv.min_by(|a, b| (a.largest_kv / a.kv).total_cmp(&(b.largest_kv / b.kv)));
+        if let Some(joint) = of_kv {
+            text += &format!(
+                " The gain of velocity of {} is at most {}; given {}.",
+                joint.name,
+                number(cut_off(joint.largest_kv, 5), 5),
+                number(joint.kv, 5)
+            );
+        }
+        text
+    }
+
+    /// The fewest substeps, as a sentence.
+    pub(super) fn substeps_in_words(&self) -> String {
+        match self.fewest_substeps {
+            Some(1) => " One substep holds them.".to_owned(),
+            Some(substeps) => format!(" {substeps} substeps hold them."),
+            None => format!(" No number of substeps up to {MOST_SUBSTEPS} holds them."),
+        }
+    }
+}
+
+fn capitalised(text: &str) -> String {
+    crate::summary::capitalised(text)
+}

@@ -1,0 +1,134 @@
+"""The step of a MuJoCo model with any gains of its servos, at a point that the gains do not move."""
+
+from __future__ import annotations
+
+from typing import Any, Sequence
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from .._descriptions import description_of
+from .._keywords import check_keywords
+from .._settings import count, positive
+from ._mujoco_names import name_of, number_of_actuators, state_names
+from ._mujoco_operating_point import servos_of
+from ._mujoco_point import copy_of, model_of
+from ._mujoco_servos import mujoco_servos
+from .host import Host
+from .mujoco import host_at_point
+
+Array = NDArray[np.float64]
+
+# Those of the engine that MuJoCo has, and whether they treat the damping of joints implicitly.
+_INTEGRATORS = {
+    "euler": ("EULER", True),
+    "symplectic-euler": ("EULER", False),
+    "semi-implicit-euler": ("EULER", False),
+    "implicit": ("IMPLICIT", True),
+    "implicitfast": ("IMPLICITFAST", True),
+    "damping-implicit": ("IMPLICITFAST", True),
+    "rk4": ("RK4", True),
+}
+
+
+class ServoGains:
+    """The gains of the servos of a model, which are changed in place without a change of their forces at the point."""
+
+    def __init__(self, model: Any, point: Any) -> None:
+        self.model = model
+        forward = copy_of(model, point)
+        mujoco.mj_forward(model, forward)
+        single = np.asarray(getattr(model, "actuator_outnum", np.ones(number_of_actuators(model), dtype=int))).reshape(-1) == 1
+        self.servos = [k for k in servos_of(model) if single[k]]
+        self.others = [k for k in range(number_of_actuators(model)) if k not in self.servos and _has_feedback(model, k)]
+        outputs = np.asarray(getattr(model, "actuator_outadr", np.arange(number_of_actuators(model)))).reshape(-1)
+        self.bias = np.array(model.actuator_biasprm)
+        self.lengths = np.array([forward.actuator_length[outputs[k]] for k in self.servos])
+        self.rates = np.array([forward.actuator_velocity[outputs[k]] for k in self.servos])
+        self.moments = _moments(model, point, [int(outputs[k]) for k in self.servos])
+        self.forward = forward
+
+    def described(self) -> list[dict[str, Any]]:
+        """Return names, gains, the inertia that each servo moves with all others at rest, and the only joint on which it acts."""
+        names = state_names(self.model)
+        found = []
+        for place, k in enumerate(self.servos):
+            acts = np.flatnonzero(np.abs(self.moments[place]) > 1e-12)
+            answer = np.zeros((1, self.model.nv))
+            mujoco.mj_solveM(self.model, self.forward, answer, self.moments[place : place + 1])
+            mobility = float(answer[0] @ self.moments[place])
+            found.append(
+                {
+                    "name": name_of(self.model, "actuator", k),
+                    "kp": float(-self.bias[k, 1]),
+                    "kv": float(-self.bias[k, 2]),
+                    "inertia": 1 / mobility if mobility > 0 else 0.0,
+                    "joint": names[acts[0]].rpartition(" (")[0] if len(acts) == 1 else None,
+                }
+            )
+        return found
+
+    def set(self, kp: Sequence[float], kv: Sequence[float]) -> None:
+        """Set the gains of position and velocity of the servos, with their forces at the point as they are."""
+        bias = np.array(self.bias)
+        for place, k in enumerate(self.servos):
+            bias[k, 1], bias[k, 2] = -kp[place], -kv[place]
+            bias[k, 0] += (self.bias[k, 1] + kp[place]) * self.lengths[place] + (self.bias[k, 2] + kv[place]) * self.rates[place]
+        self.model.actuator_biasprm[:] = bias
+
+
+def _has_feedback(model: Any, actuator: int) -> bool:
+    return int(model.actuator_biastype[actuator]) not in (int(mujoco.mjtBias.mjBIAS_NONE), int(mujoco.mjtBias.mjBIAS_AFFINE))
+
+
+def _moments(model: Any, point: Any, outputs: list[int]) -> Array:
+    """Return the derivatives of the lengths of actuators by the positions, actuators × velocities."""
+    data, found = copy_of(model, point), np.zeros((len(outputs), model.nv))
+    mujoco.mj_fwdPosition(model, data)
+    for number in range(model.nv):
+        data.qvel[:] = 0
+        data.qvel[number] = 1.0
+        mujoco.mj_fwdVelocity(model, data)
+        found[:, number] = np.asarray(data.actuator_velocity)[outputs]
+    return found
+
+
+@check_keywords
+def mujoco_gains(
+    model: Any,
+    data: Any = None,
+    *,
+    keyframe: str | int | None = None,
+    state: str | None = None,
+    dt: float | None = None,
+    integrator: str | None = None,
+    substeps: int = 1,
+) -> tuple[dict[str, Any], Host, ServoGains]:
+    """Return the servos of a model as matrices with the description of its step, the step itself, and its gains.
+
+    The step is that of ``mj_step`` at a timestep of ``dt / substeps``, with contacts, limits and equality constraints. It is not described
+    for an integrator that MuJoCo does not have. The point is chosen as in :func:`mujoco_host`.
+
+    Raises
+    ------
+    ValueError
+        As :func:`mujoco_servos`.
+    """
+    own, _ = model_of(model)
+    whole = positive("dt", own.opt.timestep if dt is None else dt)
+    is_own = integrator is None or integrator.lower() in _INTEGRATORS
+    if integrator is not None and is_own:
+        name, is_implicit = _INTEGRATORS[integrator.lower()]
+        own.opt.integrator = int(getattr(mujoco.mjtIntegrator, f"mjINT_{name}"))
+        flag = int(mujoco.mjtDisableBit.mjDSBL_EULERDAMP)
+        own.opt.disableflags = own.opt.disableflags & ~flag if is_implicit else own.opt.disableflags | flag
+    part = whole / count("substeps", substeps, 1, 1000)
+    host, own, point = host_at_point(own, data, keyframe=keyframe, state=state, dt=part, memory=False, is_audited=False)
+    gains = ServoGains(own, point)
+    described = mujoco_servos(own, point)
+    described["dt"] = whole
+    if is_own:
+        described.update(notes=[*host.notes, *host.validity], step=description_of(host), servos=gains.described())
+        described["other_servos"] = [name_of(own, "actuator", k) for k in gains.others]
+    return described, host, gains
