@@ -48,7 +48,7 @@ use thiserror::Error;
 
 pub use advice::{Advice, FloatChoice, LoopAdvice, ToleranceAnswer};
 pub use advised_system::AdvisedSystem;
-pub use budget::{Budget, FirstFailure, rounded};
+pub use budget::{Budget, FirstFailure, rounded, rounded_down};
 pub use combined_effect::{CombinedEffect, SimulatedCost};
 pub use control::{Control, Correction, Law, Regulator};
 pub use file::{DEFAULT, parse};

@@ -125,7 +125,13 @@ impl LinearRequest {
         if let Some(clocked) = clocked(&file.looped.clock, &design, &parts, period)? {
             linear = linear.with_measured_clock(clocked).map_err(wrong)?;
         }
-        let timed = TimedLoop { linear, timing, names_states: true, critical_latency: None };
+        let mut timed = TimedLoop {
+            linear,
+            timing,
+            names_states: true,
+            critical_latency: None,
+            is_near_neutral: false,
+        };
         let stated = timed.stated().and_then(|stated| timed.linear.size(&stated));
         stated.map_err(|error| {
             let key = match error {
@@ -134,6 +140,8 @@ impl LinearRequest {
             };
             Fault::new(key, error.to_string())
         })?;
+        let ideal = timed.linear.stability(&timed.ideal());
+        timed.is_near_neutral = ideal.is_ok_and(|found| found.is_near_neutral());
         let cost_tolerance = tolerance(file.tolerance)?;
         let invocation = "libration advise --config FILE".into();
         Ok(LinearRequest {
