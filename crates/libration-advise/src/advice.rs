@@ -136,12 +136,19 @@ impl LoopAdvice {
                 Verdict::unknown("the simulation contradicts the theory of the loop")
             }
             () if self.exceeds_tolerated_cost(tolerance) => {
-                let rise = combined.cost_increase.map_or("infinite".into(), |rise| format!("{rise:.4e}"));
-                Verdict::new(Outcome::Exceeds, format!("rise of the cost {rise}, tolerance {:e}", tolerance.most))
+                let rise =
+                    combined.cost_increase.map_or("infinite".into(), |rise| format!("{rise:.4e}"));
+                Verdict::new(
+                    Outcome::Exceeds,
+                    format!("rise of the cost {rise}, tolerance {:e}", tolerance.most),
+                )
             }
             () if !is_kept => Verdict::new(
                 Outcome::Exceeds,
-                format!("no tried step keeps the {} error below {:e}", tolerance.of, tolerance.most),
+                format!(
+                    "no tried step keeps the {} error below {:e}",
+                    tolerance.of, tolerance.most
+                ),
             ),
             () if combined.simulated.is_none() => of_loop.without("a simulation of the loop"),
             () => of_loop,
@@ -167,7 +174,10 @@ impl Advice {
         match (self.chosen(), self.tried_down_to) {
             (Some((choice, dt)), _) => Verdict::new(
                 Outcome::Within,
-                format!("{of} error {:.3e} ≤ {most:e} with {} in steps of {dt:e} s", choice.lost, choice.integrator),
+                format!(
+                    "{of} error {:.3e} ≤ {most:e} with {} in steps of {dt:e} s",
+                    choice.lost, choice.integrator
+                ),
             ),
             (None, Some(shortest)) => Verdict::unknown(format!(
                 "no step from {shortest:.4e} s on keeps the {of} error below {most:e}, and shorter ones were not tried"

@@ -1,6 +1,7 @@
 //! Advice on simulations and loops.
 
 use libration::analysis::Imperfections;
+use libration::linear::GROWTH_ROUNDING;
 use libration::{Float, Method, State, System};
 use libration_report::verdict::{Outcome, Verdict};
 use libration_work::Work;
@@ -157,13 +158,16 @@ pub(super) fn advise_loop<M: PlantModel>(
     let mut advice = Advice::new(request);
     if let Some(unstable) = unstable {
         let combined = one.combined_effect_unstable(request)?;
-        let looped = LoopAdvice { remedies: Some(unstable.remedies), ..one.advice(request, combined)? };
+        let looped =
+            LoopAdvice { remedies: Some(unstable.remedies), ..one.advice(request, combined)? };
         let motions = unstable.motions.join("; ");
-        advice.verdict = Verdict::new(Outcome::Unstable, format!("without imperfections {motions}"));
-        advice.answer = format!(
-            "The loop is unstable without latency, jitter, skew and loss: {motions}. {}",
-            unstable.help
-        );
+        let (outcome, first) = match looped.combined.growth.abs() <= GROWTH_ROUNDING {
+            true => (Outcome::Unknown, "It is unknown whether the loop is stable"),
+            false => (Outcome::Unstable, "The loop is unstable"),
+        };
+        advice.verdict = Verdict::new(outcome, format!("without imperfections {motions}"));
+        advice.answer =
+            format!("{first} without latency, jitter, skew and loss: {motions}. {}", unstable.help);
         if request.map {
             advice.map = Some(one.timed.map(work, None)?);
         }

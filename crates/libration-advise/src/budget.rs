@@ -96,7 +96,7 @@ pub fn rounded_down(limit: f64) -> String {
 }
 
 /// A lower limit as [`rounded`] shows it, but not beyond itself.
-pub fn rounded_up(limit: f64) -> String {
+pub(super) fn rounded_up(limit: f64) -> String {
     in_digits(limit, cut_up)
 }
 

@@ -10,6 +10,9 @@ use super::request::Request;
 use super::stabilising_changes::{StabilisingChanges, rounded_down};
 use super::{AdviseError, TURN};
 
+/// Latency in periods that no analysis of a loop allows: one with the wrong unit.
+const MOST_PERIODS: f64 = 300.0;
+
 /// A loop that is unstable without imperfections.
 pub(super) struct UnstableLoop {
     /// The motions that do not decay, in words, fastest first.
@@ -35,6 +38,10 @@ impl<M: PlantModel> Loop<M> {
             }
             if let LinearLoopError::Size { .. } = error {
                 let (name, value) = ("loop.latency", self.control.latency);
+                if value > MOST_PERIODS * self.control.period {
+                    let period = self.control.period;
+                    return Err(AdviseError::ExcessiveLatency { seconds: value, period });
+                }
                 let allowed = "at most 290 periods, 90 with jitter or losses, and 20 with a record and losses";
                 return Err(AdviseError::Value { name, value, allowed });
             }

@@ -102,9 +102,8 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&StabilityMap>) {
         Cell::rounded(combined.growth.exp_m1(), 4),
         "exact: E[M ⊗ M]",
     );
-    let margin = combined
-        .margin
-        .map_or_else(|| Cell::absent("none found"), |margin| cut(margin).into());
+    let margin =
+        combined.margin.map_or_else(|| Cell::absent("none found"), |margin| cut(margin).into());
     line("largest common factor of all imperfections", margin, "exact, in proportion");
     let infinite = || Cell::absent("infinite");
     line(

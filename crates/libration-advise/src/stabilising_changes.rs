@@ -59,14 +59,19 @@ impl TimedLoop {
             (1..=count * PER_OCTAVE).map(factor)
         };
         let [down, up] = OCTAVES;
-        // The commonest error of a loop is the sign of its feedback.
-        let opposite_factor = (1..=SIGN_OCTAVES)
-            .flat_map(|i| [f64::from(1 - i), f64::from(i - 1)])
-            .map(|octave| -octave.exp2())
-            .find(|factor| amplified(*factor));
         let gain_factor = change(1.0, octaves(down, -1.0), amplified)
             .or_else(|| change(1.0, octaves(up, 1.0), amplified))
             .map(|[_, stable]| stable);
+        // The commonest error of a loop that is unstable without imperfections is the sign of its feedback.
+        let signs = match (self.settles(&self.ideal()), gain_factor) {
+            (true, _) => 0,
+            (false, Some(_)) => 1,
+            (false, None) => SIGN_OCTAVES,
+        };
+        let opposite_factor = (0..signs)
+            .flat_map(|octave| [-octave, octave])
+            .map(|octave| -f64::from(octave).exp2())
+            .find(|factor| amplified(*factor));
         let step = self.period() * (1.0 + stated.skew);
         let channels = || stated.input_latency.iter().chain(&stated.output_latency);
         let longest = channels().map(|latency| latency.steps()).fold(0.0, f64::max);
@@ -175,18 +180,16 @@ impl StabilisingChanges {
         let shown = |gains: Option<[f64; 2]>| {
             gains.map_or_else(String::new, |[position, velocity]| {
                 let [of_position, of_velocity] = gain_units;
-                format!(
-                    " (K_p = {position:.6} {of_position}, K_d = {velocity:.6} {of_velocity})"
-                )
+                format!(" (K_p = {position:.6} {of_position}, K_d = {velocity:.6} {of_velocity})")
             })
         };
         let opposite = self.opposite_factor.map(|factor| {
             let times = if factor == -1.0 { String::new() } else { format!(", times {}", -factor) };
             format!("the opposite sign of all gains{of}{times}{}", shown(self.opposite_gains))
         });
-        let gains = self.shown_factor.map(|factor| {
-            format!("all gains{of} times {factor}{}", shown(self.gains))
-        });
+        let gains = self
+            .shown_factor
+            .map(|factor| format!("all gains{of} times {factor}{}", shown(self.gains)));
         let latency =
             self.latency.map(|latency| format!("a latency of at most {} s", rounded_down(latency)));
         opposite.into_iter().chain(gains).chain(latency).collect()

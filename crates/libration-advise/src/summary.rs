@@ -74,7 +74,7 @@ pub(super) fn describe_loop(looped: &LoopAdvice, tolerance: &ToleranceAnswer) ->
         }
         (None, Some(tried)) => format!(
             "The loop is stable with the stated imperfections, also if all of them are at least {} times as large, the most that was tried.",
-                cut_off(tried, 4)
+            cut_off(tried, 4)
         ),
         (None, None) => "The loop is stable. The request states no imperfections.".to_owned(),
     };

@@ -75,7 +75,9 @@ impl BalancedPair {
         let rows: Vec<Vec<Complex64>> =
             (0..n).map(|i| (0..n + m).map(|j| entry(i, j).conj() * weight(j)).collect()).collect();
         let Some(mut inverse) = right_inverse(rows) else { return 0.0 };
-        inverse.iter_mut().for_each(|x| x.iter_mut().enumerate().for_each(|(j, x)| *x *= weight(j)));
+        inverse
+            .iter_mut()
+            .for_each(|x| x.iter_mut().enumerate().for_each(|(j, x)| *x *= weight(j)));
         // A right inverse to rounding: badly weighted equations may lose it.
         let residual = Matrix::from_fn(n, n, |i, k| {
             let product: Complex64 = (0..n + m).map(|j| entry(i, j) * inverse[k][j]).sum();
@@ -172,7 +174,9 @@ mod tests {
         let mut coefficients = vec![1.0];
         for root in roots {
             coefficients.push(0.0);
-            (1..coefficients.len()).rev().for_each(|i| coefficients[i] -= root * coefficients[i - 1]);
+            (1..coefficients.len())
+                .rev()
+                .for_each(|i| coefficients[i] -= root * coefficients[i - 1]);
         }
         coefficients
     }
@@ -235,7 +239,8 @@ mod tests {
 
     #[test]
     fn units_of_states_and_inputs_do_not_change_what_is_reached() {
-        let a = Matrix::from_rows(&[[0.0, 1.0, 0.0], [-4.0, -0.4, 2.0], [0.0, 0.0, -30.0]]).unwrap();
+        let a =
+            Matrix::from_rows(&[[0.0, 1.0, 0.0], [-4.0, -0.4, 2.0], [0.0, 0.0, -30.0]]).unwrap();
         let b = Matrix::from_rows(&[[0.0], [0.0], [30.0]]).unwrap();
         let units = [1e-9, 1e3, 1e6];
         let other = Matrix::from_fn(3, 3, |i, j| a[(i, j)] * units[i] / units[j]);

@@ -101,7 +101,8 @@ impl LinearLoop {
         let (n, k, m) = (a.rows(), own.memory(), b.columns());
         let mut rest = Matrix::identity(n + k + m);
         // −Ax − Bu = 0, of a sampled plant (1 − A)x − Bu = 0.
-        let mut still = if sampling_period.is_some() { Matrix::identity(n) } else { Matrix::zeros(n, n) };
+        let mut still =
+            if sampling_period.is_some() { Matrix::identity(n) } else { Matrix::zeros(n, n) };
         still.add_scaled(-1.0, a);
         rest.set_block((0, 0), &still);
         rest.set_block((0, n + k), &b.scaled(-1.0));
@@ -184,7 +185,8 @@ mod tests {
     /// `s + a + K b = 0` of the loop around `b/(s + a)`: in periods so short that it changes by 10⁻¹⁵ the sign of `a + K b` decides.
     #[test]
     fn slow_motions_in_short_periods_are_judged_by_their_rate() {
-        for (a, b, gain) in [(1e-6, 1.0, 0.0), (-1e-6, 3e-6, 1.0), (1e-6, 3e-6, -1.0), (-1e-6, 1.0, 0.0)]
+        for (a, b, gain) in
+            [(1e-6, 1.0, 0.0), (-1e-6, 3e-6, 1.0), (1e-6, 3e-6, -1.0), (-1e-6, 1.0, 0.0)]
         {
             let found = looped(&[b], &[1.0, a], gain, 1e-9);
             assert!(found.is_near_neutral(), "{found:?}");

@@ -80,7 +80,10 @@ impl LinearPlant {
         };
         values.iter().filter(grows).find_map(|&value| {
             let is_hidden = pair.controllability(value) < NOTHING;
-            is_hidden.then(|| left_vector(a, b, value)).flatten().map(|vector| self.mode(value, &vector))
+            is_hidden
+                .then(|| left_vector(a, b, value))
+                .flatten()
+                .map(|vector| self.mode(value, &vector))
         })
     }
 

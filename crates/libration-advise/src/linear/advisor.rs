@@ -8,11 +8,11 @@ use libration_work::Work;
 use super::live_setting::live_setting;
 use super::margins::margins;
 use super::{Deviation, LinearAdvice, LinearRequest, SignalName};
-use crate::{AdviseError, Budget};
 use crate::imperfection::Imperfection;
 use crate::loops::LoopError;
 use crate::request::{Measure, Tolerance};
 use crate::stability_map::StabilityMap;
+use crate::{AdviseError, Budget};
 
 /// Advises on a loop around a linear plant.
 ///

@@ -142,9 +142,12 @@ pub fn loop_verdict(stability: &LoopStability) -> Verdict {
         ),
         false => format!("second moments {verb} by {} % per period", number(percent, 4)),
     };
-    Verdict::new(outcome, match (stability.outcome, stability.is_near_neutral()) {
-        (StabilityOutcome::Undecided, _) => format!("{change}, which may be rounding"),
-        (_, true) => format!("{change}: by the equations of rest"),
-        (_, false) => change,
-    })
+    Verdict::new(
+        outcome,
+        match (stability.outcome, stability.is_near_neutral()) {
+            (StabilityOutcome::Undecided, _) => format!("{change}, which may be rounding"),
+            (_, true) => format!("{change}: by the equations of rest"),
+            (_, false) => change,
+        },
+    )
 }
