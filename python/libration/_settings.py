@@ -363,12 +363,17 @@ def check_step(name: str, dt: float, substeps: int, dtype: str) -> None:
         raise ValueError(f"{name} is {dt!r} s{steps} but a step of the integrator must be {low:.3g} to {high:.3g} s in {dtype}")
 
 
-def _check_within_episode(name: str, seconds: float, dt: float, steps: Any) -> None:
-    """Fail if a delay lasts as long as an episode: milliseconds that were given as seconds, as a rule."""
-    is_limited = isinstance(steps, numbers.Real) and 0 < steps < math.inf
-    if is_limited and seconds > 0.0 and seconds >= steps * dt:
-        meant = f"; did you mean {seconds / 1000:.6g} ({seconds:.6g} ms)?" if seconds / 1000 < steps * dt else ""
-        raise ValueError(f"{name} is {seconds:.6g} s, but an episode lasts {steps * dt:.6g} s{meant}")
+def check_within_episode(name: str, delay: tuple[float, float], dt: float, steps: Any) -> None:
+    """Fail if a delay is as long as an episode: milliseconds that were given as seconds, as a rule."""
+    if not isinstance(steps, numbers.Real) or not 0 < steps < math.inf:
+        return
+    lasts = steps * dt
+    # A range may end somewhat later than a short episode.
+    seconds = delay[1] if delay[1] >= 2 * lasts else delay[0]
+    # A delay that is too long in milliseconds as well has another error.
+    if seconds / 1000 < lasts <= seconds:
+        meant = f"did you mean {seconds / 1000:.6g} ({seconds:.6g} ms)?"
+        raise ValueError(f"{name} is {seconds:.6g} s, but an episode lasts {lasts:.6g} s; {meant}")
 
 
 def common(given: dict[str, Any], inner_period: float | None = None, used: int = 1) -> dict[str, Any]:
@@ -384,8 +389,8 @@ def common(given: dict[str, Any], inner_period: float | None = None, used: int =
         for name in ("observation_delay", "action_delay")
     }
     late = {name: ends(name, value, least=0.0) for name, value in stated.items()}
-    for name, (least, _) in late.items():
-        _check_within_episode(name, least, dt, given["max_episode_steps"])
+    for name, delay in late.items():
+        check_within_episode(name, delay, dt, given["max_episode_steps"])
     asked, periods = substeps, inner_count(dt, inner_period, substeps, used)
     lengths: list[float] = []
     split = None
