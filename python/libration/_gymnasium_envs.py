@@ -16,6 +16,7 @@ from ._attributes import SETTABLE, keywords_of, refused, unknown
 from ._environment_keywords import Unpack, VectorKeywords
 from ._episode_states import options_of
 from ._presets import Preset
+from ._settings import check_within_episode, ends
 from ._spaces import single_spaces
 from ._spec_keywords import JSON_SPEC
 from .environments import Environments
@@ -244,6 +245,11 @@ class Env(gymnasium.Env):
         subject: str | EquationSystem = with_commands(name)
         self.render_mode = checked_render_mode(render_mode)
         self._all = self._batch_class(subject, max_episode_steps=np.inf, autoreset_mode="Disabled", **given)
+        preset = self._all.preset
+        for late in ("action_delay", "observation_delay"):
+            if isinstance(preset, Preset) and isinstance(given.get(late), (int, float, tuple)):
+                # The limit of `gymnasium.make` is that of the registered environment.
+                check_within_episode(late, ends(late, given[late]), given.get("dt") or preset.dt, preset.max_episode_steps)
         self._tells: bool = self._all._settings["parameter_infos"]
         self.metadata = _metadata(self._all._settings)
         self.observation_space, self.action_space = single_spaces(self._all.preset, self._all._settings)

@@ -33,10 +33,17 @@ _FORMER = {
 """Names of keywords in former versions and in files, with those that they have here."""
 
 
-def nearest(name: str, known: Iterable[str]) -> str:
-    """Return a hint for an unknown name."""
+LAW_SYNONYMS = {name: "gaussian" for name in ("normal", "norm", "gauss", "gaus", "randn", "n")} | {
+    name: "uniform" for name in ("rectangular", "rect", "flat", "rand", "equal", "u")
+}
+"""Other names of laws, of NumPy, SciPy and textbooks."""
+
+
+def nearest(name: str, known: Iterable[str], synonyms: Mapping[str, str] = _FORMER) -> str:
+    """Return a hint for an unknown name; the same thing by another name comes before one that is spelled alike."""
     known = sorted(known)
-    near = [_FORMER[name]] if _FORMER.get(name) in known else difflib.get_close_matches(name, known, n=1)
+    meant = synonyms.get(name, synonyms.get(name.lower()))
+    near = [meant] if meant in known else difflib.get_close_matches(name, known, n=1)
     hint = f"did you mean {near[0]!r}? " if near else ""
     return f"{hint}known are {', '.join(known)}"
 
@@ -125,7 +132,7 @@ def law(name: str, value: Any) -> tuple[str, float]:
             raise ValueError(f"{name} is {value!r}, but it must be like ('gaussian', 0.05)")
         kind, rms = value
         if kind not in ("gaussian", "uniform"):
-            raise ValueError(f"law of {name} is {kind!r}: {nearest(kind, ('gaussian', 'uniform'))}")
+            raise ValueError(f"law of {name} is {kind!r}: {nearest(kind, ('gaussian', 'uniform'), LAW_SYNONYMS)}")
     else:
         kind, rms = "gaussian", value
     at_least_zero = lambda x: 0 <= x < math.inf  # noqa: E731
@@ -356,6 +363,19 @@ def check_step(name: str, dt: float, substeps: int, dtype: str) -> None:
         raise ValueError(f"{name} is {dt!r} s{steps} but a step of the integrator must be {low:.3g} to {high:.3g} s in {dtype}")
 
 
+def check_within_episode(name: str, delay: tuple[float, float], dt: float, steps: Any) -> None:
+    """Fail if a delay is as long as an episode: milliseconds that were given as seconds, as a rule."""
+    if not isinstance(steps, numbers.Real) or not 0 < steps < math.inf:
+        return
+    lasts = steps * dt
+    # A range may end somewhat later than a short episode.
+    seconds = delay[1] if delay[1] >= 2 * lasts else delay[0]
+    # A delay that is too long in milliseconds as well has another error.
+    if seconds / 1000 < lasts <= seconds:
+        meant = f"did you mean {seconds / 1000:.6g} ({seconds:.6g} ms)?"
+        raise ValueError(f"{name} is {seconds:.6g} s, but an episode lasts {lasts:.6g} s; {meant}")
+
+
 def common(given: dict[str, Any], inner_period: float | None = None, used: int = 1) -> dict[str, Any]:
     """Return the settings that environments of all systems have."""
     dt = positive("dt", given["dt"])
@@ -369,6 +389,8 @@ def common(given: dict[str, Any], inner_period: float | None = None, used: int =
         for name in ("observation_delay", "action_delay")
     }
     late = {name: ends(name, value, least=0.0) for name, value in stated.items()}
+    for name, delay in late.items():
+        check_within_episode(name, delay, dt, given["max_episode_steps"])
     asked, periods = substeps, inner_count(dt, inner_period, substeps, used)
     lengths: list[float] = []
     split = None

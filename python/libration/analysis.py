@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import html
 import json
+import os
+import re
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Mapping
 
@@ -206,9 +209,13 @@ class Advice(Answer):
 
     answer: str
     """The answer in a few sentences."""
+    verdict: dict[str, Any]
+    """The ``outcome`` (``stable``, ``unstable``, ``within``, ``exceeds`` or ``unknown``), its ``evidence``, and what was ``not_examined``."""
+    unstable_motions: list[str]
+    """What does not decay without imperfections; missing if the loop is stable without them."""
     warnings: list[str]
     repeat_command: str
-    """The command that repeats this advice."""
+    """The call, or the command with the file of ``config``, that repeats this advice."""
 
     # Of systems of the catalogue and by equations.
     system: str
@@ -557,16 +564,58 @@ def advise(
         for name in ("q", "v", "deviation", "horizon"):
             if keywords[name] is not None:
                 raise TypeError(f"{name} cannot be combined with a linear plant")
-        request = text_of("config", linear_request(plant, controller, keywords))
+        given_request = linear_request(plant, controller, keywords)
+        request = text_of("config", given_request)
     else:
         for name in _LINEAR_ONLY:
             if keywords.pop(name) is not None:
                 raise TypeError(f"{name} requires a linear plant")
-        request = text_of("config", _request(**keywords))
+        given_request = _request(**keywords)
+        request = text_of("config", given_request)
     with ProgressDisplay(progress) as display:
         report = (lambda _, __, ___, what, done, total: display.update(done / max(total, 1), what)) if display.enabled else None
         answer, holds, html_page = _native._advise(request, bool(page), bool(redesign), report)
-    return Advice(json.loads(answer), holds, request, html_page)
+    repeat = _Repetition(config if config is not None else given_request, {"redesign": True} if redesign else {})
+    return Advice(repeat.of(json.loads(answer)), holds, request, None if html_page is None else repeat.page(html_page))
+
+
+class _Repetition:
+    """Commands or calls that repeat an advice, in place of a command with a file that does not exist."""
+
+    _COMMAND = "libration advise --config config.toml"
+
+    def __init__(self, config: Any, keywords: dict[str, Any]) -> None:
+        """Repeat advice on a file or on a request as a dictionary, with further keywords."""
+        self._config, self._keywords = config, keywords
+
+    def _call(self, rest: str) -> str:
+        """Return the command or the call with further options of the command."""
+        words = [word for word in rest.split() if word != "--json"]
+        if not isinstance(self._config, Mapping):
+            flags = [f"--{name}" for name in self._keywords]
+            return " ".join(["libration advise --config", shlex.quote(os.fspath(self._config)), *flags, *rest.split()])
+        request = dict(self._config)
+        options = {word.removeprefix("--"): value for word, value in zip(words[::2], words[1::2])}
+        if "jitter" in options:
+            options["law"], options["jitter"] = options["jitter"].split(":")
+        if options:
+            numbers_of = {name: value if name == "law" else float(value) for name, value in options.items()}
+            request["loop"] = {**request.get("loop", {}), **numbers_of}
+        keywords = "".join(f", {name}={value!r}" for name, value in self._keywords.items())
+        return f"libration.advise(config={request!r}{keywords})"
+
+    def of(self, found: Any) -> Any:
+        """Return results with what repeats them."""
+        if isinstance(found, str) and found.startswith(self._COMMAND):
+            return self._call(found.removeprefix(self._COMMAND))
+        if isinstance(found, dict):
+            return {name: self.of(part) for name, part in found.items()}
+        return [self.of(part) for part in found] if isinstance(found, list) else found
+
+    def page(self, text: str) -> str:
+        """Return a page with what repeats it."""
+        command = re.compile(re.escape(self._COMMAND) + r"([^<]*)")
+        return command.sub(lambda match: html.escape(self._call(html.unescape(match[1]))), text)
 
 
 def _advise_simulation(system: EquationSystem, keywords: dict[str, Any], page: bool, redesign: bool, progress: Progress) -> Advice:
@@ -585,7 +634,11 @@ def _advise_simulation(system: EquationSystem, keywords: dict[str, Any], page: b
         report = (lambda _, __, ___, what, done, total: display.update(done / max(total, 1), what)) if display.enabled else None
         found = _native._advise_equations(system._text, (kind, most), seconds, bool(page), report)
     answer, holds, html_page = found
-    return Advice(json.loads(answer), holds, system._text[0], html_page)
+    parts = json.loads(answer)
+    if "--system FILE" in parts["repeat_command"]:
+        # The system has no file.
+        parts["repeat_command"] = f"libration.advise(system, tolerance={(kind, most)!r}, horizon={seconds!r})"
+    return Advice(parts, holds, system._text[0], html_page)
 
 
 def _request(

@@ -215,3 +215,34 @@ def test_an_unknown_column_of_a_trajectory_is_named_with_the_nearest():
 def test_a_former_keyword_is_told_its_name(call, former, name):
     with pytest.raises(TypeError, match=f"unexpected keyword argument '{former}': did you mean '{name}'"):
         call()
+
+
+@pytest.mark.parametrize(
+    ("make", "text"),
+    [
+        (lambda: VectorEnv("Pendulum", 2, action_delay=40), r"^action_delay is 40 s, but an episode lasts 10 s; did you mean 0.04 \(40 ms\)\?$"),
+        (lambda: Environments("Pendulum", 2, action_delay=15.0), r"did you mean 0.015 \(15 ms\)"),
+        (lambda: Environments("Pendulum", 2, observation_delay=25), r"^observation_delay is 25 s.* did you mean 0.025 \(25 ms\)"),
+        (lambda: VectorEnv("Pendulum", 2, action_delay=(0.0, 30.0)), r"^action_delay is 30 s.* did you mean 0.03 \(30 ms\)"),
+        (lambda: VectorEnv("Pendulum", 2, action_delay=(12, 18)), r"^action_delay is 12 s"),
+        (lambda: VectorEnv(ARM, 2, dt=0.01, max_episode_steps=100, action_delay=2), r"an episode lasts 1 s; did you mean 0.002 \(2 ms\)"),
+        (lambda: gymnasium.make("libration/PendulumSwingUp-v0", action_delay=40), r"action_delay is 40 s, but an episode lasts 10 s"),
+    ],
+)
+def test_a_delay_as_long_as_an_episode_is_refused_with_its_milliseconds(make, text):
+    with pytest.raises(ValueError, match=text):
+        make()
+
+
+@pytest.mark.parametrize("delay", [0.04, (0.0, 0.3), 1.5])
+def test_a_delay_within_an_episode_is_none(delay):
+    assert VectorEnv("Pendulum", 2, action_delay=delay).num_envs == 2
+
+
+@pytest.mark.parametrize(
+    ("law", "meant"),
+    [("normal", "gaussian"), ("Normal", "gaussian"), ("gauss", "gaussian"), ("rectangular", "uniform"), ("flat", "uniform"), ("unifrom", "uniform")],
+)
+def test_a_law_by_another_name_is_named_as_what_it_is(law, meant):
+    with pytest.raises(ValueError, match=f"did you mean '{meant}'"):
+        VectorEnv("Pendulum", 2, jitter=(law, 0.05))

@@ -461,3 +461,32 @@ def test_bad_input_is_refused_by_name():
     for name, value in (("output_latency", 0.1), ("deadline_misses", "1 of 2")):
         with pytest.raises(TypeError, match=f"{name} requires a linear plant"):
             advise("oscillator", PD(10.0, 2.0), **{name: value})
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: advise(PENDULUM, LQR([10, 1], [0.1]), period=0.05, page=True),
+        lambda: advise(PENDULUM, StateFeedback([[20.0, 5.0]]), latency=0.01, jitter=("uniform", 0.05)),
+        lambda: advise("oscillator", libration.PD(10.0, 2.0), horizon=1.0, loss=0.1),
+        lambda: advise("oscillator", tolerance=("energy", 1e-3), horizon=1.0),
+        lambda: advise("oscillator", libration.PD(-10.0, -2.0)),
+    ],
+)
+def test_the_call_that_repeats_advice_can_be_pasted(call):
+    advice = call()
+    assert advice.repeat_command.startswith("libration.advise(config={") and "config.toml" not in (advice.page or "")
+    again = eval(advice.repeat_command)
+    assert again.answer == advice.answer and again.repeat_command == advice.repeat_command
+
+
+def test_advice_on_a_file_is_repeated_by_the_command_on_that_file(tmp_path):
+    file = tmp_path / "my loop.toml"
+    file.write_text(advise(PENDULUM, LQR([10, 1], [0.1]), period=0.05).request)
+    assert advise(config=file).repeat_command == f"libration advise --config '{file}'"
+
+
+def test_a_loop_of_the_wrong_sign_has_advice_with_a_verdict_and_a_page():
+    advice = advise(PENDULUM, StateFeedback([[-20.0, -5.0]]), period=0.01, page=True)
+    assert not advice.holds and advice.verdict["outcome"] == "unstable"
+    assert "the opposite sign of all gains" in advice.answer and "The loop is unstable" in advice.page

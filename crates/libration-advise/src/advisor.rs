@@ -1,13 +1,17 @@
 //! Advice on simulations and loops.
 
 use libration::analysis::Imperfections;
+use libration::linear::GROWTH_ROUNDING;
 use libration::{Float, Method, State, System};
+use libration_report::verdict::{Outcome, Verdict};
 use libration_work::Work;
 
 use super::advice::{Advice, FloatChoice, LoopAdvice};
+use super::combined_effect::CombinedEffect;
 use super::control::Control;
 use super::free_motion::FreeMotion;
 use super::integrator_choice::{best_possible, largest_step, offered_methods};
+use super::loop_check::UnstableLoop;
 use super::loop_simulation::{LoopSimulation, MOST_PERIODS};
 use super::loops::{Loop, LoopError, PlantModel};
 use super::request::{Measure, Request, Tolerance};
@@ -65,6 +69,7 @@ pub(super) fn advise_simulation(
         advice.throughput = Some(Throughput::measure(work, request, method, dt, narrow)?);
     }
     let answer = describe_integrator(&advice, request);
+    advice.verdict = advice.verdict_of_motion();
     advice.finish(request, answer);
     Ok(advice)
 }
@@ -148,9 +153,27 @@ pub(super) fn advise_loop<M: PlantModel>(
         return Err(AdviseError::Tolerance { of, why });
     }
     let one = Loop::new(model, request, control)?;
-    one.check()?;
+    let unstable = one.unstable()?;
     let one = one.with_critical_latency();
     let mut advice = Advice::new(request);
+    if let Some(unstable) = unstable {
+        let combined = one.combined_effect_unstable(request)?;
+        let looped =
+            LoopAdvice { remedies: Some(unstable.remedies), ..one.advice(request, combined)? };
+        let motions = unstable.motions.join("; ");
+        let (outcome, first) = match looped.combined.growth.abs() <= GROWTH_ROUNDING {
+            true => (Outcome::Unknown, "It is unknown whether the loop is stable"),
+            false => (Outcome::Unstable, "The loop is unstable"),
+        };
+        advice.verdict = Verdict::new(outcome, format!("without imperfections {motions}"));
+        advice.answer =
+            format!("{first} without latency, jitter, skew and loss: {motions}. {}", unstable.help);
+        if request.map {
+            advice.map = Some(one.timed.map(work, None)?);
+        }
+        advice.looped = Some(looped);
+        return Ok(advice);
+    }
     let budgets = one.budgets(work, request)?;
     let combined = one.combined_effect(work, request, &budgets)?;
     let fails_first =
@@ -162,27 +185,9 @@ pub(super) fn advise_loop<M: PlantModel>(
         // No integrator follows a growing motion for long.
         Some(one.stabilising_changes(&one.timed.stated().map_err(LoopError::from)?))
     };
-    let rest = State { q: [request.q[0]], v: [0.0] };
-    let [held] = model.on::<f64>().acceleration(&rest);
     advice.warnings.splice(0..0, loop_warnings(&one, &combined));
-    let (actuation, units) = (request.system.actuation(), request.system.units());
-    let looped = LoopAdvice {
-        controller: one.describe_controller(),
-        command: actuation.name(),
-        command_unit: units.command,
-        gains: {
-            let gains = one.given_gains();
-            [gains.position, gains.velocity]
-        },
-        gain_units: [units.gains[0], units.gains[1]],
-        held_command: -held * actuation.mass(),
-        period: control.period,
-        stated: one.stated()? != Imperfections::NONE || control.record.is_some(),
-        budgets,
-        combined,
-        fails_first,
-        remedies,
-    };
+    let looped = LoopAdvice { budgets, fails_first, remedies, ..one.advice(request, combined)? };
+    advice.verdict = looped.judged(&advice.tolerance, advice.chosen().is_some());
     let mut answer = describe_loop(&looped, &advice.tolerance);
     if !advice.integrators.is_empty() {
         answer += &format!(" {}", describe_integrator(&advice, request));
@@ -203,6 +208,34 @@ pub(super) fn advise_loop<M: PlantModel>(
     Ok(advice)
 }
 
+impl<M: PlantModel> Loop<M> {
+    /// The loop with the effect of its imperfections, without limits.
+    fn advice(
+        &self,
+        request: &Request,
+        combined: CombinedEffect,
+    ) -> Result<LoopAdvice, AdviseError> {
+        let rest = State { q: [request.q[0]], v: [0.0] };
+        let [held] = self.model.model.on::<f64>().acceleration(&rest);
+        let (actuation, units) = (request.system.actuation(), request.system.units());
+        let gains = self.given_gains();
+        Ok(LoopAdvice {
+            controller: self.describe_controller(),
+            command: actuation.name(),
+            command_unit: units.command,
+            gains: [gains.position, gains.velocity],
+            gain_units: [units.gains[0], units.gains[1]],
+            held_command: -held * actuation.mass(),
+            period: self.control.period,
+            stated: self.stated()? != Imperfections::NONE || self.control.record.is_some(),
+            budgets: Vec::new(),
+            combined,
+            fails_first: None,
+            remedies: None,
+        })
+    }
+}
+
 /// The budget of each imperfection of a loop.
 pub(super) fn loop_budgets<M: PlantModel>(
     work: &Work<'_>,
@@ -211,6 +244,8 @@ pub(super) fn loop_budgets<M: PlantModel>(
     request: &Request,
 ) -> Result<Vec<Budget>, AdviseError> {
     let one = Loop::new(model, request, control)?;
-    one.check()?;
+    if let Some(UnstableLoop { motions: modes, help, .. }) = one.unstable()? {
+        return Err(AdviseError::Unstable { modes, help });
+    }
     one.with_critical_latency().budgets(work, request)
 }

@@ -1,6 +1,7 @@
 //! Budgets of the imperfections of a loop.
 
 use libration::linear::{LatencyWindow, LinearLoopError, LoopMode, LoopTiming};
+use libration_report::notation::{cut_off, cut_up};
 use libration_work::Work;
 use serde::Serialize;
 
@@ -61,10 +62,10 @@ impl Budget {
     /// A limit in words: the size, or the largest tried one.
     pub fn limit(&self, limit: Option<f64>) -> String {
         match limit {
-            Some(limit) => rounded(limit),
+            Some(limit) => rounded_down(limit),
             None if self.tried_up_to == 0.0 => "too many states".to_owned(),
-            None if self.tried_up_to < 1e-2 => format!("above {}", rounded(self.tried_up_to)),
-            None => format!("above {:.3}", self.tried_up_to),
+            None if self.tried_up_to < 1e-2 => format!("above {}", rounded_down(self.tried_up_to)),
+            None => format!("above {:.3}", cut_to(self.tried_up_to, 3, cut_off)),
         }
     }
 
@@ -87,6 +88,32 @@ fn later_windows(windows: Option<&[LatencyWindow]>, scale: f64) -> Vec<Stability
 /// A number with six decimals, or with four digits where six decimals show fewer than three.
 pub fn rounded(x: f64) -> String {
     if x == 0.0 || x.abs() >= 1e-4 { format!("{x:.6}") } else { format!("{x:.3e}") }
+}
+
+/// An upper limit as [`rounded`] shows it, but not beyond itself.
+pub fn rounded_down(limit: f64) -> String {
+    in_digits(limit, cut_off)
+}
+
+/// A lower limit as [`rounded`] shows it, but not beyond itself.
+pub(super) fn rounded_up(limit: f64) -> String {
+    in_digits(limit, cut_up)
+}
+
+fn in_digits(limit: f64, cut: fn(f64, usize) -> f64) -> String {
+    match limit == 0.0 || limit.abs() >= 1e-4 {
+        true => format!("{:.6}", cut_to(limit, 6, cut)),
+        false => format!("{:.3e}", cut(limit, 4)),
+    }
+}
+
+/// A limit cut to so many decimals.
+fn cut_to(limit: f64, decimals: usize, cut: fn(f64, usize) -> f64) -> f64 {
+    let before = limit.abs().log10().floor();
+    match before.is_finite() {
+        true => cut(limit, (before as i32 + 1 + decimals as i32).max(1) as usize),
+        false => limit,
+    }
 }
 
 /// An imperfection with its channel, in words.
@@ -115,16 +142,16 @@ pub struct FirstFailure {
     pub how: String,
 }
 
-/// Growth of second moments per period that is no more than rounding, in a loop of several states.
-const ROUNDING: f64 = 1e-11;
-
 impl TimedLoop {
     /// The motions that do not decay without imperfections, in words; none if the loop is stable.
     pub(super) fn unstable_modes(&self) -> Result<Option<Vec<String>>, LinearLoopError> {
         let none = self.ideal();
-        // An integrator that nothing drives is a motion that rounding makes decay.
-        let decays = !self.names_states || self.linear.growth(&none)? < -ROUNDING;
-        if decays && self.linear.is_stable(&none)? {
+        // Of systems of the catalogue the exact limits decide beside the edge.
+        let is_stable = match self.names_states {
+            true => self.stability(&none)?.is_stable(),
+            false => self.linear.is_stable(&none)?,
+        };
+        if is_stable {
             return Ok(None);
         }
         let mut modes = self.linear.modes(&none, usize::MAX)?;
@@ -140,7 +167,7 @@ impl TimedLoop {
             };
             match mode.radius - 1.0 {
                 neutral if neutral < NEUTRAL && self.names_states => format!(
-                    "a motion changes by less than 10⁻¹¹ per period: within rounding it is undecided whether it decays, and it counts as unstable{shape}"
+                    "a motion changes by less than 10⁻¹¹ per period: within rounding it is undecided whether it decays{shape}"
                 ),
                 neutral if neutral < NEUTRAL => format!("a motion neither grows nor decays{shape}"),
                 small if small < 1e-3 => {

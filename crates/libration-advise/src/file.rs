@@ -148,7 +148,7 @@ fn control(law: Law, table: LoopTable) -> Result<Control, Fault> {
         "uniform" => Jitter::Uniform(0.0),
         other => {
             let fault = Fault::new("loop.law", format!("unknown law `{other}`"));
-            return Err(fault.help(suggestions::suggest("laws", other, ["gaussian", "uniform"])));
+            return Err(fault.help(suggestions::suggest_law(other)));
         }
     };
     let weights = match &table.cost[..] {

@@ -2,6 +2,7 @@
 
 use libration_report::notation::{cut_off, number};
 use libration_report::page::{Bar, Highlight};
+use libration_report::verdict::Outcome;
 
 use super::advice::LoopAdvice;
 use super::budget::Budget;
@@ -87,11 +88,12 @@ pub(super) fn measure(budgets: &[Budget]) -> Option<String> {
 }
 
 /// The verdict of a page in its title.
-pub(super) fn title(growth: f64, is_too_costly: bool) -> &'static str {
-    match (growth < 0.0, is_too_costly) {
-        (false, _) => "The loop is unstable",
-        (true, true) => "The loop is stable, but its cost exceeds the tolerance",
-        (true, false) => "The loop is stable",
+pub(super) fn title(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Unstable => "The loop is unstable",
+        Outcome::Exceeds => "The loop is stable, but its cost exceeds the tolerance",
+        Outcome::Stable => "The loop is stable",
+        _ => "It is unknown whether the loop is stable",
     }
 }
 
@@ -108,10 +110,9 @@ pub(super) fn actions(looped: &LoopAdvice, is_too_costly: bool) -> Vec<String> {
 pub(super) fn change(remedies: &StabilisingChanges, gain_units: [&str; 2]) -> Option<String> {
     let all = remedies.changes(gain_units);
     let changes = all.join(", or ");
-    let limits = if all.len() > 1 { "these limits" } else { "this limit" };
-    (!all.is_empty()).then(|| {
-        format!("Take {changes}; at {limits} the loop has no margin. Repeat the command with the changed value.")
-    })
+    let caveat = remedies.caveat().replace(" it has", " the loop has");
+    (!all.is_empty())
+        .then(|| format!("Take {changes}{caveat}. Repeat the command with the changed value."))
 }
 
 /// What to do about a cost above its tolerance; none if not even smaller imperfections are known to meet it.

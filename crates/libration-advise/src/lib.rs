@@ -48,7 +48,7 @@ use thiserror::Error;
 
 pub use advice::{Advice, FloatChoice, LoopAdvice, ToleranceAnswer};
 pub use advised_system::AdvisedSystem;
-pub use budget::{Budget, FirstFailure, rounded};
+pub use budget::{Budget, FirstFailure, rounded, rounded_down};
 pub use combined_effect::{CombinedEffect, SimulatedCost};
 pub use control::{Control, Correction, Law, Regulator};
 pub use file::{DEFAULT, parse};
@@ -63,6 +63,7 @@ pub use stability_map::StabilityMap;
 pub use stability_window::StabilityWindow;
 pub use throughput::Throughput;
 
+use libration_settings::duration;
 use libration_settings::limits::SIZE;
 use libration_work::{Interrupted, Work};
 use simulated_system::Compiled;
@@ -87,6 +88,14 @@ pub enum AdviseError {
         value: f64,
         /// The allowed values.
         allowed: &'static str,
+    },
+    /// The latency is far too long for the period.
+    #[error("--latency: {}", duration::excessive_latency(*seconds, *period))]
+    ExcessiveLatency {
+        /// The latency, in s.
+        seconds: f64,
+        /// The period, in s.
+        period: f64,
     },
     /// A parameter of the system is too large or too small.
     #[error("{system}: `{name}` is {value:e}; expected 0, or {:e} to {:e} in size", SIZE.start(), SIZE.end())]

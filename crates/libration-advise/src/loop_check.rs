@@ -7,12 +7,25 @@ use libration_work::Work;
 use super::budget::Budget;
 use super::loops::{Loop, LoopError, PlantModel};
 use super::request::Request;
-use super::stabilising_changes::rounded_down;
+use super::stabilising_changes::{StabilisingChanges, rounded_down};
 use super::{AdviseError, TURN};
 
+/// Latency in periods that no analysis of a loop allows: one with the wrong unit.
+const MOST_PERIODS: f64 = 300.0;
+
+/// A loop that is unstable without imperfections.
+pub(super) struct UnstableLoop {
+    /// The motions that do not decay, in words, fastest first.
+    pub(super) motions: Vec<String>,
+    /// Changes that stabilise the loop.
+    pub(super) remedies: StabilisingChanges,
+    /// These in words, with a shorter period.
+    pub(super) help: String,
+}
+
 impl<M: PlantModel> Loop<M> {
-    /// Fails if the loop is unstable without imperfections or its numbers are invalid, before any work.
-    pub(super) fn check(&self) -> Result<(), AdviseError> {
+    /// The loop as one that is unstable without imperfections, if it is; fails if its numbers are invalid, before any work.
+    pub(super) fn unstable(&self) -> Result<Option<UnstableLoop>, AdviseError> {
         self.check_period()?;
         let (timed, none) = (&self.timed, self.timed.ideal());
         let stated = timed.stated().map_err(LoopError::from)?;
@@ -25,26 +38,33 @@ impl<M: PlantModel> Loop<M> {
             }
             if let LinearLoopError::Size { .. } = error {
                 let (name, value) = ("loop.latency", self.control.latency);
+                if value > MOST_PERIODS * self.control.period {
+                    let period = self.control.period;
+                    return Err(AdviseError::ExcessiveLatency { seconds: value, period });
+                }
                 let allowed = "at most 290 periods, 90 with jitter or losses, and 20 with a record and losses";
                 return Err(AdviseError::Value { name, value, allowed });
             }
             return Err(LoopError::from(error).into());
         }
         let gains = [self.units.gains[0], self.units.gains[1]];
-        let Some(modes) = timed.unstable_modes().map_err(LoopError::from)? else { return Ok(()) };
+        let Some(motions) = timed.unstable_modes().map_err(LoopError::from)? else {
+            return Ok(None);
+        };
         if timed.settles(&stated) {
-            let remedies = self.stabilising_changes(&none).sentence(gains);
+            let remedies = self.stabilising_changes(&none);
             let help = format!(
-                "it is stable with the stated imperfections, but only in a stability window that less latency leaves: do not rely on it. Without the latency: {remedies}"
+                "It is stable with the stated imperfections, but only in a stability window that less latency leaves: do not rely on it. Without the latency: {}",
+                remedies.sentence(gains)
             );
-            return Err(AdviseError::Unstable { modes, help });
+            return Ok(Some(UnstableLoop { motions, remedies, help }));
         }
         let remedies = self.stabilising_changes(&stated);
         let shorter = self.stable_period().map_or_else(String::new, |period| {
             format!(" It is stable with a period of {} s.", rounded_down(period))
         });
         let help = format!("{}{shorter}", remedies.sentence(gains));
-        Err(AdviseError::Unstable { modes, help })
+        Ok(Some(UnstableLoop { motions, remedies, help }))
     }
 
     /// Fails if the period is too short or too long for the motions of the loop.

@@ -231,7 +231,13 @@ fn timed(
         missing: MissingCommand::Hold,
         record: control.record.clone(),
     };
-    Ok(TimedLoop { linear, timing, names_states: false, critical_latency: None })
+    Ok(TimedLoop {
+        linear,
+        timing,
+        names_states: false,
+        critical_latency: None,
+        is_near_neutral: false,
+    })
 }
 
 fn form(LqrWeights { position, velocity, command }: LqrWeights) -> Matrix {

@@ -5,6 +5,7 @@ use libration_report::notation::number;
 use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 use libration_report::report;
+use libration_report::verdict::Outcome;
 
 use super::advice::{Advice, LoopAdvice};
 use super::budget::Budget;
@@ -18,7 +19,10 @@ pub fn page(advice: &Advice) -> String {
     let is_too_costly = |own: &LoopAdvice| own.exceeds_tolerated_cost(&advice.tolerance);
     let title = match &advice.looped {
         None => "The cheapest integrator and its step",
-        Some(own) => title(own.combined.growth, is_too_costly(own)),
+        Some(_) if advice.chosen().is_none() && advice.verdict.outcome == Outcome::Exceeds => {
+            "The loop is stable, but no integrator keeps the tolerance"
+        }
+        Some(_) => title(advice.verdict.outcome),
     };
     let mut page = Page { title: title.into(), ..Page::default() };
     page.answer.clone_from(&advice.answer);
@@ -56,6 +60,11 @@ pub fn page(advice: &Advice) -> String {
 }
 
 fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&StabilityMap>) {
+    if looped.budgets.is_empty() {
+        // An unstable loop has no limits, but a map of what stabilises it.
+        map.into_iter().for_each(|map| page.figure(figure(map)));
+        return;
+    }
     page.heading("Budget of each imperfection");
     page.paragraph(format!(
         "{}; sampled every {} s; a constant {} of {} {} holds the operating point. At a limit the loop, in exact steps of a \
@@ -93,16 +102,18 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&StabilityMap>) {
         Cell::rounded(combined.growth.exp_m1(), 4),
         "exact: E[M ⊗ M]",
     );
-    let margin = combined
-        .margin
-        .map_or_else(|| Cell::absent("none found"), |margin| Cell::rounded(margin, 4));
+    let margin =
+        combined.margin.map_or_else(|| Cell::absent("none found"), |margin| cut(margin).into());
     line("largest common factor of all imperfections", margin, "exact, in proportion");
+    let infinite = || Cell::absent("infinite");
     line(
         "cost of the ideal loop",
-        Cell::rounded(combined.ideal_cost, 6),
+        match combined.ideal_cost.is_finite() {
+            true => Cell::rounded(combined.ideal_cost, 6),
+            false => infinite(),
+        },
         "exact: Lyapunov equation",
     );
-    let infinite = || Cell::absent("infinite");
     line(
         "cost with all imperfections",
         combined.cost.map_or_else(infinite, |cost| Cell::rounded(cost, 6)),
@@ -129,7 +140,7 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&StabilityMap>) {
     if let Some(returns) = &combined.region_of_attraction {
         line(
             "largest distance of return",
-            Cell::rounded(returns.up_to, 4),
+            cut(returns.up_to).into(),
             &format!(
                 "simulated up to {}: of {} starts at a distance of {}, {} return",
                 number(returns.tried_up_to, 3),

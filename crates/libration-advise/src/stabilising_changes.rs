@@ -10,6 +10,10 @@ use super::timed_loop::TimedLoop;
 /// The smallest single changes that stabilise a loop; none if no change of the kind was found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct StabilisingChanges {
+    /// The factor of all gains below zero that is nearest to −1; −1 if the opposite sign alone stabilises the loop.
+    pub opposite_factor: Option<f64>,
+    /// The gains of position and velocity with that factor, in the units of the loop.
+    pub opposite_gains: Option<[f64; 2]>,
     /// The factor of all gains nearest to 1.
     pub gain_factor: Option<f64>,
     /// That factor in few digits, with which the loop is stable too.
@@ -29,6 +33,9 @@ const PER_OCTAVE: i32 = 8;
 
 /// Tried octaves of smaller and of larger gains.
 const OCTAVES: [i32; 2] = [10, 5];
+
+/// Octaves of gains of the opposite sign that are tried: its size is right more often than its sign.
+const SIGN_OCTAVES: i32 = 4;
 
 /// Number of tried latencies.
 const SHARES: u32 = 64;
@@ -55,6 +62,16 @@ impl TimedLoop {
         let gain_factor = change(1.0, octaves(down, -1.0), amplified)
             .or_else(|| change(1.0, octaves(up, 1.0), amplified))
             .map(|[_, stable]| stable);
+        // The commonest error of a loop that is unstable without imperfections is the sign of its feedback.
+        let signs = match (self.settles(&self.ideal()), gain_factor) {
+            (true, _) => 0,
+            (false, Some(_)) => 1,
+            (false, None) => SIGN_OCTAVES,
+        };
+        let opposite_factor = (0..signs)
+            .flat_map(|octave| [-octave, octave])
+            .map(|octave| -f64::from(octave).exp2())
+            .find(|factor| amplified(*factor));
         let step = self.period() * (1.0 + stated.skew);
         let channels = || stated.input_latency.iter().chain(&stated.output_latency);
         let longest = channels().map(|latency| latency.steps()).fold(0.0, f64::max);
@@ -78,7 +95,15 @@ impl TimedLoop {
             few.into_iter().find(|factor| amplified(*factor)).unwrap_or(end)
         });
         let inner = self.linear.controllers().periods() > 1;
-        StabilisingChanges { gain_factor, shown_factor, gains: None, inner, latency }
+        StabilisingChanges {
+            opposite_factor,
+            opposite_gains: None,
+            gain_factor,
+            shown_factor,
+            gains: None,
+            inner,
+            latency,
+        }
     }
 
     /// Whether second moments decay by more than rounding; false if the loop is too large to analyse.
@@ -91,11 +116,12 @@ impl<M: PlantModel> Loop<M> {
     /// The changes that stabilise the loop with the imperfections `stated`, with the gains in the units of the request.
     pub(super) fn stabilising_changes(&self, stated: &LoopTiming) -> StabilisingChanges {
         let changes = self.timed.stabilising_changes(stated);
-        let gains = changes.shown_factor.map(|factor| {
+        let times = |factor: f64| {
             let Feedback { position, velocity } = self.given_gains();
             [factor * position, factor * velocity]
-        });
-        StabilisingChanges { gains, ..changes }
+        };
+        let opposite_gains = changes.opposite_factor.map(times);
+        StabilisingChanges { gains: changes.shown_factor.map(times), opposite_gains, ..changes }
     }
 
     /// The longest shorter period with which the loop and the ideal loop are stable.
@@ -150,17 +176,38 @@ pub(super) fn rounded_down(x: f64) -> f64 {
 impl StabilisingChanges {
     /// The changes in words: of the gains, and of the latency.
     pub(super) fn changes(&self, gain_units: [&str; 2]) -> Vec<String> {
-        let gains = self.shown_factor.map(|factor| match self.gains {
-            Some([position, velocity]) => format!(
-                "all gains times {factor} (K_p = {position:.6} {}, K_d = {velocity:.6} {})",
-                gain_units[0], gain_units[1]
-            ),
-            None if self.inner => format!("all gains of the inner controller times {factor}"),
-            None => format!("all gains times {factor}"),
+        let of = if self.inner { " of the inner controller" } else { "" };
+        let shown = |gains: Option<[f64; 2]>| {
+            gains.map_or_else(String::new, |[position, velocity]| {
+                let [of_position, of_velocity] = gain_units;
+                format!(" (K_p = {position:.6} {of_position}, K_d = {velocity:.6} {of_velocity})")
+            })
+        };
+        let opposite = self.opposite_factor.map(|factor| {
+            let times = if factor == -1.0 { String::new() } else { format!(", times {}", -factor) };
+            format!("the opposite sign of all gains{of}{times}{}", shown(self.opposite_gains))
         });
+        let gains = self
+            .shown_factor
+            .map(|factor| format!("all gains{of} times {factor}{}", shown(self.gains)));
         let latency =
             self.latency.map(|latency| format!("a latency of at most {} s", rounded_down(latency)));
-        gains.into_iter().chain(latency).collect()
+        opposite.into_iter().chain(gains).chain(latency).collect()
+    }
+
+    /// How many of the changes are limits, at which the loop has no margin.
+    fn limits(&self) -> usize {
+        usize::from(self.shown_factor.is_some()) + usize::from(self.latency.is_some())
+    }
+
+    /// What the changes leave of the loop's margin, as the end of a sentence.
+    pub(super) fn caveat(&self) -> &'static str {
+        match (self.limits(), self.opposite_factor) {
+            (0, _) => "",
+            (1, None) => "; at this limit it has no margin",
+            (1, Some(_)) => "; at the last it has no margin",
+            _ => "; at these limits it has no margin",
+        }
     }
 
     /// The changes in a sentence.
@@ -168,16 +215,12 @@ impl StabilisingChanges {
         let all = self.changes(gain_units);
         match all.is_empty() {
             true => format!(
-                "No multiple of {} from 2^-{} to 2^{}, and no smaller latency, stabilises it at this period.",
+                "No multiple of {} from 2^-{} to 2^{}, no opposite sign, and no smaller latency, stabilises it at this period.",
                 if self.inner { "the gains of the inner controller" } else { "its gains" },
                 OCTAVES[0],
                 OCTAVES[1]
             ),
-            false => format!(
-                "It is stable with {}; at {} it has no margin.",
-                all.join(", or with "),
-                if all.len() > 1 { "these limits" } else { "this limit" }
-            ),
+            false => format!("It is stable with {}{}.", all.join(", or with "), self.caveat()),
         }
     }
 }

@@ -3,7 +3,7 @@
 use libration::linear::{LatencyWindow, LinearLoopError};
 use serde::Serialize;
 
-use super::budget::rounded;
+use super::budget::{rounded_down, rounded_up};
 use super::request::{Measure, Tolerance};
 use super::subject::Subject;
 use super::timed_loop::TimedLoop;
@@ -28,8 +28,8 @@ impl StabilityWindow {
     /// The ends in words, without the unit.
     pub fn in_words(&self) -> String {
         match self.to {
-            Some(to) => format!("from {} to {}", rounded(self.from), rounded(to)),
-            None => format!("from {}", rounded(self.from)),
+            Some(to) => format!("from {} to {}", rounded_up(self.from), rounded_down(to)),
+            None => format!("from {}", rounded_up(self.from)),
         }
     }
 }

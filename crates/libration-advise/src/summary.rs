@@ -3,7 +3,7 @@
 use libration_report::notation::cut_off;
 
 use super::advice::{Advice, LoopAdvice, ToleranceAnswer};
-use super::budget::{Budget, rounded};
+use super::budget::{Budget, rounded_up};
 use super::combined_effect::CombinedEffect;
 use super::control::Control;
 use super::imperfection::Imperfection;
@@ -68,11 +68,13 @@ pub(super) fn describe_loop(looped: &LoopAdvice, tolerance: &ToleranceAnswer) ->
         _ if let Some((budget, window)) = regained => describe_window(budget, window),
         (Some(margin), _) => {
             format!(
-                "The loop is stable with the stated imperfections, also if all of them are {margin:.3} times as large."
+                "The loop is stable with the stated imperfections, also if all of them are {} times as large.",
+                cut_off(margin, 4)
             )
         }
         (None, Some(tried)) => format!(
-            "The loop is stable with the stated imperfections, also if all of them are at least {tried:.3} times as large, the most that was tried."
+            "The loop is stable with the stated imperfections, also if all of them are at least {} times as large, the most that was tried.",
+            cut_off(tried, 4)
         ),
         (None, None) => "The loop is stable. The request states no imperfections.".to_owned(),
     };
@@ -140,7 +142,7 @@ pub(super) fn percent(share: f64) -> String {
 /// A loop that is stable only in a separate window, in words.
 pub(super) fn describe_window(budget: &Budget, window: StabilityWindow) -> String {
     let (kind, unit, end) = (noun(budget.kind), budget.unit, window.in_words());
-    let limit = rounded(budget.stable_up_to.unwrap_or(0.0));
+    let limit = rounded_up(budget.stable_up_to.unwrap_or(0.0));
     format!(
         "The loop is stable with the stated imperfections, but only in a separate stability window: {kind} alone is stable {end} {unit}, \
          and unstable below that from {limit} {unit} on. Do not rely on it: less {kind} destabilises the loop, and so does more."
@@ -163,8 +165,9 @@ pub(super) fn loop_warnings<M: PlantModel>(
         if back < all {
             warnings.push(format!(
                 "the simulation contradicts the linearisation: of {all} starts at a distance of {} from the operating point only {back} \
-                 return; all return from up to {:.4}",
-                returns.deviation, returns.up_to
+                 return; all return from up to {}",
+                returns.deviation,
+                cut_off(returns.up_to, 4)
             ));
         }
     }

@@ -2,7 +2,8 @@
 
 use libration::control::{Jitter, Latency};
 use libration::linear::{
-    Channels, LatencyWindow, LinearLoop, LinearLoopError, LoopMode, LoopTiming, MissingCommand,
+    Channels, LatencyWindow, LinearLoop, LinearLoopError, LoopMode, LoopStability, LoopTiming,
+    MissingCommand,
 };
 
 use super::imperfection::Imperfection;
@@ -40,6 +41,8 @@ pub(super) struct TimedLoop {
     pub(super) names_states: bool,
     /// The critical latency, where it is known exactly.
     pub(super) critical_latency: Option<CriticalLatency>,
+    /// Whether a motion changes by less than rounding in each period, so that growth alone does not decide.
+    pub(super) is_near_neutral: bool,
 }
 
 impl TimedLoop {
@@ -220,9 +223,15 @@ impl TimedLoop {
     /// Whether second moments decay.
     pub(super) fn decays(&self, with: &LoopTiming) -> Result<bool, LinearLoopError> {
         match self.replayed(with.jitter.rms()) {
+            _ if self.is_near_neutral => Ok(self.stability(with)?.is_stable()),
             Some(steps) => Ok(self.linear.recorded_growth(with, &steps)? < 0.0),
             None => self.linear.is_stable(with),
         }
+    }
+
+    /// Whether the loop is stable, by the function that decides for all commands.
+    pub(super) fn stability(&self, with: &LoopTiming) -> Result<LoopStability, LinearLoopError> {
+        self.linear.decided(LoopStability::of_growth(self.growth(with)?), with)
     }
 
     /// The stationary cost of the loop; infinite where second moments grow.

@@ -2,8 +2,8 @@
 
 use num_complex::Complex64;
 
-use crate::plant_modes::{NOTHING, size_of, smallest_singular};
-use crate::{LinearPlant, Matrix, PlantMode};
+use crate::controllability::BalancedPair;
+use crate::{LinearPlant, PlantMode};
 
 /// A mode of a plant with its eigenvalue, and how well inputs reach it and outputs show it.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,22 +14,40 @@ pub struct ModeDetails {
     pub value: Complex64,
     /// The eigenvector, of largest entry 1.
     pub shape: Vec<Complex64>,
-    /// The smallest singular value of `[λ − A, B]` relative to the size of `A`: 0 if inputs do not reach all motions with this
-    /// eigenvalue.
+    /// The relative change of the entries of `A` and `B` up to which inputs reach all motions with this eigenvalue: 0 if they do not
+    /// reach all of them as they are, at most 1.
     pub controllability: f64,
-    /// The same of `[λ − Aᵀ, Cᵀ]`: 0 if outputs do not show all motions with this eigenvalue.
+    /// The same of `A` and `C`, and of motions that outputs show.
     pub observability: f64,
+    /// The change that is rounding.
+    rounding: f64,
 }
+
+/// Change of a plant below which a mode is reached or shown weakly: models are not known to more digits.
+const WEAK: f64 = 1e-6;
+
+/// Roundings of the entries of a plant, for each state, that a change by rounding may be: eigenvalues have as many.
+const ROUNDINGS: f64 = 64.0;
 
 impl ModeDetails {
     /// Whether inputs reach all motions with this eigenvalue.
     pub fn is_controllable(&self) -> bool {
-        self.controllability >= NOTHING
+        self.controllability > self.rounding
+    }
+
+    /// Whether inputs reach all motions with this eigenvalue, but a change of the plant by less than 10⁻⁶ of its numbers may end that.
+    pub fn is_weakly_controllable(&self) -> bool {
+        self.is_controllable() && self.controllability < WEAK
     }
 
     /// Whether outputs show all motions with this eigenvalue.
     pub fn is_observable(&self) -> bool {
-        self.observability >= NOTHING
+        self.observability > self.rounding
+    }
+
+    /// Whether outputs show all motions with this eigenvalue, but a change of the plant by less than 10⁻⁶ of its numbers may end that.
+    pub fn is_weakly_observable(&self) -> bool {
+        self.is_observable() && self.observability < WEAK
     }
 
     /// The natural frequency `|λ|` in rad/s; of a mode without oscillation its rate.
@@ -55,11 +73,9 @@ impl LinearPlant {
     ///
     /// Controllability is that of the test of Popov, Belevitch and Hautus, as for [`LinearPlant::unreachable_mode`].
     pub fn mode_details(&self) -> Vec<ModeDetails> {
-        let size = size_of(&self.a);
-        let least = |a: &Matrix, b: &Matrix, value| {
-            smallest_singular(a, b, value).map_or(0.0, |(least, _)| least / size)
-        };
-        let (dual, shown) = (self.a.transposed(), self.c.transposed());
+        let driven = BalancedPair::new(&self.a, &self.b);
+        let shown = BalancedPair::new(&self.a.transposed(), &self.c.transposed());
+        let rounding = ROUNDINGS * self.states.len() as f64 * f64::EPSILON;
         let shapes = self.shapes();
         let named = self.name_shapes(&shapes);
         let details =
@@ -67,8 +83,9 @@ impl LinearPlant {
                 mode: self.mode(value, named),
                 value: self.rate_of(value),
                 shape,
-                controllability: least(&self.a, &self.b, value),
-                observability: least(&dual, &shown, value),
+                controllability: driven.controllability(value),
+                observability: shown.controllability(value),
+                rounding,
             };
         shapes.into_iter().zip(&named).map(details).collect()
     }
@@ -77,6 +94,7 @@ impl LinearPlant {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Matrix;
 
     #[test]
     fn a_mode_that_no_input_reaches_or_no_output_shows_is_marked_also_if_it_decays() {

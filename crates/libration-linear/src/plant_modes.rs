@@ -4,6 +4,7 @@ use core::f64::consts::TAU;
 
 use num_complex::Complex64;
 
+use crate::controllability::BalancedPair;
 use crate::{LinearPlant, Matrix, Signal, eigenvalues, eigenvector, solve};
 
 /// A mode of a plant.
@@ -30,8 +31,9 @@ impl core::fmt::Display for PlantMode {
     }
 }
 
-/// Part of the size of a matrix below which a singular value counts as zero. Its square is a rounding.
-pub(crate) const NOTHING: f64 = 3e-8;
+/// Relative change of the entries of a plant below which a mode that inputs reach counts as one out of reach: designs have no more
+/// digits.
+const NOTHING: f64 = 3e-8;
 
 /// Part of the size of the plant below which a growth rate counts as zero: some roundings of its eigenvalues.
 const NEUTRAL: f64 = 1e-12;
@@ -71,14 +73,17 @@ impl LinearPlant {
     fn hidden_mode(&self, a: &Matrix, b: &Matrix) -> Option<PlantMode> {
         let values = eigenvalues(a)?;
         let size = size_of(a);
+        let pair = BalancedPair::new(a, b);
         let grows = |value: &&Complex64| match self.sampling_period {
             None => value.re >= -NEUTRAL * size,
             Some(_) => value.norm() >= 1.0 - NEUTRAL,
         };
         values.iter().filter(grows).find_map(|&value| {
-            let (least, vector) = smallest_singular(a, b, value)?;
-            // Inputs in other units must not look like none.
-            (least < NOTHING * size).then(|| self.mode(value, &vector))
+            let is_hidden = pair.controllability(value) < NOTHING;
+            is_hidden
+                .then(|| left_vector(a, b, value))
+                .flatten()
+                .map(|vector| self.mode(value, &vector))
         })
     }
 
@@ -119,12 +124,8 @@ pub(crate) fn largest(signals: &[Signal], shape: &[Complex64]) -> Vec<(String, f
     named
 }
 
-/// The smallest singular value of `[λ − A, B]`, with each column of `B` scaled to the size of `A`, and its left vector.
-pub(crate) fn smallest_singular(
-    a: &Matrix,
-    b: &Matrix,
-    value: Complex64,
-) -> Option<(f64, Vec<Complex64>)> {
+/// The left vector of the smallest singular value of `[λ − A, B]`, with each column of `B` scaled to the size of `A`.
+fn left_vector(a: &Matrix, b: &Matrix, value: Complex64) -> Option<Vec<Complex64>> {
     let n = a.rows();
     let size = size_of(a);
     let shifted = |i: usize, j: usize| {
@@ -147,20 +148,16 @@ pub(crate) fn smallest_singular(
         (0..n).map(|i| (0..n).map(|j| square(i, j)).collect()).collect();
     let mut vector: Vec<Complex64> =
         (0..n).map(|i| Complex64::from(1.0 / (1.0 + i as f64))).collect();
-    let mut least = f64::INFINITY;
     for _ in 0..4 {
         let equations = rows.iter().zip(&vector).map(|(row, &x)| [row.as_slice(), &[x]].concat());
         let next = solve(equations.collect(), |x: Complex64| x.norm());
         let norm = next.iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt();
-        let before = vector.iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt();
         if !(norm.is_finite() && norm > 0.0) {
             return None;
         }
-        least = before / norm;
         vector = next.into_iter().map(|x| x / norm).collect();
     }
-    let square = (least - size * size * f64::EPSILON).max(0.0);
-    Some((square.sqrt(), vector))
+    Some(vector)
 }
 
 #[cfg(test)]

@@ -50,6 +50,14 @@ pub fn rate(text: &str) -> Option<f64> {
     text.parse().ok().or_else(|| of_power(text, &RATES))
 }
 
+/// The error of a latency of so many seconds that is far too long for a loop with this period: milliseconds without their unit, as a
+/// rule.
+pub fn excessive_latency(seconds: f64, period: f64) -> String {
+    // Three digits are enough to see that it is far too much.
+    let periods: f64 = format!("{:.2e}", seconds / period).parse().unwrap_or(f64::INFINITY);
+    format!("{seconds} is {seconds} s, {periods} periods; did you mean {seconds}ms?")
+}
+
 /// A number with a unit that is a power of ten: the decimal point moves, so that `33.3ms` has the bits of `0.0333`.
 fn of_power(text: &str, units: &[(&str, i32)]) -> Option<f64> {
     units.iter().find_map(|(unit, power)| {
@@ -167,6 +175,17 @@ mod tests {
             (rate("500"), rate("0.5 kHz"), rate("2Hz")),
             (Some(500.0), Some(500.0), Some(2.0))
         );
+    }
+
+    #[test]
+    fn a_latency_in_seconds_that_was_meant_in_milliseconds_is_named_with_its_unit() {
+        for (seconds, period, text) in [
+            (12.0, 0.005, "12 is 12 s, 2400 periods; did you mean 12ms?"),
+            (2.5, 0.001, "2.5 is 2.5 s, 2500 periods; did you mean 2.5ms?"),
+            (40.0, 0.03, "40 is 40 s, 1330 periods; did you mean 40ms?"),
+        ] {
+            assert_eq!(excessive_latency(seconds, period), text);
+        }
     }
 
     #[test]

@@ -43,6 +43,25 @@ pub fn suggest<'a>(
     }
 }
 
+/// The laws of jitter and skew, each with its other names in libraries and textbooks.
+const LAWS: [(&str, &[&str]); 2] = [
+    ("gaussian", &["normal", "norm", "gauss", "randn", "n"]),
+    ("uniform", &["rectangular", "rect", "flat", "rand", "equal", "u"]),
+];
+
+/// The law that is meant by another name: the same thing comes before one that is spelled alike.
+pub fn law_meant(name: &str) -> Option<&'static str> {
+    let lower = name.to_lowercase();
+    let same = LAWS.iter().find(|(_, others)| others.contains(&&*lower)).map(|(law, _)| *law);
+    same.or_else(|| nearest(name, LAWS.map(|(law, _)| law)))
+}
+
+/// Help for an unknown law.
+pub fn suggest_law(name: &str) -> String {
+    let all = "the laws are `gaussian`, `uniform`";
+    law_meant(name).map_or_else(|| all.to_owned(), |law| format!("did you mean `{law}`? {all}"))
+}
+
 /// The suggestion at the end of a message about an unknown system or parameter; empty without a similar name.
 pub fn catalog_help(error: &CatalogError) -> String {
     let near = match error {
@@ -75,6 +94,23 @@ mod tests {
         }
         assert_eq!(nearest("temperature", ["t", "x"]), None);
         assert_eq!(nearest("T", ["t", "x"]), Some("t"));
+    }
+
+    #[test]
+    fn a_law_by_another_name_is_the_law_that_it_is() {
+        for (name, law) in [
+            ("normal", Some("gaussian")),
+            ("Normal", Some("gaussian")),
+            ("gauss", Some("gaussian")),
+            ("norm", Some("gaussian")),
+            ("gausian", Some("gaussian")),
+            ("rectangular", Some("uniform")),
+            ("unifrom", Some("uniform")),
+            ("flat", Some("uniform")),
+            ("poisson", None),
+        ] {
+            assert_eq!(law_meant(name), law, "{name}");
+        }
     }
 
     #[test]

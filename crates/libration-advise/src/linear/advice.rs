@@ -1,7 +1,9 @@
 //! The results of advice on loops around linear plants.
 
-use libration::linear::{DiscreteController, Matrix, Signal};
+use libration::linear::{DiscreteController, LoopStability, Matrix, Signal, StabilityOutcome};
 use libration::live::Setting;
+use libration_analyze::linear_analysis::loop_verdict;
+use libration_report::verdict::{Outcome, Verdict};
 use libration_settings::linear_loop::OperatingPoint;
 use serde::{Serialize, Serializer};
 
@@ -10,12 +12,18 @@ use crate::budget::{Budget, FirstFailure};
 use crate::combined_effect::SimulatedCost;
 use crate::stabilising_changes::StabilisingChanges;
 use crate::stability_map::StabilityMap;
+use crate::summary::percent;
 
 /// The advice on a loop around a linear plant; the fields are the keys of `advise --json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct LinearAdvice {
     /// The answer in a few sentences.
     pub answer: String,
+    /// Whether the loop is stable within the tolerance of its cost.
+    pub verdict: Verdict,
+    /// The motions that do not decay without imperfections, in words, fastest first; empty if the loop is stable without them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub unstable_motions: Vec<String>,
     /// The warnings, most urgent first.
     pub warnings: Vec<String>,
     /// The states of the plant, those of lags and filters last.
@@ -58,7 +66,8 @@ pub struct LinearAdvice {
     pub margin: Option<f64>,
     /// The largest tried common factor; none without stated imperfections, or if the loop is unstable.
     pub margin_tried_up_to: Option<f64>,
-    /// The cost of the ideal loop, per second under the noise of the plant and its measurements.
+    /// The cost of the ideal loop, per second under the noise of the plant and its measurements; infinite, `null` in JSON, if it is
+    /// unstable.
     pub ideal_cost: f64,
     /// The cost with all imperfections; none if it is infinite.
     pub cost: Option<f64>,
@@ -140,9 +149,46 @@ const COSTLY: f64 = 0.01;
 impl LinearAdvice {
     /// Whether the loop is stable with the stated imperfections and missed deadlines, its cost is tolerated and the simulation agrees.
     pub fn holds(&self) -> bool {
-        let agrees = self.simulated.is_none_or(|simulated| simulated.agrees());
-        let misses = self.deadline_misses.as_ref().is_none_or(DeadlineMisses::holds);
-        self.growth < 0.0 && !self.exceeds_tolerated_cost() && agrees && misses
+        self.verdict.is_good()
+    }
+
+    /// The verdict on a loop of this stability with the stated imperfections.
+    pub(super) fn judged(&self, stated: &LoopStability) -> Verdict {
+        let of_loop = loop_verdict(stated);
+        let misses = self.deadline_misses.as_ref();
+        let verdict = match () {
+            () if !self.unstable_motions.is_empty() => match stated.outcome {
+                StabilityOutcome::Undecided => Verdict::unknown(self.unstable_motions.join("; ")),
+                _ => Verdict::new(
+                    Outcome::Unstable,
+                    format!("without imperfections {}", self.unstable_motions.join("; ")),
+                ),
+            },
+            () if !of_loop.is_good() => of_loop,
+            () if let Some(simulated) = self.simulated.filter(|own| !own.agrees()) => {
+                Verdict::unknown(format!(
+                    "the simulated cost is {:.5e} ± {:.1e}, the predicted one {:.5e}",
+                    simulated.cost, simulated.error, simulated.predicted
+                ))
+            }
+            () if let Some(misses) = misses.filter(|misses| !misses.holds()) => misses.verdict(),
+            () if self.exceeds_tolerated_cost() => Verdict::new(
+                Outcome::Exceeds,
+                format!(
+                    "cost {} that of the ideal loop, tolerance {} %",
+                    self.cost_increase.map_or("infinitely above".into(), |rise| format!(
+                        "{} % above",
+                        percent(rise)
+                    )),
+                    percent(self.cost_tolerance.unwrap_or_default())
+                ),
+            ),
+            () => of_loop,
+        };
+        match self.simulated {
+            None if verdict.is_good() => verdict.without("a simulation of the loop"),
+            _ => verdict,
+        }
     }
 
     /// Whether a controller that is designed for the stated timing is worth its work: the imperfections cost more than 1 %.
@@ -152,7 +198,12 @@ impl LinearAdvice {
 
     /// The words for a deviation that is not known.
     pub fn no_deviation(&self) -> &'static str {
-        if self.growth >= 0.0 { "infinite" } else { "unknown" }
+        if self.is_unstable() { "infinite" } else { "unknown" }
+    }
+
+    /// Whether the loop is not known to be stable, with or without the stated imperfections.
+    pub fn is_unstable(&self) -> bool {
+        self.growth >= 0.0 || !self.unstable_motions.is_empty()
     }
 
     /// Whether the cost exceeds its tolerance.

@@ -1,16 +1,18 @@
 //! Advice on loops around linear plants.
 
-use libration::linear::Signal;
+use libration::linear::{LoopStability, Signal};
+use libration_report::verdict::Verdict;
 use libration_settings::linear_loop::Part;
 use libration_work::Work;
 
 use super::live_setting::live_setting;
 use super::margins::margins;
 use super::{Deviation, LinearAdvice, LinearRequest, SignalName};
-use crate::AdviseError;
 use crate::imperfection::Imperfection;
 use crate::loops::LoopError;
 use crate::request::{Measure, Tolerance};
+use crate::stability_map::StabilityMap;
+use crate::{AdviseError, Budget};
 
 /// Advises on a loop around a linear plant.
 ///
@@ -23,9 +25,8 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
     if let Some(why) = request.redesign_obstacle().filter(|_| request.redesign) {
         return Err(AdviseError::Redesign(why));
     }
-    if let Some(modes) = timed.unstable_modes().map_err(LoopError::from)? {
-        let help = timed.stabilising_changes(&ideal).sentence(["", ""]);
-        return Err(AdviseError::Unstable { modes, help });
+    if let Some(motions) = timed.unstable_modes().map_err(LoopError::from)? {
+        return advise_unstable(work, request, motions);
     }
     // Refused before any work, if it is impossible.
     let redesign = if request.redesign { Some(request.redesign()?) } else { None };
@@ -37,8 +38,8 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
     let command = |_: &_| format!("{} --json", request.invocation);
     let budgets = timed.budgets(work, &subjects, tolerance, &command)?;
     let fails_first = timed.fails_first(&subjects, &budgets).map_err(LoopError::from)?;
-    let growth = timed.growth(&stated).map_err(LoopError::from)?;
-    let stable = growth < 0.0;
+    let stability = timed.stability(&stated).map_err(LoopError::from)?;
+    let stable = stability.is_stable();
     let ideal_cost = timed.cost(&ideal).map_err(LoopError::from)?;
     let cost = match stable {
         true => timed.cost(&stated).map_err(LoopError::from)?,
@@ -52,37 +53,11 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
         }
         false => (None, None),
     };
+    let growth = stability.growth;
     let simulated = if stable { request.simulated_cost(work, growth)? } else { None };
-    let remedies = (!stable).then(|| timed.stabilising_changes(&stated));
-    let map = match request.map && request.timed.linear.plant().inputs.len() == 1 {
-        true => {
-            let limit = budgets.iter().find(|budget| budget.kind == Imperfection::Latency);
-            Some(timed.map(work, limit.and_then(|budget| budget.stable_up_to))?)
-        }
-        false => None,
-    };
+    let map = request.stability_map(work, &budgets)?;
     let redesign = redesign.map(|design| request.evaluated(work, &design, cost)).transpose()?;
-    let (plant, controllers) = (timed.linear.plant(), timed.linear.controllers());
-    let (plant_modes, part_modes) = request.modes();
-    let names = |signals: &[_]| signals.iter().map(SignalName::from).collect();
     let mut advice = LinearAdvice {
-        answer: String::new(),
-        warnings: Vec::new(),
-        states: names(&plant.states),
-        inputs: names(&plant.inputs),
-        outputs: names(&Part::read(&request.parts, &plant.outputs)),
-        operating_point: request.operating_point.clone(),
-        plant_modes,
-        part_modes,
-        controller: request.described_controller(),
-        gain: request.design.gain.clone(),
-        filter: request.design.filter.clone(),
-        controller_matrices: (controllers.periods() == 1).then(|| controllers.at(0).into()),
-        schedule: match controllers.periods() {
-            1 => Vec::new(),
-            periods => (0..periods).map(|k| controllers.at(k).into()).collect(),
-        },
-        period: timed.period(),
         chain: request.latency_chain(&budgets),
         margins: margins(&timed.linear, &stated)?,
         budgets,
@@ -93,23 +68,111 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
         ideal_cost,
         cost,
         cost_increase: cost.map(|cost| cost / ideal_cost - 1.0),
-        cost_tolerance: request.cost_tolerance,
         deviations: request.deviations(stable)?,
         simulated,
         deadline_misses: request.deadline_misses(&stated)?,
-        remedies,
+        remedies: (!stable).then(|| timed.stabilising_changes(&stated)),
         redesign,
-        repeat_command: request.invocation.clone(),
         map,
-        live: live_setting(request),
+        ..LinearAdvice::of_request(request)
     };
-    advice.warnings = advice.warnings_of();
-    advice.warnings.extend(request.stiffness_warning());
-    advice.answer = advice.summary();
+    advice.conclude(request, &stability);
     Ok(advice)
 }
 
+/// Advises on a loop that is not stable without imperfections: what grows, and what changes that. It has no limits.
+fn advise_unstable(
+    work: &Work<'_>,
+    request: &LinearRequest,
+    unstable_motions: Vec<String>,
+) -> Result<LinearAdvice, AdviseError> {
+    let timed = &request.timed;
+    let ideal = timed.ideal();
+    let stability = timed.stability(&ideal).map_err(LoopError::from)?;
+    let mut advice = LinearAdvice {
+        growth: stability.growth,
+        unstable_motions,
+        remedies: Some(timed.stabilising_changes(&ideal)),
+        map: request.stability_map(work, &[])?,
+        ..LinearAdvice::of_request(request)
+    };
+    advice.conclude(request, &stability);
+    Ok(advice)
+}
+
+impl LinearAdvice {
+    /// The plant and the controller of a request, without any result.
+    fn of_request(request: &LinearRequest) -> Self {
+        let timed = &request.timed;
+        let (plant, controllers) = (timed.linear.plant(), timed.linear.controllers());
+        let (plant_modes, part_modes) = request.modes();
+        let names = |signals: &[_]| signals.iter().map(SignalName::from).collect();
+        LinearAdvice {
+            answer: String::new(),
+            verdict: Verdict::unknown("not computed"),
+            unstable_motions: Vec::new(),
+            warnings: Vec::new(),
+            states: names(&plant.states),
+            inputs: names(&plant.inputs),
+            outputs: names(&Part::read(&request.parts, &plant.outputs)),
+            operating_point: request.operating_point.clone(),
+            plant_modes,
+            part_modes,
+            controller: request.described_controller(),
+            gain: request.design.gain.clone(),
+            filter: request.design.filter.clone(),
+            controller_matrices: (controllers.periods() == 1).then(|| controllers.at(0).into()),
+            schedule: match controllers.periods() {
+                1 => Vec::new(),
+                periods => (0..periods).map(|k| controllers.at(k).into()).collect(),
+            },
+            period: timed.period(),
+            budgets: Vec::new(),
+            fails_first: None,
+            chain: Vec::new(),
+            margins: Vec::new(),
+            growth: f64::NAN,
+            margin: None,
+            margin_tried_up_to: None,
+            ideal_cost: f64::INFINITY,
+            cost: None,
+            cost_increase: None,
+            cost_tolerance: request.cost_tolerance,
+            deviations: Vec::new(),
+            simulated: None,
+            deadline_misses: None,
+            remedies: None,
+            redesign: None,
+            repeat_command: request.invocation.clone(),
+            map: None,
+            live: live_setting(request),
+        }
+    }
+
+    /// Sets the verdict, the warnings and the answer.
+    fn conclude(&mut self, request: &LinearRequest, stability: &LoopStability) {
+        self.verdict = self.judged(stability);
+        self.warnings = self.warnings_of();
+        self.warnings.extend(request.stiffness_warning());
+        self.warnings.extend(request.hidden_modes_warning());
+        self.answer = self.summary();
+    }
+}
+
 impl LinearRequest {
+    /// The map of stability, if the request asks for it and the plant has one input.
+    fn stability_map(
+        &self,
+        work: &Work<'_>,
+        budgets: &[Budget],
+    ) -> Result<Option<StabilityMap>, AdviseError> {
+        if !self.map || self.timed.linear.plant().inputs.len() != 1 {
+            return Ok(None);
+        }
+        let limit = budgets.iter().find(|budget| budget.kind == Imperfection::Latency);
+        self.timed.map(work, limit.and_then(|budget| budget.stable_up_to)).map(Some)
+    }
+
     /// The controller in words, and what its design does not know.
     fn described_controller(&self) -> String {
         let mut text = self.design.description.clone();

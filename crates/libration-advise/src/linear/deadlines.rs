@@ -2,8 +2,9 @@
 
 use libration::linear::{
     LoopTiming, MissBounds, MissConstraint, MissingCommand, OverrunStrategy, PeriodOutcome,
-    RandomOverruns, Verdict,
+    RandomOverruns, Verdict as MissVerdict,
 };
+use libration_report::verdict::{Outcome, Verdict};
 use serde::Serialize;
 
 use super::LinearRequest;
@@ -186,9 +187,9 @@ impl MissRow {
             misses: constraint.misses(),
             window: constraint.window(),
             verdict: match found.verdict {
-                Verdict::Stable => STABLE,
-                Verdict::Unstable => UNSTABLE,
-                Verdict::Undecided => "undecided",
+                MissVerdict::Stable => STABLE,
+                MissVerdict::Unstable => UNSTABLE,
+                MissVerdict::Undecided => "undecided",
             },
             lower: found.lower,
             upper: found.upper,
@@ -218,6 +219,33 @@ impl DeadlineMisses {
     pub fn holds(&self) -> bool {
         let worst = self.worst_case.as_ref().is_none_or(|worst| worst.stated.verdict == STABLE);
         worst && self.random.as_ref().is_none_or(|random| random.growth < 0.0)
+    }
+
+    /// The verdict on what is stated: that of the worst sequence, or of random overruns where the worst sequence is stable.
+    pub(super) fn verdict(&self) -> Verdict {
+        let worst = self.worst_case.as_ref().map(|worst| &worst.stated);
+        match (worst, &self.random) {
+            (Some(row), _) if row.verdict == UNSTABLE => Verdict::new(
+                Outcome::Unstable,
+                format!(
+                    "with {} of any {} deadlines missed, motions grow by {:.5} per period",
+                    row.misses, row.window, row.lower
+                ),
+            ),
+            (_, Some(random)) if random.growth >= 0.0 => Verdict::new(
+                Outcome::Unstable,
+                format!(
+                    "with {} % of the jobs overrunning, second moments grow by {} % per period",
+                    percent(random.probability),
+                    percent(random.growth.exp_m1())
+                ),
+            ),
+            (Some(row), _) if row.verdict != STABLE => Verdict::unknown(format!(
+                "with {} of any {} deadlines missed, motions change by {:.5} to {:.5} per period",
+                row.misses, row.window, row.lower, row.upper
+            )),
+            _ => Verdict::new(Outcome::Stable, "with the stated missed deadlines"),
+        }
     }
 
     /// The verdicts in sentences.

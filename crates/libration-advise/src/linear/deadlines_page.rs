@@ -4,6 +4,7 @@ use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 
 use super::{LinearAdvice, RandomMisses, WorstCase};
+use crate::first_screen::cut;
 
 /// Appends the section; nothing if the request states no missed deadlines.
 pub(super) fn deadlines(page: &mut Page, advice: &LinearAdvice) {
@@ -54,8 +55,7 @@ fn worst_case(page: &mut Page, WorstCase { stated, tried, .. }: &WorstCase) {
 fn random_overruns(page: &mut Page, random: &RandomMisses, ideal_cost: f64) {
     let mut table = Table::new("random-overruns", &["quantity", "value", "method"]);
     let how = "exact: second moments of the jump system";
-    let limit =
-        random.stable_up_to.map_or_else(|| Cell::absent("above 63/64"), |x| Cell::rounded(x, 4));
+    let limit = random.stable_up_to.map_or_else(|| Cell::absent("above 63/64"), |x| cut(x).into());
     let cost = random.cost.map_or_else(|| Cell::absent("infinite"), |x| Cell::rounded(x, 6));
     for (what, value, how) in [
         ("probability that a job overruns", Cell::rounded(random.probability, 4), "stated"),

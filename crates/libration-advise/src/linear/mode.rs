@@ -1,7 +1,8 @@
 //! Modes of the plant, and of lags and filters.
 
 use libration::analysis::without_rounding;
-use libration::linear::{Complex64, LinearPlant, PlantMode};
+use libration::linear::{Complex64, LinearPlant, ModeDetails, PlantMode};
+use libration_report::notation::number;
 use serde::Serialize;
 
 use super::LinearRequest;
@@ -21,6 +22,37 @@ pub struct Mode {
 }
 
 impl LinearRequest {
+    /// Names the modes of the plant that the controller does not move, as a zero cancels their pole, or that it does not see.
+    pub(super) fn hidden_modes_warning(&self) -> Option<String> {
+        let is_single = self.plant.inputs.len() == 1 && self.plant.outputs.len() == 1;
+        let hidden = |mode: &ModeDetails| {
+            let [reached, shown] = [mode.controllability, mode.observability];
+            let is_reached = mode.is_controllable() && !mode.is_weakly_controllable();
+            let is_shown = mode.is_observable() && !mode.is_weakly_observable();
+            let why = match (is_single, is_reached, is_shown) {
+                (_, true, true) => return None,
+                (true, ..) => "a zero cancels its pole",
+                (false, false, _) => "no input reaches it",
+                (false, true, false) => "no output shows it",
+            };
+            let part = reached.min(shown);
+            let nearly = match mode.is_controllable() && mode.is_observable() {
+                true => format!(", to a relative {}", number(part, 2)),
+                false => String::new(),
+            };
+            let rate = number(mode.value.re, 4);
+            let turn = match mode.value.im {
+                0.0 => String::new(),
+                turn => format!(" ± {}i", number(turn, 4)),
+            };
+            Some(format!("{rate}{turn} 1/s ({why}{nearly})"))
+        };
+        let named: Vec<String> = self.plant.mode_details().iter().filter_map(hidden).collect();
+        (!named.is_empty()).then(|| {
+            format!("the controller does not move the modes of the plant at {}", named.join(", "))
+        })
+    }
+
     /// The modes of the plant, and those of its lags and filters in continuous time, whose states come last.
     ///
     /// In the order of signals (lags of inputs, plant, filters of outputs) the state matrix is block triangular: so both together

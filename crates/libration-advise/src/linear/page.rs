@@ -1,6 +1,6 @@
 //! Advice on loops around linear plants as an HTML page.
 
-use libration_report::notation::number;
+use libration_report::notation::{cut_off, cut_up, number};
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Cell, Table};
 use libration_report::report;
@@ -8,7 +8,7 @@ use libration_report::report;
 use super::deadlines_page::deadlines;
 use super::{ChainLink, DeadlineMisses, InputMargins, LinearAdvice, redesign_page};
 use crate::first_screen::{
-    budget_bars, budget_numbers, change, measure, reduce, simulated_cost, title,
+    budget_bars, budget_numbers, change, cut, measure, reduce, simulated_cost, title,
 };
 use crate::live_setting::{NO_LIVE_SECTION, shown};
 use crate::page::{budget_row, figure};
@@ -19,7 +19,7 @@ pub const NO_MARGINS: &str = "Gain and phase margins are not available for a cas
 
 /// The advice as an HTML page.
 pub fn page(advice: &LinearAdvice) -> String {
-    let title = title(advice.growth, advice.exceeds_tolerated_cost());
+    let title = title(advice.verdict.outcome);
     let mut page = Page { title: title.into(), ..Page::default() };
     page.answer.clone_from(&advice.answer);
     page.highlights = numbers(advice);
@@ -32,7 +32,12 @@ pub fn page(advice: &LinearAdvice) -> String {
     for warning in &advice.warnings {
         page.note(format!("Warning: {warning}."));
     }
-    budgets(&mut page, advice);
+    match &advice.map {
+        // An unstable loop has no limits, but a map of what stabilises it.
+        Some(map) if advice.budgets.is_empty() => page.figure(figure(map)),
+        _ if advice.budgets.is_empty() => {}
+        _ => budgets(&mut page, advice),
+    }
     chain(&mut page, advice);
     redesign_page::add(&mut page, advice);
     margins(&mut page, advice);
@@ -59,9 +64,9 @@ fn numbers(advice: &LinearAdvice) -> Vec<Highlight> {
     all.truncate(2);
     let tightest = InputMargins::tightest(&advice.margins);
     if let Some((own, phase)) = tightest.and_then(|own| Some((own, own.phase?))) {
-        let gain = own.gain_up.map(|most| format!("; gain up to {} times", number(most, 4)));
+        let gain = own.gain_up.map(|most| format!("; gain up to {} times", number(cut(most), 4)));
         all.push(Highlight {
-            value: format!("{}°", number(phase, 3)),
+            value: format!("{}°", number(cut_off(phase, 3), 3)),
             text: format!("phase margin at {}{}", own.input, gain.unwrap_or_default()),
         });
     }
@@ -72,7 +77,7 @@ fn numbers(advice: &LinearAdvice) -> Vec<Highlight> {
 /// What to do about the answer. What stabilises a loop that meets its deadlines may not do so beside missed ones.
 fn actions(advice: &LinearAdvice) -> Vec<String> {
     let mut actions = Vec::new();
-    let is_stable = advice.growth < 0.0;
+    let is_stable = !advice.is_unstable();
     let remedies = advice.remedies.filter(|_| !is_stable && advice.deadline_misses.is_none());
     actions.extend(remedies.as_ref().and_then(|remedies| change(remedies, ["", ""])));
     actions.extend(advice.exceeds_tolerated_cost().then(|| reduce(advice.margin)).flatten());
@@ -81,7 +86,7 @@ fn actions(advice: &LinearAdvice) -> Vec<String> {
             actions
                 .push("Use the redesigned controller below, which is ready to paste.".to_owned());
         }
-        None if advice.is_costly() && advice.schedule.is_empty() => actions.push(
+        None if is_stable && advice.is_costly() && advice.schedule.is_empty() => actions.push(
             "Add `--redesign`, with weights of a cost, for the controller of least cost under this timing."
                 .to_owned(),
         ),
@@ -179,14 +184,13 @@ pub(super) fn margins_table(name: &str, margins: &[InputMargins]) -> Table {
     let columns = ["input", "least gain", "most gain", "phase margin (°)", "crossover (Hz)"];
     let mut table = Table::new(name, &columns);
     for margins in margins {
-        let known =
-            |x: Option<f64>| x.map_or_else(|| Cell::absent("none"), |x| Cell::rounded(x, 4));
+        let known = |x: Option<f64>| x.map_or_else(|| Cell::absent("none"), Cell::from);
         table.push([
             margins.input.clone().into(),
-            known(margins.gain_down),
-            known(margins.gain_up),
-            known(margins.phase),
-            known(margins.crossover),
+            known(margins.gain_down.map(|x| cut_up(x, 4))),
+            known(margins.gain_up.map(cut)),
+            known(margins.phase.map(cut)),
+            margins.crossover.map_or_else(|| Cell::absent("none"), |x| Cell::rounded(x, 4)),
         ]);
     }
     table
@@ -197,7 +201,8 @@ fn together(page: &mut Page, advice: &LinearAdvice) {
     let mut table = Table::new("combined", &["quantity", "value", "method"]);
     let infinite = || Cell::absent("infinite");
     let rounded = |x: Option<f64>, digits| x.map_or_else(infinite, |x| Cell::rounded(x, digits));
-    let margin = advice.margin.map_or_else(|| Cell::absent("none found"), |x| Cell::rounded(x, 4));
+    let margin = advice.margin.map_or_else(|| Cell::absent("none found"), |x| cut(x).into());
+    let ideal = Some(advice.ideal_cost).filter(|cost| cost.is_finite());
     let lines = [
         (
             "growth of second moments per period",
@@ -205,7 +210,7 @@ fn together(page: &mut Page, advice: &LinearAdvice) {
             "exact: E[M ⊗ M]",
         ),
         ("largest common factor of all imperfections", margin, "exact, in proportion"),
-        ("cost of the ideal loop", Cell::rounded(advice.ideal_cost, 6), "exact: Lyapunov equation"),
+        ("cost of the ideal loop", rounded(ideal, 6), "exact: Lyapunov equation"),
         (
             "cost with all imperfections",
             rounded(advice.cost, 6),
@@ -229,6 +234,9 @@ fn together(page: &mut Page, advice: &LinearAdvice) {
         table.push(["predicted cost of this simulation".into(), value, "exact".into()]);
     }
     page.table(&table, 4);
+    if advice.deviations.is_empty() {
+        return;
+    }
     page.heading("Deviations under noise");
     let columns = ["state", "unit", "ideal loop (rms)", "with all imperfections (rms)"];
     let mut table = Table::new("deviations", &columns);

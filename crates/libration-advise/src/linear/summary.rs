@@ -1,5 +1,8 @@
 //! The answer on a loop around a linear plant, in sentences.
 
+use libration_report::notation::cut_off;
+use libration_report::verdict::Outcome;
+
 use super::LinearAdvice;
 use crate::summary::{beside_ideal, capitalise, describe_window, noun, percent};
 use crate::used_share::share_in_percent;
@@ -26,8 +29,25 @@ impl LinearAdvice {
     }
 
     fn summary_without_misses(&self) -> String {
-        if self.growth >= 0.0 {
-            let remedies = self.remedies.as_ref().map(|remedies| remedies.sentence(["", ""]));
+        let remedies = self.remedies.as_ref().map(|remedies| remedies.sentence(["", ""]));
+        if !self.unstable_motions.is_empty() {
+            let motions = self.unstable_motions.join("; ");
+            let first = match self.verdict.outcome {
+                Outcome::Unknown => {
+                    "It is unknown whether the loop is stable without latency, jitter, skew and loss"
+                }
+                _ => "The loop is unstable without latency, jitter, skew and loss",
+            };
+            return format!("{first}: {motions}. {}", remedies.unwrap_or_default());
+        }
+        if self.verdict.outcome == Outcome::Unknown && self.remedies.is_some() {
+            return format!(
+                "It is unknown whether the loop is stable with the stated imperfections: {}. {}",
+                self.verdict.evidence,
+                remedies.unwrap_or_default()
+            );
+        }
+        if self.remedies.is_some() {
             return format!(
                 "The loop is unstable with the stated imperfections: its second moments grow by {} % per period. {}",
                 percent(self.growth.exp_m1()),
@@ -45,10 +65,12 @@ impl LinearAdvice {
             }
             _ if let Some((budget, window)) = regained => describe_window(budget, window),
             (Some(margin), _) => format!(
-                "The loop is stable with the stated imperfections, also if all of them are {margin:.3} times as large."
+                "The loop is stable with the stated imperfections, also if all of them are {} times as large.",
+                cut_off(margin, 4)
             ),
             (None, Some(tried)) => format!(
-                "The loop is stable with the stated imperfections, also if all of them are at least {tried:.3} times as large, the most that was tried."
+                "The loop is stable with the stated imperfections, also if all of them are at least {} times as large, the most that was tried.",
+                cut_off(tried, 4)
             ),
             (None, None) if self.deadline_misses.is_some() => "The loop is stable.".to_owned(),
             (None, None) => {

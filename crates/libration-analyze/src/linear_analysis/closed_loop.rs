@@ -2,7 +2,11 @@
 
 use core::f64::consts::{PI, TAU};
 
-use libration::linear::{LinearLoop, LinearLoopError, LoopTiming};
+use libration::linear::{
+    GROWTH_ROUNDING, LinearLoop, LinearLoopError, LoopStability, LoopTiming, StabilityOutcome,
+};
+use libration_report::notation::number;
+use libration_report::verdict::{Outcome, Verdict};
 use serde::Serialize;
 
 /// A loop around a linear plant.
@@ -19,8 +23,10 @@ pub struct ClosedLoop {
     pub spectral_radius: f64,
     /// The logarithm of the factor by which second moments grow in a period with jitter and losses.
     pub mean_square_growth: f64,
-    /// Whether second moments decay.
+    /// Whether second moments decay for certain.
     pub stable: bool,
+    /// Whether the loop is stable.
+    pub verdict: Verdict,
     /// The modes, the one that grows fastest first; of a pair one. They belong to periods of mean length without losses.
     pub modes: Vec<LoopMode>,
     /// Number of modes that vanish within a period, which `modes` leaves out.
@@ -96,7 +102,8 @@ impl ClosedLoop {
                 }
             })
             .collect();
-        let mean_square_growth = linear.growth(timing)?;
+        let stability = linear.stability(timing)?;
+        let mean_square_growth = stability.growth;
         let stationary = linear.stationary(timing)?;
         let deviations = stationary.as_ref().map(|own| own.deviations.as_slice());
         let signals = linear.plant().states.iter();
@@ -110,11 +117,37 @@ impl ClosedLoop {
             size: linear.size(timing)?,
             spectral_radius,
             mean_square_growth,
-            stable: mean_square_growth < 0.0,
+            stable: stability.is_stable(),
+            verdict: loop_verdict(&stability),
             vanishing_modes: count - modes.len(),
             modes,
             deviations: deviations.collect(),
             cost: stationary.map(|own| own.cost),
         })
     }
+}
+
+/// The verdict on a loop of this stability, for all commands.
+pub fn loop_verdict(stability: &LoopStability) -> Verdict {
+    let percent = 100.0 * stability.growth.exp_m1().abs();
+    let (outcome, verb) = match stability.outcome {
+        StabilityOutcome::Stable => (Outcome::Stable, "fall"),
+        StabilityOutcome::Unstable => (Outcome::Unstable, "grow"),
+        StabilityOutcome::Undecided => (Outcome::Unknown, "change"),
+    };
+    let change = match stability.is_near_neutral() {
+        true => format!(
+            "second moments {verb} by less than {} % per period",
+            number(100.0 * GROWTH_ROUNDING, 2)
+        ),
+        false => format!("second moments {verb} by {} % per period", number(percent, 4)),
+    };
+    Verdict::new(
+        outcome,
+        match (stability.outcome, stability.is_near_neutral()) {
+            (StabilityOutcome::Undecided, _) => format!("{change}, which may be rounding"),
+            (_, true) => format!("{change}: by the equations of rest"),
+            (_, false) => change,
+        },
+    )
 }

@@ -16,7 +16,7 @@ use libration::linear::{
 use serde::Serialize;
 
 use crate::Stepping;
-pub use closed_loop::{ClosedLoop, LoopMode, StateDeviation};
+pub use closed_loop::{ClosedLoop, LoopMode, StateDeviation, loop_verdict};
 pub use error::LinearAnalysisError;
 pub use mode::Mode;
 pub use simulated_mode::SimulatedMode;

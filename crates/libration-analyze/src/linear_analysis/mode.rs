@@ -26,10 +26,14 @@ pub struct Mode {
     pub controllable: bool,
     /// Whether outputs show all motions with this eigenvalue.
     pub observable: bool,
-    /// The smallest singular value of `[λ − A, B]` relative to the size of `A`.
+    /// The relative change of the entries of `A` and `B` up to which inputs reach all motions with this eigenvalue, from 0 to 1.
     pub controllability: f64,
-    /// The smallest singular value of `[λ − Aᵀ, Cᵀ]` relative to the size of `A`.
+    /// The same of `A` and `C`, and of motions that outputs show.
     pub observability: f64,
+    /// Whether inputs reach its motions only as long as the entries of the plant do not change by less than 10⁻⁶.
+    pub weakly_controllable: bool,
+    /// The same of motions that outputs show.
+    pub weakly_observable: bool,
 }
 
 impl From<&ModeDetails> for Mode {
@@ -47,6 +51,8 @@ impl From<&ModeDetails> for Mode {
             observable: details.is_observable(),
             controllability: details.controllability,
             observability: details.observability,
+            weakly_controllable: details.is_weakly_controllable(),
+            weakly_observable: details.is_weakly_observable(),
         }
     }
 }

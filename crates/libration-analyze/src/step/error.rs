@@ -104,6 +104,9 @@ pub enum AnalyzeError {
         /// In steps.
         steps: f64,
     },
+    /// The latency is far too long for the step, in words.
+    #[error("--latency: {0}")]
+    ExcessiveLatency(String),
     /// The caller stopped the analysis.
     #[error("interrupted")]
     Interrupted,

@@ -96,7 +96,11 @@ impl ClosedLoop {
     fn new(request: &Request) -> Result<Option<Self>, AnalyzeError> {
         let Some(flag) = request.timing.first() else { return Ok(None) };
         let latency = request.timing.latency_of(request.dt);
-        let latency = latency.map_err(|steps| AnalyzeError::Latency { steps })?;
+        let latency =
+            latency.map_err(|steps| match request.timing.excessive_latency(request.dt) {
+                Some(text) => AnalyzeError::ExcessiveLatency(text),
+                None => AnalyzeError::Latency { steps },
+            })?;
         let plant = match request.system {
             AnySystem::Oscillator(model) if request.q.len() == 1 => plant(model, request),
             AnySystem::DampedOscillator(model) => plant(model, request),

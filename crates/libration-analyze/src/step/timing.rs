@@ -1,6 +1,7 @@
 //! Timing options of a control loop.
 
 use libration::control::{Feedback, Jitter, Latency, LqrWeights};
+use libration_settings::duration;
 
 /// Timing options of a control loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -59,6 +60,16 @@ impl Timing {
     /// Ratio of the longest possible step to the time step.
     pub(crate) fn longest(&self) -> f64 {
         [self.jitter, self.skew].into_iter().flatten().map(|law| 1.0 + law.largest()).product()
+    }
+
+    /// The error of a latency in seconds that is far too long for steps of `dt` seconds; none for one in steps.
+    pub(crate) fn excessive_latency(&self, dt: f64) -> Option<String> {
+        match self.latency {
+            Some(LatencyOption::Seconds(seconds)) if seconds > Latency::MOST_STEPS as f64 * dt => {
+                Some(duration::excessive_latency(seconds, dt))
+            }
+            _ => None,
+        }
     }
 
     /// The latency in steps of `dt` seconds.

@@ -57,6 +57,9 @@ pub enum TrajectoryError {
     /// The result could not be written or kept.
     #[error(transparent)]
     Export(#[from] ExportError),
+    /// The latency is far too long for the step, in words.
+    #[error("--latency: {0}")]
+    ExcessiveLatency(String),
     /// The caller stopped the simulation.
     #[error("interrupted")]
     Interrupted,

@@ -152,7 +152,13 @@ impl Request {
             return Err(value_error("feedback", value, "for a system without a time coordinate"));
         }
         let latency = self.timing.latency_of(self.dt);
-        latency.map(|_| ()).map_err(|steps| TrajectoryError::latency(steps, self.dt))
+        let excessive = || self.timing.excessive_latency(self.dt);
+        latency.map(|_| ()).map_err(|steps| {
+            excessive().map_or_else(
+                || TrajectoryError::latency(steps, self.dt),
+                TrajectoryError::ExcessiveLatency,
+            )
+        })
     }
 
     fn check_time_step<S: Float>(&self) -> Result<(), TrajectoryError> {

@@ -6,6 +6,7 @@ use libration_analyze::{LatencyOption, Timing};
 use libration_settings::duration;
 use libration_settings::latency_presets::LatencyPreset;
 use libration_settings::limits::{MOST_GAIN, MOST_RMS};
+use libration_settings::suggestions;
 
 /// Options of the feedback, its latency and the clock.
 #[derive(Args, Clone, Copy, Debug)]
@@ -110,6 +111,9 @@ pub(super) fn law(text: &str) -> Result<Jitter, String> {
     match name {
         "gaussian" => Ok(Jitter::Gaussian(rms)),
         "uniform" => Ok(Jitter::Uniform(rms)),
-        _ => Err(rule.to_owned()),
+        other => Err(match suggestions::law_meant(other) {
+            Some(meant) => format!("{rule}; did you mean {meant}:{rms}?"),
+            None => rule.to_owned(),
+        }),
     }
 }

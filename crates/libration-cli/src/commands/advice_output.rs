@@ -1,6 +1,7 @@
 //! Output of advice.
 
 use libration_advise::AdviseError;
+use libration_report::verdict::{self, Verdict};
 use libration_work::Work;
 use serde::Serialize;
 
@@ -18,7 +19,7 @@ pub(super) struct AdviceOutput<A> {
     /// A screen of it.
     pub(super) summarise: fn(&A, &AdviseArgs) -> String,
     pub(super) page: fn(&A) -> String,
-    pub(super) holds: fn(&A) -> bool,
+    pub(super) verdict: fn(&A) -> &Verdict,
     pub(super) warnings: fn(&mut A) -> &mut Vec<String>,
 }
 
@@ -54,7 +55,10 @@ impl<A: Serialize> AdviceOutput<A> {
         };
         terminal::print(&text)?;
         file.write(|| (self.page)(&advice))?;
-        if (self.holds)(&advice) { Ok(()) } else { Err(Failure::Disagreement) }
+        match verdict::exit_code([(self.verdict)(&advice)]) {
+            verdict::GOOD => Ok(()),
+            _ => Err(Failure::Disagreement),
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 
 use libration_advise as advise;
 use libration_advise::{Advice, Budget, LoopAdvice, Request, linear, rounded};
+use libration_report::notation::cut_off;
 use libration_settings::ConfigCommand;
 use libration_work::Work;
 
@@ -34,7 +35,7 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
         describe,
         summarise: summary::of_advice,
         page: advise::page,
-        holds: Advice::holds,
+        verdict: |advice| &advice.verdict,
         warnings: |advice| &mut advice.warnings,
     };
     output.deliver(args, quiet, &warnings, compute)
@@ -122,6 +123,7 @@ fn describe(advice: &Advice) -> String {
     for warning in &advice.warnings {
         let _ = writeln!(text, "warning: {warning}");
     }
+    let _ = writeln!(text, "verdict: {}", advice.verdict);
     if let Some(looped) = &advice.looped {
         describe_loop(looped, &advice.repeat_command, &mut text);
     }
@@ -137,12 +139,14 @@ fn describe(advice: &Advice) -> String {
         Some(_) => "lost".into(),
         None => "none".into(),
     };
+    // Limits are not rounded beyond themselves.
+    let longest = |x: Option<f64>| shown(x.map(|x| cut_off(x, 5)));
     for choice in &advice.integrators {
         let _ = writeln!(
             text,
             "{:<34} {:>12} {:>12} {:>12} {:>12} {:>14}",
             choice.integrator,
-            shown(choice.dt),
+            longest(choice.dt),
             choice.substeps.map_or_else(String::new, |count| count.to_string()),
             if choice.lost.is_finite() {
                 format!("{:.3e}", choice.lost)
@@ -195,6 +199,10 @@ fn describe_loop(looped: &LoopAdvice, again: &str, text: &mut String) {
             looped.command, looped.held_command, looped.command_unit
         );
     }
+    if looped.budgets.is_empty() {
+        // A loop that is unstable without imperfections has no limits.
+        return;
+    }
     let _ = writeln!(
         text,
         "\n{:<14} {:>12} {:>14} {:>14} {:>8}  {:<17} how",
@@ -244,10 +252,10 @@ fn describe_loop(looped: &LoopAdvice, again: &str, text: &mut String) {
         let [back, all] = r.returned;
         let _ = writeln!(
             text,
-            "{back} of {all} loops return from a deviation of {}; all return from {}{:.4} (simulated)",
+            "{back} of {all} loops return from a deviation of {}; all return from {}{} (simulated)",
             r.deviation,
             if r.up_to < r.tried_up_to { "up to " } else { "as far as was tried, " },
-            r.up_to
+            cut_off(r.up_to, 4)
         );
     }
 }

@@ -4,10 +4,12 @@ use std::fmt::Write as _;
 use std::ops::RangeInclusive;
 
 use libration_advise::linear::{self, ChainLink, InputMargins, LinearAdvice, LinearRequest};
-use libration_advise::{Budget, StabilityWindow, rounded};
+use libration_advise::{Budget, StabilityWindow, rounded, rounded_down};
+use libration_report::notation::{cut_off, cut_up};
 use libration_work::Work;
 
 use super::advice_output::AdviceOutput;
+use super::digits::{exact, significant};
 use super::repeat_command::command_line;
 use super::{config_file, summary, time_stamps};
 use crate::args::AdviseArgs;
@@ -58,7 +60,7 @@ pub(super) fn run(
         describe,
         summarise: summary::of_linear_advice,
         page: linear::page,
-        holds: LinearAdvice::holds,
+        verdict: |advice| &advice.verdict,
         warnings: |advice| &mut advice.warnings,
     };
     output.deliver(args, quiet, &warnings, compute)
@@ -70,6 +72,7 @@ fn describe(advice: &LinearAdvice) -> String {
     for warning in &advice.warnings {
         let _ = writeln!(text, "warning: {warning}");
     }
+    let _ = writeln!(text, "verdict: {}", advice.verdict);
     let _ = writeln!(text, "\n{}; a sample every {} s", advice.controller, advice.period);
     if let Some(gain) = &advice.gain {
         for i in 0..gain.rows() {
@@ -77,7 +80,9 @@ fn describe(advice: &LinearAdvice) -> String {
             let _ = writeln!(text, "  {} = -[{}] x", advice.inputs[i].name, row.join(", "));
         }
     }
-    budgets(advice, &mut text);
+    if !advice.budgets.is_empty() {
+        budgets(advice, &mut text);
+    }
     if !advice.chain.is_empty() {
         let _ = writeln!(
             text,
@@ -105,11 +110,20 @@ fn describe(advice: &LinearAdvice) -> String {
     margins(&advice.margins, "", &mut text);
     redesign(advice, &mut text);
     deadlines(advice, &mut text);
+    let with = if advice.unstable_motions.is_empty() {
+        "all imperfections together"
+    } else {
+        "without imperfections"
+    };
     let _ = writeln!(
         text,
-        "\nall imperfections together: second moments change by {:+.4e} per period (exact)",
+        "\n{with}: second moments change by {:+.4e} per period (exact)",
         advice.growth.exp_m1()
     );
+    if advice.deviations.is_empty() {
+        let _ = writeln!(text, "repeat with: {}", advice.repeat_command);
+        return text;
+    }
     let _ = writeln!(
         text,
         "cost under noise: {}, without imperfections {:.6e} (exact: Lyapunov equation)",
@@ -147,17 +161,16 @@ fn describe(advice: &LinearAdvice) -> String {
 /// Appends the margins at each input.
 fn margins(of_inputs: &[InputMargins], of: &str, text: &mut String) {
     for margins in of_inputs {
-        let known = |x: Option<f64>, unit: &str| {
-            x.map_or_else(|| "none".to_owned(), |x| format!("{x:.4}{unit}"))
-        };
+        let known =
+            |x: Option<f64>, unit: &str| x.map_or_else(|| "none".to_owned(), |x| exact(x) + unit);
         let _ = writeln!(
             text,
             "\nmargins{of} at {}: gain from {} to {}, phase {} at {}",
             margins.input,
-            known(margins.gain_down, ""),
-            known(margins.gain_up, ""),
-            known(margins.phase, " deg"),
-            known(margins.crossover, " Hz"),
+            known(margins.gain_down.map(|x| cut_up(x, 5)), ""),
+            known(margins.gain_up.map(|x| cut_off(x, 5)), ""),
+            known(margins.phase.map(|x| cut_off(x, 5)), " deg"),
+            margins.crossover.map_or_else(|| "none".to_owned(), |x| significant(x, 5) + " Hz"),
         );
     }
 }
@@ -187,7 +200,7 @@ fn deadlines(advice: &LinearAdvice, text: &mut String) {
         }
     }
     if let Some(random) = &misses.random {
-        let limit = random.stable_up_to.map_or_else(|| "above 63/64".to_owned(), rounded);
+        let limit = random.stable_up_to.map_or_else(|| "above 63/64".to_owned(), rounded_down);
         let cost = random.cost.map_or_else(|| "infinite".to_owned(), |x| format!("{x:.6e}"));
         let _ = writeln!(
             text,

@@ -7,6 +7,7 @@ use libration_analyze::linear_analysis::{
     LinearAnalysis, LinearAnalysisError, LinearRequest, Mode, SimulatedMode, StepAnalysis, analyze,
 };
 
+use super::digits::{least, limit};
 use super::linear_closed_loop::closed_loop;
 use super::mode_text::{counted, known, shape};
 use super::summary;
@@ -70,11 +71,6 @@ fn plant(analysis: &LinearAnalysis, text: &mut String) {
     );
 }
 
-/// A number with nine digits at most.
-fn rounded(x: f64) -> String {
-    format!("{x:.8e}").parse().map_or_else(|_| x.to_string(), |x: f64| x.to_string())
-}
-
 fn modes(analysis: &LinearAnalysis, text: &mut String) {
     let _ = writeln!(
         text,
@@ -114,6 +110,17 @@ fn modes(analysis: &LinearAnalysis, text: &mut String) {
                     "; not observable: the outputs do not show all motions with this eigenvalue",
             },
         );
+        for (is_weak, word, of) in [
+            (mode.weakly_controllable, "controllable", mode.controllability),
+            (mode.weakly_observable, "observable", mode.observability),
+        ] {
+            if is_weak {
+                let _ = writeln!(
+                    text,
+                    "     weakly {word}: a change of the plant's numbers by a part of {of:.1e} ends that"
+                );
+            }
+        }
     }
 }
 
@@ -160,8 +167,10 @@ fn stable_steps(analysis: &LinearAnalysis, text: &mut String) {
     }
     let _ = writeln!(text, "\n{:<28} stable for dt in s", "integrator");
     for step in &analysis.steps {
-        let end = |x: Option<f64>| x.map_or("∞".into(), rounded);
-        let window = |&[from, to]: &[Option<f64>; 2]| format!("{} to {}", end(from), end(to));
+        let end =
+            |x: Option<f64>, cut: fn(f64, usize) -> String| x.map_or("∞".into(), |x| cut(x, 9));
+        let window =
+            |&[from, to]: &[Option<f64>; 2]| format!("{} to {}", end(from, least), end(to, limit));
         let shown = match &step.stable_dt {
             None => "not known: a mode of the plant grows".to_owned(),
             Some(windows) if windows.is_empty() => "none".to_owned(),

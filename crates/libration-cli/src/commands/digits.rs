@@ -1,6 +1,6 @@
 //! Numbers in answers: as many digits as mean something to a reader. JSON has all of them.
 
-use libration_report::notation::cut_off;
+use libration_report::notation::{cut_off, cut_up};
 
 /// Text in place of a result that exact arithmetic cannot derive.
 pub(super) const UNKNOWN: &str = "not known: the polynomials of this step outgrow exact arithmetic";
@@ -19,6 +19,11 @@ pub(super) fn significant(x: f64, digits: usize) -> String {
 /// A limit with at most so many digits, not beyond itself: cut off behind the twelve digits that a search has.
 pub(super) fn limit(x: f64, digits: usize) -> String {
     exact(cut_off(x, digits))
+}
+
+/// A lower limit with at most so many digits, not below itself.
+pub(super) fn least(x: f64, digits: usize) -> String {
+    exact(cut_up(x, digits))
 }
 
 /// A limit with all its digits: rounded, it might be beyond itself.
@@ -79,6 +84,9 @@ mod tests {
         ] {
             assert_eq!(limit(x, 4), text);
         }
+        // The factor of all imperfections of a public case, whose rounded form is unstable.
+        assert_eq!((limit(3.135_90, 4), least(3.135_90, 4)), ("3.135".into(), "3.136".into()));
+        assert_eq!((limit(4.231_648, 4), limit(50.416_18, 4)), ("4.231".into(), "50.41".into()));
     }
 
     #[test]

@@ -25,10 +25,11 @@ pub(super) fn closed_loop(own: &ClosedLoop, text: &mut String) {
         "second moments",
         format!(
             "{} by {:+.6e} per period, with jitter and losses",
-            if own.stable { "fall" } else { "grow" },
+            if own.mean_square_growth < 0.0 { "fall" } else { "grow" },
             own.mean_square_growth.exp_m1()
         ),
     );
+    line("verdict", own.verdict.to_string());
     line(
         "cost per second",
         own.cost.map_or_else(|| "infinite: second moments grow".into(), |cost| format!("{cost:?}")),

@@ -15,6 +15,11 @@ pub(super) fn with_option(option: &str, value: &str) -> String {
     quoted(without(repeated(), option).chain([option.to_owned(), value.to_owned()]).collect())
 }
 
+/// Returns the same command line with a value of an option that may begin with a minus.
+pub(super) fn with_joined_option(option: &str, value: &str) -> String {
+    quoted(without(repeated(), option).chain([format!("{option}={value}")]).collect())
+}
+
 /// Returns the same command line with a flag.
 pub(super) fn with_flag(flag: &str) -> String {
     let others = repeated().into_iter().filter(|word| word != flag);

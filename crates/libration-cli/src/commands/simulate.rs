@@ -291,6 +291,7 @@ pub(super) fn failure(error: TrajectoryError) -> Failure {
         TrajectoryError::Bodies(_)
         | TrajectoryError::Catalog(_)
         | TrajectoryError::Simulation(_)
+        | TrajectoryError::ExcessiveLatency(_)
         | TrajectoryError::LinearLoops(_) => Failure::usage(error),
         TrajectoryError::Memory(_) | TrajectoryError::Export(_) | TrajectoryError::Interrupted => {
             Failure::run(error)

@@ -76,7 +76,11 @@ fn plants_and_controllers_that_do_not_fit_are_usage_errors_that_name_the_key() {
         ),
         ("period = 0.01", "period = 0.01\nloss = 1", "`loss` is 1.0; expected a probability"),
         ("period = 0.01", "period = 0.01\nlatensy = 1", "unknown key `latensy`"),
-        ("period = 0.01", "period = 0.01\nlatency = 10", "states with all commands"),
+        (
+            "period = 0.01",
+            "period = 0.01\nlatency = 10",
+            "10 is 10 s, 1000 periods; did you mean 10ms?",
+        ),
         ("[controller.state-feedback]\ngain = [[10, 2]]", "", "there is no controller"),
         (
             "[controller.state-feedback]\ngain = [[10, 2]]",

@@ -43,6 +43,7 @@ mod linear_weights;
 mod log_warnings;
 mod logs;
 mod long_files;
+mod loop_verdicts;
 #[cfg(target_os = "linux")]
 mod memory;
 mod plant_files;

@@ -37,6 +37,18 @@ const gainRows = (setting) => {
 
 const hasLoop = (setting) => Boolean(setting.get("gain"));
 
+/** The longest step that is taken: that of the setting, and in a loop at most a period, at whose ends commands change. */
+const stepTaken = (setting) => {
+  const [dt, period] = ["dt", "period"].map((key) => Number(setting.get(key) ?? LOOP_DEFAULTS[key]));
+  return hasLoop(setting) ? Math.min(dt, period) : dt;
+};
+
+/** Why a time step is not taken as it stands; empty if it is. */
+const stepProblem = (setting) => {
+  const taken = stepTaken(setting);
+  return Number(setting.get("dt")) > taken ? `longer than the period; the loop takes steps of ${taken} s` : "";
+};
+
 /** Whole numbers of a motion or a loop. */
 const stepsOf = (setting, step) => Math.min(1e9, Math.max(1, Math.round(Number(setting.get("horizon")) / Number(setting.get(step)))));
 
@@ -44,7 +56,7 @@ const stepsOf = (setting, step) => Math.min(1e9, Math.max(1, Math.round(Number(s
 const commandOf = (setting) => {
   const number = (key) => numberOf(setting, key);
   const file = `cat > system.toml <<'END'\n${systemFile(setting)}END\n`;
-  const step = `--integrator ${nameOf(setting)} --dt ${number("dt")}`;
+  const step = `--integrator ${nameOf(setting)} --dt ${stepTaken(setting)}`;
   if (!hasLoop(setting)) {
     return (
       `${file}libration analyze --system system.toml ${step}\n` +

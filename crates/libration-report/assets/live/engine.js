@@ -161,6 +161,20 @@ const format = (x, digits = 4) => {
   return String(Number(x.toPrecision(digits)));
 };
 
+/** An upper limit with so many digits, not above itself: cut off behind the twelve digits that a search has. */
+const below = (limit, digits = 4) => {
+  if (!Number.isFinite(limit) || limit === 0) return limit;
+  const [mantissa, exponent] = limit.toExponential(11).split("e");
+  return Number(`${mantissa.slice(0, digits + 1 + (limit < 0 ? 1 : 0))}e${exponent}`);
+};
+
+/** A lower limit above zero with so many digits, not below itself. */
+const above = (limit, digits = 4) => {
+  const cut = below(limit, digits);
+  if (!Number.isFinite(limit) || limit <= 0 || limit - cut <= 1e-11 * limit) return cut;
+  return Number((cut + 10 ** (Math.floor(Math.log10(limit)) + 1 - digits)).toPrecision(digits));
+};
+
 /** A number, of seconds also with a unit as in 2ms or 500Hz; NaN if it is none. */
 const parseNumber = (text, key) => {
   const match = /^\s*([-+]?[\d.]+(?:e[-+]?\d+)?)\s*([a-zµ]*)\s*$/i.exec(text);

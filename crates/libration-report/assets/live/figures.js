@@ -220,8 +220,8 @@ const latencyText = (limits, latency) => {
   const [window, tried] = [latencyWindow(limits, latency), single(limits, "latency.tried")];
   if (!window) return "none";
   if (Number.isNaN(window[0])) return "unknown";
-  const to = window[1] === Infinity ? `above ${short(tried)}` : short(window[1]);
-  return window[0] > 0 ? `${short(window[0])} to ${to}` : to;
+  const to = window[1] === Infinity ? `above ${short(below(tried, 3))}` : short(below(window[1], 3));
+  return window[0] > 0 ? `${short(above(window[0], 3))} to ${to}` : to;
 };
 
 const judgeLoop = (view, limits, setting, growth) => {
@@ -255,8 +255,8 @@ const judgeMotion = (view, limits, setting, growth) => {
   }
   let share = "";
   if (limit === Infinity) share = " No step up to 100 radians of the fastest mode is unstable.";
-  else if (limit > 0 && dt <= limit) share = ` The largest stable step is ${short(limit)} s; this is ${short((100 * dt) / limit)} % of it.`;
-  else if (limit > 0) share = ` Steps are stable up to ${short(limit)} s${grows ? "" : ", and again here"}.`;
+  else if (limit > 0 && dt <= limit) share = ` The largest stable step of ${setting.get("integrator")} is ${short(below(limit, 3))} s; this is ${short((100 * dt) / limit)} % of it.`;
+  else if (limit > 0) share = ` Steps of ${setting.get("integrator")} are stable up to ${short(below(limit, 3))} s${grows ? "" : ", and again here"}.`;
   else if (limit === 0) share = " No step of this integrator is stable here.";
   if (grows) return { verdict: `Unstable: deviations from the ${view.point} ${times(growth)}, though those of the exact motion do not grow.${share}`, mark: "bad" };
   const away = leaves(view);
@@ -283,9 +283,11 @@ const numberRows = (view, limits, setting) => {
   if (view.kind === "motion") {
     if (view.energy.length) rows.push(["largest change of the energy", get("energy.predicted"), get("energy.largest")]);
     const limit = single(limits, "dt.stable");
+    // A page may have another largest step: that of the simulator itself.
+    const largest = `largest stable step of ${setting.get("integrator")} (s)`;
     const natural = single(view, "growth.exact") > 1e-9;
-    if (!limits["dt.stable"]) rows.push(["largest stable step (s)", "…", "—"]);
-    else if (!Number.isNaN(limit) && !(natural && limit === 0)) rows.push(["largest stable step (s)", limit === 0 ? "none" : format(limit), "—"]);
+    if (!limits["dt.stable"]) rows.push([largest, "…", "—"]);
+    else if (!Number.isNaN(limit) && !(natural && limit === 0)) rows.push([largest, limit === 0 ? "none" : format(below(limit)), "—"]);
   } else {
     const fresh = limits["latency.from"];
     rows.push(["stable up to a latency of (s)", fresh ? latencyText(limits, Number(setting.get("latency"))) : "…", "—"]);

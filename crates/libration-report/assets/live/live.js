@@ -179,8 +179,18 @@ class Live {
     for (const name of ["command", "python", "link"]) this.find(`copy-${name}`).disabled = !command;
   }
 
+  /** Says beside the time step that a longer one than a period is not taken. */
+  judgeStep() {
+    const row = this.rows.find((row) => row.key === "dt");
+    const problem = stepProblem(this.setting);
+    if (!row) return;
+    if (problem || row.isLong) row.judge(problem);
+    row.isLong = Boolean(problem);
+  }
+
   /** Verdict and numbers. */
   numbers() {
+    this.judgeStep();
     // Limits of another setting are not shown.
     const limits = this.limitsOf === settingText(this.setting) ? this.limits : {};
     const { verdict, mark } = judge(this.view, limits, this.setting);

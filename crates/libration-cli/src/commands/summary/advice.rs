@@ -3,8 +3,10 @@
 use libration_advise::{Advice, LoopAdvice, Measure};
 
 use super::super::digits::{limit, short, significant};
-use super::super::repeat_command::with_option;
-use super::loop_limits::{append_limits, append_share, append_simulated, change, cost};
+use super::super::repeat_command::{with_joined_option, with_option};
+use super::loop_limits::{
+    append_limits, append_share, append_simulated, change, change_without, cost,
+};
 use super::{Summary, map_command, numbers, words};
 use crate::args::AdviseArgs;
 
@@ -34,7 +36,9 @@ pub(crate) fn of_advice(advice: &Advice, args: &AdviseArgs) -> String {
 }
 
 fn append_loop(looped: &LoopAdvice, summary: &mut Summary) {
-    append_limits(&looped.budgets, summary);
+    if !looped.budgets.is_empty() {
+        append_limits(&looped.budgets, summary);
+    }
     summary.blank();
     let combined = &looped.combined;
     if looped.held_command != 0.0 {
@@ -42,7 +46,10 @@ fn append_loop(looped: &LoopAdvice, summary: &mut Summary) {
         let held = significant(looped.held_command, 5);
         summary.row("operating point", &format!("{command} of {held} {unit}"));
     }
-    summary.row("second moments", &change(combined.growth));
+    match looped.budgets.is_empty() {
+        true => summary.row("second moments", &change_without(combined.growth)),
+        false => summary.row("second moments", &change(combined.growth)),
+    }
     if combined.growth < 0.0 {
         summary.row("cost", &cost(combined.cost, combined.ideal_cost));
     }
@@ -110,11 +117,12 @@ fn next(advice: &Advice, args: &AdviseArgs) -> Option<(&'static str, String)> {
     }
     let remedies = advice.looped.as_ref().and_then(|looped| looped.remedies.as_ref());
     if let Some(remedies) = remedies {
-        let gains = remedies.gains.filter(|_| args.config.is_none());
+        let gains = remedies.opposite_gains.or(remedies.gains);
+        let gains = gains.filter(|_| args.config.is_none());
         return match (gains, remedies.latency) {
             (Some([position, velocity]), _) => {
                 let gains = format!("{},{}", short(position), short(velocity));
-                Some(("Confirm these gains", with_option("--feedback", &gains)))
+                Some(("Confirm these gains", with_joined_option("--feedback", &gains)))
             }
             (None, Some(latency)) => {
                 // Below it: at the limit itself the loop does not decay.

@@ -3,9 +3,11 @@
 use libration_advise::linear::{InputMargins, LinearAdvice, RedesignLimit};
 use libration_advise::{Budget, Imperfection};
 
-use super::super::digits::{limit, significant};
-use super::super::repeat_command::{with_flag, with_option};
-use super::loop_limits::{append_limits, append_share, append_simulated, change, cost};
+use super::super::digits::{least, limit, short, significant};
+use super::super::repeat_command::{with_flag, with_joined_option, with_option};
+use super::loop_limits::{
+    append_limits, append_share, append_simulated, change, change_without, cost,
+};
 use super::{Summary, in_decimals, map_command, numbers, words};
 use crate::args::AdviseArgs;
 
@@ -25,6 +27,7 @@ pub(crate) fn of_linear_advice(advice: &LinearAdvice, args: &AdviseArgs) -> Stri
     let is_long = summary.line_count() > LONG;
     match &advice.redesign {
         Some(_) => append_redesign(advice, is_long, &mut summary),
+        None if advice.budgets.is_empty() => {}
         None => append_limits(&advice.budgets, &mut summary),
     }
     summary.blank();
@@ -40,11 +43,16 @@ pub(crate) fn of_linear_advice(advice: &LinearAdvice, args: &AdviseArgs) -> Stri
     }
     let redesigned = advice.redesign.iter().flat_map(|redesign| &redesign.margins);
     append_margins("of the redesign", redesigned, &mut summary);
-    summary.row("second moments", &change(advice.growth));
-    summary.row("cost", &cost(advice.cost, advice.ideal_cost));
+    match advice.unstable_motions.is_empty() {
+        true => summary.row("second moments", &change(advice.growth)),
+        false => summary.row("second moments", &change_without(advice.growth)),
+    }
+    if advice.ideal_cost.is_finite() {
+        summary.row("cost", &cost(advice.cost, advice.ideal_cost));
+    }
     append_share(advice.margin, &mut summary);
     append_simulated(advice.simulated.as_ref(), "at samples", &mut summary);
-    if has_room {
+    if has_room && !advice.deviations.is_empty() {
         append_deviations(advice, &mut summary);
     }
     if let Some((purpose, command)) = next(advice, args) {
@@ -72,17 +80,15 @@ fn append_margins<'a>(
     margins: impl IntoIterator<Item = &'a InputMargins>,
     summary: &mut Summary,
 ) {
-    let known = |x: Option<f64>, unit: &str| {
-        x.map_or_else(|| "none".to_owned(), |x| significant(x, 4) + unit)
-    };
+    let known = |x: Option<String>, unit: &str| x.map_or_else(|| "none".to_owned(), |x| x + unit);
     if let Some(own) = InputMargins::tightest(margins) {
         let shown = format!(
             "at {}: gain from {} to {}, phase {} at {}",
             own.input,
-            known(own.gain_down, ""),
-            known(own.gain_up, ""),
-            known(own.phase, " deg"),
-            known(own.crossover, " Hz")
+            known(own.gain_down.map(|x| least(x, 4)), ""),
+            known(own.gain_up.map(|x| limit(x, 4)), ""),
+            known(own.phase.map(|x| limit(x, 4)), " deg"),
+            known(own.crossover.map(|x| significant(x, 4)), " Hz")
         );
         summary.row(name, &shown);
     }
@@ -158,6 +164,19 @@ fn next(advice: &LinearAdvice, args: &AdviseArgs) -> Option<(&'static str, Strin
     }
     // What stabilises a loop that meets its deadlines may not do so beside missed ones.
     if let Some(remedies) = advice.remedies.as_ref().filter(|_| advice.deadline_misses.is_none()) {
+        // Only a gain that the options give has a sign that an option changes.
+        let gain =
+            advice.gain.as_ref().filter(|_| args.config.is_none() && !args.linear.has_weights());
+        if let (Some(factor), Some(gain)) = (remedies.opposite_factor, gain) {
+            let row = |i: usize| {
+                let row: Vec<String> =
+                    gain.row(i).iter().map(|x| short(factor * x + 0.0)).collect();
+                row.join(",")
+            };
+            let rows: Vec<String> = (0..gain.rows()).map(row).collect();
+            let purpose = "Confirm the opposite sign of the gains";
+            return Some((purpose, with_joined_option("--gain", &rows.join(";"))));
+        }
         let is_late = |budget: &&Budget| {
             matches!(budget.kind, Imperfection::Latency | Imperfection::OutputLatency)
                 && budget.stated != 0.0

@@ -1,6 +1,8 @@
 //! A linear plant, steps on it and the loop around it.
 
+use libration::linear::GROWTH_ROUNDING;
 use libration_analyze::linear_analysis::{ClosedLoop, LinearAnalysis, Mode};
+use libration_report::verdict::Outcome;
 
 use super::super::digits::{limit, significant};
 use super::super::mode_text::{counted, shape};
@@ -142,14 +144,21 @@ pub(super) fn verdict(analysis: &LinearAnalysis) -> String {
 }
 
 fn verdict_of_loop(own: &ClosedLoop) -> String {
-    let moments = own.mean_square_growth.exp_m1();
+    let period = significant(own.period, 6);
+    let first = match own.verdict.outcome {
+        Outcome::Stable | Outcome::Unstable => {
+            format!("The loop is {} with a period of {period} s", own.verdict.outcome)
+        }
+        _ => format!("It is unknown whether the loop is stable with a period of {period} s"),
+    };
+    let moments = 100.0 * own.mean_square_growth.exp_m1().abs();
     let verb = if own.stable { "fall" } else { "grow" };
-    format!(
-        "The loop is {} with a period of {} s: second moments {verb} by {} % per period.",
-        if own.stable { "stable" } else { "unstable" },
-        significant(own.period, 6),
-        significant(100.0 * moments.abs(), 4)
-    )
+    match own.mean_square_growth.abs() > GROWTH_ROUNDING {
+        true => {
+            format!("{first}: second moments {verb} by {} % per period.", significant(moments, 4))
+        }
+        false => format!("{first}: {}.", own.verdict.evidence),
+    }
 }
 
 fn append_modes(analysis: &LinearAnalysis, summary: &mut Summary) {
@@ -181,17 +190,36 @@ fn append_modes(analysis: &LinearAnalysis, summary: &mut Summary) {
 /// Appends the modes that no input reaches, and those that no output shows.
 fn append_faults(modes: &[Mode], summary: &mut Summary) {
     let list = |is: fn(&Mode) -> bool| {
-        let numbers = modes.iter().enumerate().filter(|(_, mode)| !is(mode));
+        let numbers = modes.iter().enumerate().filter(|(_, mode)| is(mode));
         numbers.map(|(i, _)| (i + 1).to_string()).collect::<Vec<_>>().join(", ")
+    };
+    // The least change of the plant that hides one of the modes.
+    let change = |is: fn(&Mode) -> bool, of: fn(&Mode) -> f64| {
+        let least = modes.iter().filter(|mode| is(mode)).map(of).fold(f64::INFINITY, f64::min);
+        significant(least, 2)
     };
     for (faulty, why) in [
         (
-            list(|mode| mode.controllable),
-            "of the plant not controllable: no input reaches all of its motions",
+            list(|mode| !mode.controllable),
+            "of the plant not controllable: no input reaches all of its motions".to_owned(),
         ),
         (
-            list(|mode| mode.observable),
-            "of the plant not observable: no output shows all of its motions",
+            list(|mode| mode.weakly_controllable),
+            format!(
+                "of the plant weakly controllable: a change of the plant's numbers by a part of {} hides it from the inputs",
+                change(|mode| mode.weakly_controllable, |mode| mode.controllability)
+            ),
+        ),
+        (
+            list(|mode| !mode.observable),
+            "of the plant not observable: no output shows all of its motions".to_owned(),
+        ),
+        (
+            list(|mode| mode.weakly_observable),
+            format!(
+                "of the plant weakly observable: a change of the plant's numbers by a part of {} hides it from the outputs",
+                change(|mode| mode.weakly_observable, |mode| mode.observability)
+            ),
         ),
     ] {
         if !faulty.is_empty() {

@@ -2,7 +2,7 @@
 
 use libration_analyze::linear_analysis::{LinearAnalysis, StepAnalysis};
 
-use super::super::digits::{limit, significant};
+use super::super::digits::{least, limit, significant};
 use super::Summary;
 use super::linear_plant::is_unstable;
 
@@ -48,7 +48,10 @@ pub(super) fn append_steps(analysis: &LinearAnalysis, is_one: bool, summary: &mu
                 let again = if windows.len() > 1 { ", and again later" } else { "" };
                 let first = match windows[0] {
                     [Some(0.0), to] => format!("up to {} s", end(to)),
-                    [from, to] => format!("{} to {} s", end(from), end(to)),
+                    [from, to] => {
+                        let from = from.map_or("∞".to_owned(), |x| least(x, 4));
+                        format!("{from} to {} s", end(to))
+                    }
                 };
                 let limits = format!("{name} ({first}{again})");
                 let holds = analysis.dt.map(|dt| {

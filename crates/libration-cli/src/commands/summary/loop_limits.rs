@@ -1,5 +1,6 @@
 //! The limits of a loop.
 
+use libration::linear::GROWTH_ROUNDING;
 use libration_advise::{Budget, SimulatedCost};
 
 use super::super::digits::{limit, significant};
@@ -71,12 +72,20 @@ fn limit_of(budget: &Budget, end: Option<f64>) -> String {
 
 /// How second moments change in a period.
 pub(super) fn change(growth: f64) -> String {
+    change_without(growth) + " with all imperfections"
+}
+
+/// The same without imperfections.
+pub(super) fn change_without(growth: f64) -> String {
     let change = growth.exp_m1();
     let verb = if change < 0.0 { "fall" } else { "grow" };
-    format!(
-        "{verb} by {} % per period with all imperfections",
-        significant(100.0 * change.abs(), 4)
-    )
+    match growth.abs() <= GROWTH_ROUNDING {
+        true => format!(
+            "change by less than {} % per period, within rounding",
+            significant(100.0 * GROWTH_ROUNDING, 4)
+        ),
+        false => format!("{verb} by {} % per period", significant(100.0 * change.abs(), 4)),
+    }
 }
 
 /// Appends the part of the imperfections that the tolerance of the cost allows; nothing if it allows all of them.

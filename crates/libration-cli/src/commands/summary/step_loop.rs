@@ -3,7 +3,7 @@
 use libration_analyze::{LoopAnalysis, Timing};
 
 use super::super::closed_loop::{CLIPPED, NOMINAL, TOO_FAR, dephasing};
-use super::super::digits::{limit, significant};
+use super::super::digits::{least, limit, significant};
 use super::Summary;
 
 /// Largest number of later windows of stable latencies.
@@ -63,7 +63,7 @@ pub(super) fn append_loop(
         let end = |x: Option<f64>| x.map_or("∞".into(), |x| limit(x, 4));
         let again = windows.iter().filter(|(from, _)| *from > 0.0).take(MOST);
         let again: Vec<String> =
-            again.map(|&(from, to)| format!("{} to {}", significant(from, 4), end(to))).collect();
+            again.map(|&(from, to)| format!("{} to {}", least(from, 4), end(to))).collect();
         if !again.is_empty() {
             summary.row("stable again", &format!("{} steps late", again.join(", ")));
         }
