@@ -41,6 +41,7 @@ mod logs;
 mod long_files;
 #[cfg(target_os = "linux")]
 mod memory;
+mod operating_points;
 mod plant_files;
 mod presets;
 mod probe;
