@@ -174,6 +174,8 @@ class Analysis(Answer):
     """Of a system by equations: order, errors and energy of the integrator."""
     operating_point: dict[str, Any] | None
     """Of a system by equations: the equilibrium of its plant."""
+    steps_along_motion: dict[str, Any]
+    """Of a system by equations: the largest stable step along its motion, an estimate."""
     no_modes: str | None
     """Reason for a missing ``linear``."""
 

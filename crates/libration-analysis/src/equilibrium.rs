@@ -2,16 +2,22 @@
 
 use libration_core::number::Dual;
 use libration_equations::Dynamics;
-use libration_linear::{Matrix, solve_matrix};
+use libration_linear::{Matrix, SingularValues};
 
-/// Steps of Newton's method.
-const MOST_ITERATIONS: usize = 100;
+use super::conserved_sums::ConservedSums;
+use super::equilibrium_search::EquilibriumSearch;
 
-/// The part of a coordinate, or of 1 if that is more, whose shift would cause the acceleration that an equilibrium may have left.
-const TOLERANCE: f64 = 1e-8;
+/// The part of the largest singular value of the slopes, each row and column scaled to 1, below which one is zero.
+const SINGULAR: f64 = 1e-10;
 
-/// The part of the largest slope that is added where an equilibrium is not alone, such as that of a cart that may stand anywhere.
-const DAMPING: f64 = 1e-10;
+/// The part of the scale of a state by which it is moved to see whether other equilibria are near.
+const NEIGHBOUR: f64 = 1e-3;
+
+/// The part of the scale of a state up to which a coordinate may be the rounding of zero.
+const SMALL: f64 = 1e-6;
+
+/// The largest number of unknowns whose slopes are compared with those beside the equilibrium.
+const MOST_COMPARED: usize = 64;
 
 /// A state at which the accelerations are zero.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,51 +26,167 @@ pub struct Equilibrium {
     pub state: Vec<f64>,
     /// The largest absolute acceleration there.
     pub residual: f64,
-    /// The derivatives of the accelerations there: degrees of freedom × (positions, velocities and inputs).
+    /// The derivatives of the accelerations there: degrees of freedom × (positions, velocities and inputs). Those that change by their
+    /// own size where the equilibrium may also lie are zero.
     pub jacobian: Matrix,
+    /// The dimension of the set of equilibria near this one; 0 if it is isolated.
+    pub continuum: usize,
+    /// The number of directions in which all derivatives are zero, without other equilibria. Higher derivatives decide there.
+    pub undecided: usize,
 }
 
 impl Equilibrium {
-    /// The equilibrium at which Newton's method ends that begins at `start`: positions, velocities and inputs. It changes the
-    /// entries in `unknowns`; its steps are halved until they improve. Derivatives are exact.
+    /// The equilibrium near `start`: positions, velocities and inputs. The search changes the entries in `unknowns`.
+    ///
+    /// Of the ends of Newton's method with halved steps and of a damped one, whose steps are the shortest, it is the nearer one. If both
+    /// fail, it is where the start ends with its velocities taken away all the time. Derivatives are exact.
     ///
     /// # Errors
-    /// The last state, if no shift of the unknowns by 10⁻⁸ of the larger of 1 and their values causes the acceleration that is
-    /// left.
+    /// The state with the least acceleration, if no shift of the unknowns by 10⁻⁸ of the larger of 1 and their values causes what is left.
     pub fn near(
         dynamics: &Dynamics,
         start: &[f64],
         unknowns: &[usize],
     ) -> Result<Equilibrium, Equilibrium> {
-        let mut accelerations = dynamics.accelerations().on::<f64>();
-        let mut left = |state: &[f64]| -> Vec<f64> { accelerations.run(state).collect() };
-        // Where an acceleration is not defined, nothing is at rest.
-        let size = |x: &f64| if x.is_nan() { f64::INFINITY } else { x.abs() };
-        let largest = |rest: &[f64]| rest.iter().map(size).fold(0.0, f64::max);
-        let mut state = start.to_vec();
-        let mut rest = left(&state);
-        for _ in 0..MOST_ITERATIONS {
-            let all = jacobian(dynamics, &state);
-            let slopes = Matrix::from_fn(rest.len(), unknowns.len(), |i, j| all[(i, unknowns[j])]);
-            let Some(step) = newton_step(&slopes, &rest) else { break };
-            let size = largest(&rest);
-            let improved = (0..40).find_map(|halvings| {
-                let factor = 0.5_f64.powi(halvings);
-                let mut tried = state.clone();
-                unknowns.iter().zip(&step).for_each(|(&j, step)| tried[j] += factor * step);
-                let rest = left(&tried);
-                (largest(&rest) < size).then_some((tried, rest))
-            });
-            let Some(better) = improved else { break };
-            (state, rest) = better;
-        }
-        let jacobian = jacobian(dynamics, &state);
-        let shift = |i: usize| -> f64 {
-            unknowns.iter().map(|&j| jacobian[(i, j)].abs() * state[j].abs().max(1.0)).sum()
+        let search = EquilibriumSearch::new(dynamics, start, unknowns);
+        let [newton, damped] = [search.newton(start), search.damped(start)];
+        let distance = |state: &[f64]| search.distance(state);
+        let rests = |state: &Vec<f64>| search.rests(state);
+        // The same to rounding: that of Newton's method, which is polished.
+        let same = SMALL * search.scale();
+        let found = match (rests(&newton), rests(&damped)) {
+            (true, true) if distance(&damped) < distance(&newton) - same => damped,
+            (true, _) => newton,
+            (false, true) => damped,
+            (false, false) => {
+                let flow = search.damped(&search.flow());
+                match rests(&flow) {
+                    true => flow,
+                    false => return Err(Equilibrium::at(&search, newton)),
+                }
+            }
         };
-        let rests = (0..rest.len()).all(|i| rest[i].abs() <= TOLERANCE * shift(i));
-        let found = Equilibrium { state, residual: largest(&rest), jacobian };
+        Ok(Equilibrium::polished(&search, found))
+    }
+
+    /// The equilibrium at which Newton's method ends, whose set of neighbours is not examined. It takes a fraction of the time of
+    /// [`near`](Equilibrium::near), as a page requires that searches hundreds of times.
+    ///
+    /// # Errors
+    /// As for [`near`](Equilibrium::near).
+    pub fn by_newton(
+        dynamics: &Dynamics,
+        start: &[f64],
+        unknowns: &[usize],
+    ) -> Result<Equilibrium, Equilibrium> {
+        let search = EquilibriumSearch::new(dynamics, start, unknowns);
+        let end = search.newton(start);
+        let rests = search.rests(&end);
+        let found = Equilibrium::at(&search, end);
         if rests { Ok(found) } else { Err(found) }
+    }
+
+    /// The equilibrium with the values that conserved sums have at their start, by the damped method; none if there is no such equilibrium.
+    pub fn with_sums(
+        dynamics: &Dynamics,
+        start: &[f64],
+        unknowns: &[usize],
+        sums: &ConservedSums,
+    ) -> Option<Equilibrium> {
+        let search = EquilibriumSearch::new(dynamics, start, unknowns).with_sums(sums)?;
+        let mut found = search.damped(start);
+        if !search.rests(&found) {
+            found = search.damped(&search.flow());
+        }
+        search.rests(&found).then(|| Equilibrium::polished(&search, found))
+    }
+
+    /// A state with its derivatives.
+    fn at(search: &EquilibriumSearch<'_>, state: Vec<f64>) -> Self {
+        let (residual, jacobian) = (search.residual(&state), search.jacobian(&state));
+        Equilibrium { state, residual, jacobian, continuum: 0, undecided: 0 }
+    }
+
+    /// An equilibrium without rounding, and the set of those near it.
+    fn polished(search: &EquilibriumSearch<'_>, mut state: Vec<f64>) -> Self {
+        let scale = search.scale();
+        for &i in search.unknowns() {
+            let mut without = state.clone();
+            without[i] = 0.0;
+            let is_small = state[i] != 0.0 && state[i].abs() <= SMALL * scale;
+            if is_small && search.residual(&without) <= search.residual(&state) {
+                state = without;
+            }
+        }
+        let search = search.from(&state);
+        let mut found = Equilibrium::at(&search, state);
+        found.remove_rounding(&search);
+        found.examine_neighbours(&search);
+        found
+    }
+
+    /// Sets derivatives to zero that are not known: they change by their own size within the distance in which the equilibrium may lie.
+    fn remove_rounding(&mut self, search: &EquilibriumSearch<'_>) {
+        let unknowns = search.unknowns();
+        if unknowns.len() > MOST_COMPARED {
+            return;
+        }
+        let distance = search.uncertainty(&self.state);
+        let mut change = Matrix::zeros(self.jacobian.rows(), self.jacobian.columns());
+        for &place in unknowns {
+            let beside = [-distance, distance].map(|shift| {
+                let mut state = self.state.clone();
+                state[place] += shift;
+                search.jacobian(&state)
+            });
+            for (i, most) in change.entries_mut().iter_mut().enumerate() {
+                let own = self.jacobian.entries()[i];
+                let sizes = beside.iter().map(|beside| (beside.entries()[i] - own).abs());
+                *most += sizes.fold(0.0, f64::max);
+            }
+        }
+        for (own, change) in self.jacobian.entries_mut().iter_mut().zip(change.entries()) {
+            // Where one is infinite, nothing is known.
+            if own.abs() <= *change && change.is_finite() {
+                *own = 0.0;
+            }
+        }
+    }
+
+    /// Counts the directions in which the derivatives are zero, and those of them with other equilibria.
+    fn examine_neighbours(&mut self, search: &EquilibriumSearch<'_>) {
+        let unknowns = search.unknowns();
+        let slopes = search.slopes_of(&self.jacobian);
+        let largest = |sizes: &mut dyn Iterator<Item = f64>| {
+            let most = sizes.fold(0.0, f64::max);
+            if most > 0.0 { most } else { 1.0 }
+        };
+        let rows: Vec<f64> = (0..slopes.rows())
+            .map(|i| largest(&mut slopes.row(i).iter().map(|x| x.abs())))
+            .collect();
+        let columns: Vec<f64> = (0..slopes.columns())
+            .map(|j| largest(&mut (0..slopes.rows()).map(|i| slopes[(i, j)].abs() / rows[i])))
+            .collect();
+        let balanced = Matrix::from_fn(slopes.rows(), slopes.columns(), |i, j| {
+            slopes[(i, j)] / rows[i] / columns[j]
+        });
+        let Some(values) = SingularValues::of(&balanced) else { return };
+        let rank = values.rank(SINGULAR);
+        let distance = NEIGHBOUR * search.scale();
+        let has_neighbour = |k: usize| {
+            let direction: Vec<f64> =
+                (0..unknowns.len()).map(|j| values.right[(j, k)] / columns[j]).collect();
+            let size = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let mut state = self.state.clone();
+            for (&place, x) in unknowns.iter().zip(&direction) {
+                state[place] += distance * x / size;
+            }
+            let end = search.damped(&state);
+            search.rests(&end) && search.distance(&end) >= 0.5 * distance
+        };
+        let singular = unknowns.len() - rank;
+        self.continuum = (rank..unknowns.len()).filter(|&k| has_neighbour(k)).count();
+        self.undecided = singular - self.continuum;
     }
 }
 
@@ -95,21 +217,5 @@ pub fn rate_derivative(jacobian: &Matrix, row: usize, column: usize) -> f64 {
     }
 }
 
-/// The step that makes `rest` zero where it is linear; the shortest where there are many, to the damping.
-fn newton_step(slopes: &Matrix, rest: &[f64]) -> Option<Vec<f64>> {
-    let right = Matrix::from_fn(rest.len(), 1, |i, _| -rest[i]);
-    let (rows, columns) = (slopes.rows(), slopes.columns());
-    let alone = if rows == columns { solve_matrix(slopes, &right) } else { None };
-    let step = match alone {
-        Some(step) => step,
-        None => {
-            let transposed = slopes.transposed();
-            let mut normal = &transposed * slopes;
-            let most = (0..columns).map(|i| normal[(i, i)]).fold(0.0, f64::max);
-            (0..columns).for_each(|i| normal[(i, i)] += DAMPING * most);
-            solve_matrix(&normal, &(&transposed * &right))?
-        }
-    };
-    let step: Vec<f64> = (0..columns).map(|i| step[(i, 0)]).collect();
-    step.iter().all(|x| x.is_finite()).then_some(step)
-}
+#[cfg(test)]
+mod tests;

@@ -4,12 +4,14 @@
 //! time step, or with 1024 bits, and the results follow from its output.
 
 mod complex;
+mod conserved_sums;
 mod cramers_rule;
 mod data_flow;
 mod drift_forecast;
 mod eigenvalues;
 mod energy_band;
 mod equilibrium;
+mod equilibrium_search;
 mod error_forecast;
 mod exponential;
 mod factorisation;
@@ -19,6 +21,7 @@ mod largest_step;
 mod linear_step;
 mod linear_stepper;
 mod linearisation;
+mod neutral_steps;
 mod nystrom_certificate;
 mod operation_trace;
 mod orbit_error;
@@ -27,6 +30,7 @@ mod order_certificate;
 mod oscillator_windows;
 mod precision;
 mod quadratic_form;
+mod rate_rounding;
 mod rational_step;
 mod roots;
 mod runge_kutta_certificate;
@@ -44,6 +48,7 @@ mod timing;
 mod update_matrix;
 
 pub use complex::Complex;
+pub use conserved_sums::{ConservedSum, ConservedSums, conserved_sums};
 pub use data_flow::{DataFlow, Operation};
 pub use drift_forecast::{DriftForecast, drift_keeps_within, forecast_drift};
 pub use eigenvalues::{determinant, eigenvalues};
@@ -66,6 +71,7 @@ pub use order_certificate::OrderCertificate;
 pub use oscillator_windows::oscillator_windows;
 pub use precision::{Cycle, LocalRounding, float_clock};
 pub use quadratic_form::QuadraticForm;
+pub use rate_rounding::eigenvalue_rounding;
 pub use rational_step::{RationalStep, UnknownImplicitStep};
 pub use runge_kutta_certificate::RungeKuttaCertificate;
 pub use spectrum::{Eigenvalues, Spectrum};

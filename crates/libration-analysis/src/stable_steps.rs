@@ -5,6 +5,7 @@ use libration_core::system::DampedOscillator;
 use libration_linear::eigenvalues;
 use num_complex::Complex64;
 
+use super::neutral_steps::{MOST_EXACT, neutral_windows};
 use super::step_search::{DAMPED, searched_windows};
 use super::{LinearStepper, StabilityFunction, StabilityWindow, StepWindow, oscillator_windows};
 
@@ -46,8 +47,10 @@ impl LinearStepper {
     /// modal damping they are those of its oscillators, from exact polynomials. With other damping the spectral radius of the update
     /// matrix is searched up to about twice the limit of the fastest mode without damping, at distances of about a hundredth of it:
     /// narrower windows and those beyond may be missed. Where damping is implicit it is searched from 0.1 to 1000 times the time of the fastest
-    /// mode, at distances of a few per cent, and not known if it is stable there. None if the integrator does not apply, or if a mode grows, or oscillates for ever
-    /// under forces of velocities that are no modal damping, and there is no stability function.
+    /// mode, at distances of a few per cent, and not known if it is stable there. Where a mode oscillates for ever under forces of
+    /// velocities that are no modal damping, the search has 1024 bits, since growth may be small at each step.
+    ///
+    /// None for the [reason](LinearStepper::unknown_steps) that stable steps are not known.
     pub fn stable_steps(
         &self,
         method: impl Into<AnyMethod>,
@@ -76,16 +79,38 @@ impl LinearStepper {
         if let Some(exact) = exact {
             return Some(intersection(exact.into_iter()));
         }
-        // Of gyroscopic forces: where an exact mode neither grows nor decays, no search tells growth from rounding.
-        if values.iter().any(|value| value.re == 0.0 && value.im != 0.0) {
-            return None;
-        }
         let last = undamped.last().map_or(0.0, |window| window.to);
+        // Of gyroscopic forces: where an exact mode neither grows nor decays, no search in `f64` tells growth from rounding.
+        if values.iter().any(|value| value.re == 0.0 && value.im != 0.0) {
+            let most = match method {
+                AnyMethod::Explicit(_) => 2.0 * last + 1.0,
+                AnyMethod::Implicit(_) => DAMPED[1],
+            };
+            return neutral_windows(self, method, &values, most);
+        }
         match method {
             AnyMethod::Explicit(_) => {
                 searched_windows(self, method, &values, [0.0, 2.0 * last + 1.0])
             }
             AnyMethod::Implicit(_) => searched_windows(self, method, &values, DAMPED),
+        }
+    }
+
+    /// The reason in words for which [`stable_steps`](LinearStepper::stable_steps) of an integrator that applies are not known.
+    pub fn unknown_steps(
+        &self,
+        method: impl Into<AnyMethod>,
+        values: &[Complex64],
+    ) -> &'static str {
+        let values = without_rounding(values);
+        let is_neutral = values.iter().any(|value| value.re == 0.0 && value.im != 0.0);
+        match method.into() {
+            _ if values.iter().any(|value| value.re > 0.0) => "as a mode of the plant grows",
+            _ if is_neutral && values.len() > MOST_EXACT => {
+                "as the plant has too many states for exact arithmetic"
+            }
+            AnyMethod::Implicit(_) => "as the longest steps of the search are stable",
+            AnyMethod::Explicit(_) => "as the polynomials of its steps outgrow exact arithmetic",
         }
     }
 
@@ -203,13 +228,37 @@ mod tests {
         for (field, other) in [(10.0, 1.0), (0.1, 1.0), (10.0, 2.0)] {
             let a = gyroscopic(field, other);
             for method in [Method::SymplecticEuler, Method::VelocityVerlet] {
-                assert_eq!(windows(&a, method), None, "{field} {other} {method:?}");
+                // Never stable.
+                assert_eq!(windows(&a, method), Some(vec![]), "{field} {other} {method:?}");
                 let stepper = LinearStepper::new(&a).unwrap();
                 let step = stepper.with_step::<f64>(method, 0.05).unwrap();
                 let values = eigenvalues(&step.update_matrix()).unwrap();
                 assert!(values.iter().any(|value| value.norm() > 1.0 + 1e-9));
             }
             assert!(windows(&a, Method::Rk4).is_some_and(|windows| windows[0].to > 0.0));
+        }
+    }
+
+    #[test]
+    fn growth_below_the_rounding_of_a_step_is_growth() {
+        // A Foucault pendulum: ω² of 0.9 and twice a rotation of 5e-5. NumPy gives 5e-9 per step at ωh = 1, and rounding at 0.01.
+        let turning = |rotation: f64| {
+            let [plus, minus] = [2.0 * rotation, -2.0 * rotation];
+            let rows = [
+                [0.0, 0.0, 1.0, 0.0],
+                [0.0, 0.0, 0.0, 1.0],
+                [-0.9, 0.0, 0.0, plus],
+                [0.0, -0.9, minus, 0.0],
+            ];
+            Matrix::from_rows(&rows).unwrap()
+        };
+        for rotation in [0.5, 5e-5, 1e-9] {
+            let a = turning(rotation);
+            for method in [Method::SymplecticEuler, Method::VelocityVerlet] {
+                assert_eq!(windows(&a, method), Some(vec![]), "{rotation} {method:?}");
+            }
+            // The faster circle has a rate of Ω + √(ω² + Ω²), at most 1.58.
+            assert!(windows(&a, Method::Rk4).is_some_and(|windows| windows[0].to > 1.79));
         }
     }
 

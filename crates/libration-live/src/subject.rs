@@ -122,7 +122,7 @@ impl Subject {
         });
         let search = |from: Vec<f64>| {
             let at = [from, inputs.clone()].concat();
-            Equilibrium::near(self.equations.dynamics(), &at, &self.unknowns).ok()
+            Equilibrium::by_newton(self.equations.dynamics(), &at, &self.unknowns).ok()
         };
         // Velocities are zero at rest, other than those of states of first order and of time.
         let mut at_rest = self.start.clone();

@@ -53,6 +53,7 @@ impl AnalysisFile {
             timing: self.has_controller.then(|| request.loop_timing()).transpose()?,
             dt,
             integrator,
+            operating_point: request.operating_point().cloned(),
             note,
         })
     }

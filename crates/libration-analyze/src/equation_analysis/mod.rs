@@ -1,6 +1,7 @@
 //! Analysis of systems by equations: the output of `libration list FILE` and `libration analyze --system FILE`.
 
 mod motion;
+mod motion_steps;
 mod step;
 mod summary;
 
@@ -18,6 +19,7 @@ use crate::linear_analysis::{self, LinearAnalysis, LinearAnalysisError, LinearRe
 use crate::step::Stepping;
 
 pub use motion::{EnergyChange, EquationMotion, StateError};
+pub use motion_steps::MotionSteps;
 pub use step::{spectral_radius, step_order};
 pub use summary::{EquationSummary, SummaryParameter, SummaryState, SummaryTask};
 
@@ -37,6 +39,8 @@ pub struct EquationAnalysis {
     pub operating_point: Option<OperatingPoint>,
     /// The system about the equilibrium.
     pub linear: Option<LinearAnalysis>,
+    /// The stable steps along the motion.
+    pub steps_along_motion: MotionSteps,
     /// The reason why there are no modes, if there are none.
     pub no_modes: Option<String>,
 }
@@ -65,6 +69,8 @@ pub fn analyze(
         Ok((plant, point)) => {
             let integrator = Some(Stepping::from(method));
             let open_loop = LinearRequest::open_loop(plant, dt, integrator);
+            let open_loop =
+                open_loop.map(|own| LinearRequest { operating_point: Some(point.clone()), ..own });
             let analysis = open_loop.and_then(|request| {
                 linear_analysis::analyze(&request, stop).or_else(|error| match error {
                     // With states of first order the theory of an integrator applies only if it treats all states alike.
@@ -76,7 +82,9 @@ pub fn analyze(
                 })
             });
             match analysis {
-                Ok(linear) => (Some(point), Some(linear), None),
+                Ok(linear) => {
+                    (Some(point), Some(LinearAnalysis { operating_point: None, ..linear }), None)
+                }
                 Err(LinearAnalysisError::Interrupted) => return Err(AnalyzeError::Interrupted),
                 Err(error) => (Some(point), None, Some(error.to_string())),
             }
@@ -85,6 +93,16 @@ pub fn analyze(
     };
     let equilibrium = operating_point.as_ref().map(|point| point.state_of(system));
     let motion = EquationMotion::new(system, method, dt, steps, equilibrium.as_deref(), stop)?;
+    let horizon = motion.error_steps as f64 * dt;
+    let steps_along_motion = MotionSteps::new(system, method, horizon, stop)?;
     let system = EquationSummary::new(system);
-    Ok(EquationAnalysis { schema: SCHEMA, system, motion, operating_point, linear, no_modes })
+    Ok(EquationAnalysis {
+        schema: SCHEMA,
+        system,
+        motion,
+        operating_point,
+        linear,
+        steps_along_motion,
+        no_modes,
+    })
 }

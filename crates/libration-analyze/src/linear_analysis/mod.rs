@@ -3,6 +3,7 @@
 mod closed_loop;
 mod error;
 mod mode;
+mod plant_verdict;
 mod simulated_mode;
 mod step;
 
@@ -13,6 +14,8 @@ use libration::analysis::{LinearStepper, without_rounding};
 use libration::linear::{
     Complex64, DiscreteController, LinearLoop, LinearPlant, LoopTiming, Matrix, ModeDetails, Signal,
 };
+use libration_report::verdict::Verdict;
+use libration_settings::linear_loop::OperatingPoint;
 use serde::Serialize;
 
 use crate::Stepping;
@@ -36,6 +39,8 @@ pub struct LinearRequest {
     pub dt: Option<f64>,
     /// The integrator, or exact steps; none for all.
     pub integrator: Option<Stepping>,
+    /// The operating point, if the plant is a linearisation.
+    pub operating_point: Option<OperatingPoint>,
     /// A restriction of the numbers.
     pub note: Option<String>,
 }
@@ -55,6 +60,14 @@ pub struct LinearAnalysis {
     pub sampling_period: Option<f64>,
     /// Whether half of the states are rates of the other half, so that each integrator applies.
     pub mechanical: bool,
+    /// The equilibrium at which the plant is a linearisation; none of other plants.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub operating_point: Option<OperatingPoint>,
+    /// Whether the modes grow. Unknown of modes that neither grow nor decay.
+    pub verdict: Verdict,
+    /// Whether the plant is a linearisation that is zero to rounding, so that it decides nothing.
+    #[serde(skip)]
+    pub decides_nothing: bool,
     /// The modes of the plant, the one that grows fastest first; of a pair one.
     pub modes: Vec<Mode>,
     /// The largest size of an eigenvalue in 1/s.
@@ -111,12 +124,17 @@ pub fn analyze(
     let values: Vec<Complex64> = details.iter().map(|mode| mode.value).collect();
     let values = without_rounding(&values);
     details.iter_mut().zip(&values).for_each(|(mode, &value)| mode.value = value);
-    let sizes = values.iter().map(|value| value.norm());
+    plant_verdict::remove_rounding(plant, &mut details);
+    let modes: Vec<Mode> = details.iter().map(Mode::from).collect();
+    let point = request.operating_point.as_ref();
+    let sizes = details.iter().map(|mode| mode.value.norm());
     let fastest = sizes.clone().fold(0.0, f64::max);
     let slowest = sizes.filter(|size| *size > 0.0).reduce(f64::min);
     let mut steps = Vec::new();
     let shapes = shapes(&details);
-    let subject = step::Subject { plant, stepper: stepper.as_ref(), shapes: &shapes };
+    let decides_nothing = plant_verdict::decides_nothing(&modes, point);
+    let subject =
+        step::Subject { plant, stepper: stepper.as_ref(), shapes: &shapes, decides_nothing };
     for stepping in request.steppings(stepper.as_ref()) {
         if stop.load(Ordering::Relaxed) {
             return Err(LinearAnalysisError::Interrupted);
@@ -139,7 +157,10 @@ pub fn analyze(
         outputs: SignalName::all(&plant.outputs),
         sampling_period: plant.sampling_period,
         mechanical: stepper.as_ref().is_some_and(LinearStepper::is_mechanical),
-        modes: details.iter().map(Mode::from).collect(),
+        operating_point: point.cloned(),
+        verdict: plant_verdict::of_modes(&modes, point),
+        decides_nothing,
+        modes,
         fastest_rate: fastest,
         slowest_rate: slowest,
         stiffness: slowest.map(|slowest| fastest / slowest),
@@ -169,7 +190,14 @@ impl LinearRequest {
         let [n, m, p] = [&plant.states, &plant.inputs, &plant.outputs].map(Vec::len);
         let silent = DiscreteController::gain(Matrix::zeros(m, p));
         let linear = LinearLoop::new(plant, silent, dt, Matrix::identity(n + m), vec![0.0; p])?;
-        Ok(LinearRequest { linear, timing: None, dt: Some(dt), integrator, note: None })
+        Ok(LinearRequest {
+            linear,
+            timing: None,
+            dt: Some(dt),
+            integrator,
+            operating_point: None,
+            note: None,
+        })
     }
 
     fn plant(&self) -> &LinearPlant {

@@ -19,6 +19,9 @@ pub struct StepAnalysis {
     /// The intervals `[from, to]` of time steps in s in which no mode grows that does not grow in exact steps; `to` is none without
     /// an end. None if they are not known.
     pub stable_dt: Option<Vec<[Option<f64>; 2]>>,
+    /// The reason for which they are not known, if they are not: `as a mode of the plant grows`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unknown_stable_dt: Option<&'static str>,
     /// The end of the first of them, if it begins at 0; none without an end.
     pub largest_stable_dt: Option<f64>,
     /// The largest size of a multiplier of a mode: of the stability function at the eigenvalues of the plant, or of the eigenvalues of
@@ -68,11 +71,16 @@ pub struct ModeUnderSteps {
     pub simulated_f32: Option<SimulatedMode>,
 }
 
+/// Why no stable steps follow from a linearisation that is zero.
+const NOTHING: &str = "as the linearisation is zero and decides nothing";
+
 /// A plant in continuous time, with its modes.
 pub(super) struct Subject<'a> {
     pub(super) plant: &'a LinearPlant,
     pub(super) stepper: Option<&'a LinearStepper>,
     pub(super) shapes: &'a [(Complex64, Vec<Complex64>)],
+    /// Whether the plant is a linearisation that decides nothing.
+    pub(super) decides_nothing: bool,
 }
 
 impl Subject<'_> {
@@ -84,9 +92,10 @@ impl Subject<'_> {
         detail: bool,
     ) -> StepAnalysis {
         let method = stepping.any_method();
-        let windows = match method {
+        let (windows, unknown) = match method {
+            None => (Some(vec![StepWindow::ALL]), None),
+            Some(_) if self.decides_nothing => (None, Some(NOTHING)),
             Some(method) => self.stable_steps(method),
-            None => Some(vec![StepWindow::ALL]),
         };
         let first = windows.as_ref().and_then(|windows| windows.first());
         let mut analysis = StepAnalysis {
@@ -98,6 +107,7 @@ impl Subject<'_> {
                 .filter(|window| window.from == 0.0 && window.to.is_finite())
                 .map(|window| window.to),
             stable_dt: windows.map(|windows| windows.into_iter().map(ends).collect()),
+            unknown_stable_dt: unknown,
             predicted_spectral_radius: None,
             spectral_radius: None,
             spectral_radius_f32: None,
@@ -117,11 +127,16 @@ impl Subject<'_> {
         analysis
     }
 
-    fn stable_steps(&self, method: AnyMethod) -> Option<Vec<StepWindow>> {
+    /// The stable time steps, or the reason for which they are not known.
+    fn stable_steps(&self, method: AnyMethod) -> (Option<Vec<StepWindow>>, Option<&'static str>) {
         let upper = self.shapes.iter().map(|(value, _)| *value);
         let lower = self.shapes.iter().filter(|(value, _)| value.im > 0.0);
         let values: Vec<Complex64> = upper.chain(lower.map(|(value, _)| value.conj())).collect();
-        self.stepper?.stable_steps(method, &values)
+        let Some(stepper) = self.stepper else { return (None, None) };
+        match stepper.stable_steps(method, &values) {
+            Some(windows) => (Some(windows), None),
+            None => (None, Some(stepper.unknown_steps(method, &values))),
+        }
     }
 
     fn add_exact(&self, analysis: &mut StepAnalysis, dt: f64) {

@@ -41,7 +41,7 @@ fn open(plant: LinearPlant, dt: Option<f64>) -> LinearRequest {
     let period = plant.sampling_period.unwrap_or(0.01);
     let cost = Matrix::identity(n + m);
     let linear = LinearLoop::new(plant, controller, period, cost, vec![0.0; p]).unwrap();
-    LinearRequest { linear, timing: None, dt, integrator: None, note: None }
+    LinearRequest { linear, timing: None, dt, integrator: None, operating_point: None, note: None }
 }
 
 fn run(request: &LinearRequest) -> LinearAnalysis {
@@ -133,6 +133,7 @@ fn modes_and_deviations_of_loops_are_those_of_numpy() {
             timing: Some(timing.clone()),
             dt: None,
             integrator: None,
+            operating_point: None,
             note: None,
         };
         let analysis = run(&request);

@@ -11,6 +11,7 @@ mod export;
 mod implicit;
 mod linear_analysis;
 mod loop_growth;
+mod operating_points;
 mod overflow;
 mod reference;
 mod reference_flow;

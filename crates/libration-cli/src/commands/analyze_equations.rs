@@ -45,6 +45,8 @@ fn describe(analysis: &EquationAnalysis) -> String {
     let EquationAnalysis { system, operating_point, linear, no_modes, motion, .. } = analysis;
     let mut text = format!("{}, {} with dt = {} s\n", system.name, motion.integrator, motion.dt);
     describe_motion(motion, system.smooth, &mut text);
+    let steps = summary::along_motion(&analysis.steps_along_motion, motion);
+    text += &format!("\nalong the motion: {steps}\n");
     text += "\n";
     if let Some(point) = operating_point {
         text += &format!("{}\n", point.sentence());

@@ -32,6 +32,9 @@ pub(super) fn run(request: &LinearRequest, args: &AnalyzeArgs) -> Result<String,
 pub(super) fn describe(analysis: &LinearAnalysis, detail: bool) -> String {
     let mut text = String::new();
     plant(analysis, &mut text);
+    if let Some(point) = &analysis.operating_point {
+        text += &format!("{}\n", point.sentence());
+    }
     modes(analysis, &mut text);
     if let (Some(dt), false) = (analysis.dt, analysis.steps.is_empty()) {
         let _ = writeln!(text, "\nSteps of dt = {dt} s");
@@ -172,7 +175,10 @@ fn stable_steps(analysis: &LinearAnalysis, text: &mut String) {
         let window =
             |&[from, to]: &[Option<f64>; 2]| format!("{} to {}", end(from, least), end(to, limit));
         let shown = match &step.stable_dt {
-            None => "not known: a mode of the plant grows".to_owned(),
+            None => match step.unknown_stable_dt {
+                Some(why) => format!("not known, {why}"),
+                None => "not known".to_owned(),
+            },
             Some(windows) if windows.is_empty() => "none".to_owned(),
             Some(windows) => windows.iter().map(window).collect::<Vec<_>>().join(", "),
         };

@@ -46,6 +46,7 @@ mod long_files;
 mod loop_verdicts;
 #[cfg(target_os = "linux")]
 mod memory;
+mod operating_points;
 mod plant_files;
 mod presets;
 mod probe;

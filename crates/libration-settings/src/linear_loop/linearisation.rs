@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use libration::analysis::{Equilibrium, rate_derivative};
+use libration::analysis::{ConservedSum, Equilibrium, rate_derivative};
 use libration::linear::{LinearPlant, Matrix};
 
 use super::subject::Subject;
-use super::{Coordinates, OperatingPoint, OperatingValue};
+use super::{ConservedValue, Coordinates, OperatingPoint, OperatingValue};
 use crate::equations::EquationSystem;
 use crate::{Fault, Number};
 
@@ -39,8 +39,8 @@ pub(super) fn linearise(
     }
 }
 
-/// The plant of a system of equations at an equilibrium: of those that Newton's method finds from its start and from zero the one
-/// nearer to the start.
+/// The plant of a system of equations at an equilibrium: at one with the values of the sums that the motion from the start conserves, if
+/// there is one. Else of those that the search finds from the start and from zero the one nearer to the start.
 ///
 /// # Errors
 /// [`Fault`]: a system that depends on time, or no equilibrium.
@@ -51,20 +51,24 @@ pub fn linearised_equations(
 }
 
 impl Subject {
-    /// At the nearer of two equilibria.
+    /// At an equilibrium with the conserved sums of the start, or at the nearer of two others.
     fn linearised_near_start(&self) -> Result<(LinearPlant, OperatingPoint), Fault> {
-        let zero = Coordinates::Each(vec![Number(0.0); self.unknowns.len()]);
-        let from_start = self.linearised(None, None);
-        let from_zero = self.linearised(Some(&zero), None);
-        let distance = |point: &OperatingPoint| -> f64 {
-            let values = point.states.iter().zip(&self.unknowns);
-            values.map(|(state, &place)| (state.value - self.start[place]).powi(2)).sum()
-        };
-        match (from_start, from_zero) {
-            (Ok(first), Ok(second)) if distance(&second.1) < distance(&first.1) => Ok(second),
-            (Err(_), Ok(second)) => Ok(second),
-            (first, _) => first,
+        let Subject { dynamics, start, unknowns, sums, .. } = self;
+        if let Some(found) = Equilibrium::with_sums(dynamics, start, unknowns, sums) {
+            return self.plant_at(start, found);
         }
+        let zero = Coordinates::Each(vec![Number(0.0); self.unknowns.len()]);
+        let from_start = self.equilibrium(None, None);
+        let from_zero = self.equilibrium(Some(&zero), None);
+        let distance = |found: &Equilibrium| -> f64 {
+            unknowns.iter().map(|&place| (found.state[place] - start[place]).powi(2)).sum()
+        };
+        let (_, found) = match (from_start, from_zero) {
+            (Ok(first), Ok(second)) if distance(&second.1) < distance(&first.1) => second,
+            (Err(_), Ok(second)) => second,
+            (first, _) => first?,
+        };
+        self.plant_at(start, found)
     }
 
     fn linearised(
@@ -72,11 +76,19 @@ impl Subject {
         at: Option<&Coordinates>,
         command: Option<&Coordinates>,
     ) -> Result<(LinearPlant, OperatingPoint), Fault> {
-        let Subject { name, dynamics, signals, start, unknowns, states, mass, .. } = self;
+        let (start, found) = self.equilibrium(at, command)?;
+        self.plant_at(&start, found)
+    }
+
+    /// The equilibrium that a search finds, and its start.
+    fn equilibrium(
+        &self,
+        at: Option<&Coordinates>,
+        command: Option<&Coordinates>,
+    ) -> Result<(Vec<f64>, Equilibrium), Fault> {
+        let Subject { name, dynamics, signals, start, unknowns, mass, .. } = self;
         let (mut start, mass) = (start.clone(), *mass);
-        let d = dynamics.degrees();
-        let inputs: Vec<usize> =
-            (2 * d..signals.len()).filter(|&i| !signals[i].name.is_empty()).collect();
+        let inputs = self.inputs();
         let set = |places: &[usize], given: Option<&Coordinates>, key, start: &mut Vec<f64>| {
             let Some(given) = given else { return Ok(()) };
             let names: Vec<&str> = places.iter().map(|&i| signals[i].name.as_str()).collect();
@@ -87,15 +99,9 @@ impl Subject {
         };
         set(unknowns, at, "system.linear.at", &mut start)?;
         set(&inputs, command, "system.linear.command", &mut start)?;
-        let value = |&i: &usize, x: f64| OperatingValue {
-            name: signals[i].name.clone(),
-            value: x,
-            unit: signals[i].unit.clone(),
-        };
-        let commands = inputs.iter().map(|i| value(i, start[*i])).collect();
         inputs.iter().for_each(|&i| start[i] /= mass);
         let found = Equilibrium::near(dynamics, &start, unknowns);
-        let Equilibrium { state, residual, jacobian } = found.map_err(|left| {
+        let found = found.map_err(|left| {
             let values: Vec<String> = unknowns
                 .iter()
                 .map(|&i| format!("{} = {:?}", signals[i].name, left.state[i]))
@@ -108,10 +114,42 @@ impl Subject {
             Fault::new("system.linear.at", message)
                 .help("begin `at` coordinates nearer to one, or change `command`".to_owned())
         })?;
+        Ok((start, found))
+    }
+
+    /// The plant at an equilibrium that was found from `start`.
+    fn plant_at(
+        &self,
+        start: &[f64],
+        found: Equilibrium,
+    ) -> Result<(LinearPlant, OperatingPoint), Fault> {
+        let Subject { name, dynamics, signals, unknowns, states, mass, .. } = self;
+        let Equilibrium { state, residual, jacobian, continuum, undecided } = found;
+        let inputs: Vec<usize> = self.inputs();
+        let value = |&i: &usize, x: f64| OperatingValue {
+            name: signals[i].name.clone(),
+            value: x,
+            unit: signals[i].unit.clone(),
+        };
+        let commands = inputs.iter().map(|i| value(i, mass * state[*i])).collect();
+        let size = |state: &[f64]| unknowns.iter().map(|&i| state[i].abs()).fold(0.0, f64::max);
+        let squares = unknowns.iter().map(|&i| (state[i] - start[i]).powi(2));
+        let distance = squares.sum::<f64>().sqrt();
+        let relative_distance = match size(&state).max(size(start)) {
+            0.0 => 0.0,
+            scale => distance / scale,
+        };
+        let conserved = self.sums.iter().map(|sum| ConservedValue {
+            sum: self.sum_in_words(sum),
+            start: sum.start,
+            value: sum.at(&state),
+            equal: sum.holds_at(&state),
+        });
+        let conserved = conserved.collect();
         let n = states.len();
         let a = Matrix::from_fn(n, n, |i, j| rate_derivative(&jacobian, states[i], states[j]));
         let b = Matrix::from_fn(n, inputs.len(), |i, j| {
-            rate_derivative(&jacobian, states[i], inputs[j]) / mass
+            rate_derivative(&jacobian, states[i], inputs[j]) / *mass
         });
         let of = |places: &[usize]| places.iter().map(|&i| signals[i].clone()).collect::<Vec<_>>();
         let zero = Matrix::zeros(n, inputs.len());
@@ -121,7 +159,44 @@ impl Subject {
         let plant = LinearPlant { has_first_order_states: self.has_first_order_states, ..plant };
         let states = unknowns.iter().map(|i| value(i, state[*i])).collect();
         let is_smooth = dynamics.accelerations().is_smooth();
-        Ok((plant, OperatingPoint { system: name.clone(), states, commands, residual, is_smooth }))
+        let point = OperatingPoint {
+            system: name.clone(),
+            states,
+            commands,
+            residual,
+            distance,
+            relative_distance,
+            continuum,
+            undecided,
+            conserved,
+            is_smooth,
+        };
+        Ok((plant, point))
+    }
+
+    /// The places of the inputs.
+    fn inputs(&self) -> Vec<usize> {
+        let all = 2 * self.dynamics.degrees()..self.signals.len();
+        all.filter(|&i| !self.signals[i].name.is_empty()).collect()
+    }
+
+    /// A weighted sum by the names of its states.
+    fn sum_in_words(&self, sum: &ConservedSum) -> String {
+        let mut words = String::new();
+        for (i, (place, weight)) in sum.weights.iter().enumerate() {
+            let sign = match (i, *weight < 0.0) {
+                (0, false) => "",
+                (0, true) => "−",
+                (_, false) => " + ",
+                (_, true) => " − ",
+            };
+            let factor = match weight.abs() {
+                1.0 => String::new(),
+                size => format!("{} ", format!("{size:.5e}").parse().unwrap_or(size)),
+            };
+            words += &format!("{sign}{factor}{}", self.signals[*place].name);
+        }
+        words
     }
 }
 

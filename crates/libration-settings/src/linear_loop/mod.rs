@@ -23,7 +23,7 @@ pub use coordinates::Coordinates;
 pub use design::{Cascaded, Design};
 pub use linearisation::linearised_equations;
 pub use loop_table::{Channels, LinearLoopTable};
-pub use operating_point::{OperatingPoint, OperatingValue};
+pub use operating_point::{ConservedValue, OperatingPoint, OperatingValue};
 pub use part::{Part, PartKind};
 pub use part_table::PartTable;
 pub use plant_file::{parse as parse_plant, read as read_plant};

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use libration::analysis::{ConservedSum, conserved_sums};
 use libration::equations::{Degree, Dynamics};
 use libration::linear::Signal;
 use libration::{AnySystem, catalog, with_system};
@@ -17,6 +18,8 @@ pub(super) struct Subject {
     pub(super) signals: Vec<Signal>,
     /// Positions, velocities and inputs at which the search begins.
     pub(super) start: Vec<f64>,
+    /// Weighted sums of states that the motion from the start of a file conserves.
+    pub(super) sums: Vec<ConservedSum>,
     /// The places of coordinates and states of first order.
     pub(super) unknowns: Vec<usize>,
     /// The places of the states of the plant.
@@ -66,6 +69,7 @@ impl Subject {
             name: entry.name.to_owned(),
             dynamics,
             start: vec![0.0; signals.len()],
+            sums: Vec::new(),
             signals,
             unknowns: (0..dimension).collect(),
             states: (0..2 * dimension).collect(),
@@ -118,6 +122,8 @@ impl Subject {
             let added: Vec<Signal> = added.collect();
             signals.extend(added);
         }
+        let states: Vec<usize> = system.states.iter().map(|state| state.place).collect();
+        let sums = conserved_sums(system.equations.dynamics(), &system.start(), &states);
         let mut start = system.q.clone();
         start.extend(degrees.iter().zip(&system.v).map(|(degree, &v)| match degree {
             Degree::State(_) => v,
@@ -134,8 +140,9 @@ impl Subject {
             dynamics,
             signals,
             start,
+            sums,
             unknowns: degrees.iter().enumerate().filter_map(unknown).collect(),
-            states: system.states.iter().map(|state| state.place).collect(),
+            states,
             has_first_order_states: degrees.iter().any(|d| matches!(d, Degree::State(_))),
             mass: 1.0,
         })

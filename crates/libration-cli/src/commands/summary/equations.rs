@@ -1,9 +1,9 @@
 //! Steps of a system by equations.
 
-use libration_analyze::equation_analysis::{EquationAnalysis, EquationMotion};
+use libration_analyze::equation_analysis::{EquationAnalysis, EquationMotion, MotionSteps};
 use libration_analyze::linear_analysis::StepAnalysis;
 
-use super::super::digits::significant;
+use super::super::digits::{limit, significant};
 use super::super::repeat_command::{SYSTEM, of_subcommand, with_option};
 use super::linear_plant::verdict;
 use super::linear_steps::append_steps;
@@ -35,6 +35,7 @@ pub(crate) fn of_equations(analysis: &EquationAnalysis, order: &str) -> String {
     if let Some(linear) = &analysis.linear {
         append_steps(linear, false, &mut summary);
     }
+    summary.row("along the motion", &along_motion(&analysis.steps_along_motion, motion));
     if let Some(point) = &analysis.operating_point {
         summary.sentence(&point.sentence());
     }
@@ -57,6 +58,33 @@ pub(crate) fn of_equations(analysis: &EquationAnalysis, order: &str) -> String {
     }
     let system = format!("the operations of a step, all states of {}, and the modes", system.name);
     summary.finish(&system)
+}
+
+/// The largest stable step along the motion in words.
+pub(crate) fn along_motion(steps: &MotionSteps, motion: &EquationMotion) -> String {
+    let until = significant(steps.until, 4);
+    let about = format!("an estimate from {} states up to {until} s", steps.states);
+    let unknown = match steps.unknown_states {
+        0 => String::new(),
+        count => format!("; not known at {count} of them"),
+    };
+    match steps.largest_stable_dt {
+        _ if steps.unknown_states == steps.states => {
+            format!("stable steps are not known at any of {} states up to {until} s", steps.states)
+        }
+        Some(0.0) => {
+            format!("no step is stable at {} s, {about}{unknown}", significant(steps.at_time, 3))
+        }
+        Some(dt) => {
+            let exceeds = if motion.dt > dt { "; dt exceeds it" } else { "" };
+            format!(
+                "stable up to {} s, at {} s, {about}{unknown}{exceeds}",
+                limit(dt, 4),
+                significant(steps.at_time, 3)
+            )
+        }
+        None => format!("no limit of stable steps, {about}{unknown}"),
+    }
 }
 
 /// Half of the step, or of the largest stable one.

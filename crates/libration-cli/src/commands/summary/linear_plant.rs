@@ -2,7 +2,8 @@
 
 use libration::linear::GROWTH_ROUNDING;
 use libration_analyze::linear_analysis::{ClosedLoop, LinearAnalysis, Mode};
-use libration_report::verdict::Outcome;
+use libration_report::verdict::{Outcome, Verdict};
+use libration_settings::linear_loop::OperatingPoint;
 
 use super::super::digits::{limit, significant};
 use super::super::mode_text::{counted, shape};
@@ -14,9 +15,6 @@ use super::{Summary, numbers, words};
 const MOST_MODES: usize = 5;
 const MOST_LOOP_MODES: usize = 3;
 const MOST_STATES: usize = 3;
-
-/// Growth of a mode that counts as none, relative to the fastest rate.
-const ROUNDING: f64 = 1e-9;
 
 /// Options of a loop around a plant.
 const LOOP: [&str; 9] = [
@@ -92,15 +90,10 @@ fn shorter_step(analysis: &LinearAnalysis) -> Option<f64> {
 
 /// Whether a mode of the plant grows.
 pub(super) fn is_unstable(analysis: &LinearAnalysis) -> bool {
-    analysis.modes.first().is_some_and(|first| first.growth_rate > rounding(analysis))
+    analysis.verdict.outcome == Outcome::Unstable
 }
 
-/// The growth in 1/s that is rounding.
-fn rounding(analysis: &LinearAnalysis) -> f64 {
-    ROUNDING * analysis.fastest_rate
-}
-
-/// The stability of a plant in a sentence.
+/// The stability of a plant in a sentence, with the point at which it is a linearisation.
 pub(super) fn verdict(analysis: &LinearAnalysis) -> String {
     let counts = [
         (analysis.states.len(), "state"),
@@ -111,36 +104,20 @@ pub(super) fn verdict(analysis: &LinearAnalysis) -> String {
     let clock = analysis
         .sampling_period
         .map_or_else(String::new, |period| format!(", sampled every {} s", significant(period, 6)));
-    let about = format!("The plant ({}{clock})", counts.join(", "));
-    let Some(first) = analysis.modes.first() else { return format!("{about} has no modes.") };
-    let least = rounding(analysis);
-    let growing = analysis.modes.iter().filter(|mode| mode.growth_rate > least).count();
-    let moved =
-        first.states.first().map_or_else(String::new, |(name, _)| format!(", most in {name}"));
-    match first.growth_rate {
-        rate if rate > least => {
-            let more = if growing > 1 {
-                format!("{growing} modes grow, the fastest")
-            } else {
-                "a mode grows".into()
-            };
-            format!("{about} is unstable: {more} at {} 1/s{moved}.", significant(rate, 4))
+    let point = analysis.operating_point.as_ref();
+    let place = point.map(|point| format!(", linearised at {},", point.place()));
+    let place = place.unwrap_or_default();
+    let about = format!("plant ({}{clock}){place}", counts.join(", "));
+    let Verdict { outcome, evidence, .. } = &analysis.verdict;
+    let sentence = match outcome {
+        Outcome::Unknown if analysis.decides_nothing => {
+            format!("The stability of the {about} is unknown: {evidence}.")
         }
-        rate if rate < -least => {
-            format!(
-                "{about} is stable: its slowest mode decays at {} 1/s{moved}.",
-                significant(-rate, 4)
-            )
-        }
-        _ => {
-            let neutral = analysis.modes.iter().filter(|mode| mode.growth_rate.abs() <= least);
-            format!(
-                "{about} is not stable: {} neither grow nor decay.",
-                counted(neutral.count(), "mode")
-            )
-            .replace("1 mode neither grow nor decay", "a mode neither grows nor decays")
-        }
-    }
+        Outcome::Unknown => format!("The {about} is neither stable nor unstable: {evidence}."),
+        outcome => format!("The {about} is {outcome}: {evidence}."),
+    };
+    let remarks = point.map(OperatingPoint::remarks).unwrap_or_default();
+    format!("{sentence} {remarks}").trim_end().to_owned()
 }
 
 fn verdict_of_loop(own: &ClosedLoop) -> String {

@@ -6,43 +6,45 @@ use super::super::digits::{least, limit, significant};
 use super::Summary;
 use super::linear_plant::is_unstable;
 
-/// Why stable steps are not known.
-const UNKNOWN: &str = "not known, as a mode of the plant grows";
-
 /// Appends the integrators whose steps are stable, those that are not, and the difference of simulations from predictions.
 pub(super) fn append_steps(analysis: &LinearAnalysis, is_one: bool, summary: &mut Summary) {
     let Some(first) = analysis.steps.first() else { return };
     let end = |x: Option<f64>| x.map_or("∞".to_owned(), |x| limit(x, 4));
-    let mut groups: [(String, Vec<String>); 4] = match (analysis.dt, is_unstable(analysis)) {
-        (Some(dt), false) => [
-            format!("stable at dt = {dt} s"),
-            "unstable there".into(),
-            "never stable".into(),
-            UNKNOWN.into(),
-        ],
+    let names: [String; 3] = match (analysis.dt, is_unstable(analysis)) {
+        (Some(dt), false) => {
+            [format!("stable at dt = {dt} s"), "unstable there".into(), "never stable".into()]
+        }
         (None, false) => {
-            ["stable for any dt", "stable for some dt", "never stable", UNKNOWN].map(str::to_owned)
+            ["stable for any dt", "stable for some dt", "never stable"].map(str::to_owned)
         }
         // The plant grows; the question is whether the steps let other modes grow.
         (Some(dt), true) => [
             format!("only the growth of the plant at dt = {dt} s"),
             "more growth there".into(),
             "more growth at any dt".into(),
-            UNKNOWN.into(),
         ],
         (None, true) => [
             "only the growth of the plant for any dt",
             "only that growth for some dt",
             "more growth at any dt",
-            UNKNOWN,
         ]
         .map(str::to_owned),
-    }
-    .map(|name| (name, Vec::new()));
+    };
+    let mut groups: Vec<(String, Vec<String>)> =
+        names.into_iter().map(|name| (name, Vec::new())).collect();
     for step in &analysis.steps {
         let name = step.integrator;
         let (group, text) = match step.stable_dt.as_deref() {
-            None => (3, name.to_owned()),
+            None => {
+                let reason = step.unknown_stable_dt.map_or(String::new(), |why| format!(", {why}"));
+                let title = format!("not known{reason}");
+                let known = groups.iter().position(|(name, _)| *name == title);
+                let group = known.unwrap_or_else(|| {
+                    groups.push((title, Vec::new()));
+                    groups.len() - 1
+                });
+                (group, name.to_owned())
+            }
             Some([]) => (2, name.to_owned()),
             Some(windows) => {
                 let again = if windows.len() > 1 { ", and again later" } else { "" };
