@@ -3,6 +3,7 @@
 mod motion;
 mod step;
 mod summary;
+mod verdicts;
 
 use std::sync::atomic::AtomicBool;
 
@@ -17,9 +18,11 @@ use crate::AnalyzeError;
 use crate::linear_analysis::{self, LinearAnalysis, LinearAnalysisError, LinearRequest};
 use crate::step::Stepping;
 
-pub use motion::{EnergyChange, EquationMotion, StateError};
+pub use crate::motion::{EnergyChange, MotionExamination, StateExamination};
+pub use motion::{EquationMotion, StateError};
 pub use step::{spectral_radius, step_order};
 pub use summary::{EquationSummary, SummaryParameter, SummaryState, SummaryTask};
+pub use verdicts::EquationVerdicts;
 
 /// Version of the JSON format.
 pub const SCHEMA: &str = "libration.equation-analysis/1";
@@ -39,10 +42,12 @@ pub struct EquationAnalysis {
     pub linear: Option<LinearAnalysis>,
     /// The reason why there are no modes, if there are none.
     pub no_modes: Option<String>,
+    /// The verdicts on the step and on the motion.
+    pub verdicts: EquationVerdicts,
 }
 
-/// Analyses steps of `dt` seconds of a system from its start and about an equilibrium, until `stop` is set. The drift of the energy is
-/// that of `steps` steps, or of fewer where they take long.
+/// Analyses steps of `dt` seconds of a system from its start and about an equilibrium, until `stop` is set. Errors and the drift of the
+/// energy are those of `steps` steps, or of fewer where they take long.
 ///
 /// # Errors
 /// [`AnalyzeError::Simulation`] for an invalid time step, [`AnalyzeError::ImplicitDegrees`], and [`AnalyzeError::Interrupted`].
@@ -85,6 +90,9 @@ pub fn analyze(
     };
     let equilibrium = operating_point.as_ref().map(|point| point.state_of(system));
     let motion = EquationMotion::new(system, method, dt, steps, equilibrium.as_deref(), stop)?;
+    let verdicts =
+        EquationVerdicts::new(system, method, &motion, equilibrium.as_deref(), linear.as_ref());
     let system = EquationSummary::new(system);
-    Ok(EquationAnalysis { schema: SCHEMA, system, motion, operating_point, linear, no_modes })
+    let schema = SCHEMA;
+    Ok(EquationAnalysis { schema, system, motion, operating_point, linear, no_modes, verdicts })
 }

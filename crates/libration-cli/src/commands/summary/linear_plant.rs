@@ -1,6 +1,7 @@
 //! A linear plant, steps on it and the loop around it.
 
 use libration_analyze::linear_analysis::{ClosedLoop, LinearAnalysis, Mode};
+use libration_report::verdict::{Outcome, Verdict};
 
 use super::super::digits::{limit, significant};
 use super::super::mode_text::{counted, shape};
@@ -32,10 +33,24 @@ const LOOP: [&str; 9] = [
 /// Returns a screen of an analysis; `is_one` is whether one integrator is analysed.
 pub(crate) fn of_plant(analysis: &LinearAnalysis, is_one: bool) -> String {
     let plant = verdict(analysis);
-    let mut summary = match &analysis.closed_loop {
-        Some(own) => Summary::new(&format!("{} {plant}", verdict_of_loop(own))),
-        None => Summary::new(&plant),
-    };
+    let of_loop = analysis.closed_loop.as_ref().map(|own| own.period);
+    let of_loop = of_loop.zip(analysis.verdicts.closed_loop.as_ref());
+    let of_loop = of_loop.map(|(period, verdict)| {
+        let period = format!("with a period of {} s", significant(period, 6));
+        in_words("The loop", "the loop", &period, verdict)
+    });
+    let of_step = analysis.verdicts.step.as_ref().zip(analysis.dt).map(|(verdict, dt)| {
+        let name = analysis.steps.first().map_or("exact", |step| step.integrator);
+        let step = format!("{name} in steps of {} s", significant(dt, 6));
+        in_words(&step, &step, "on the plant", verdict)
+    });
+    let mut sentences: Vec<String> = of_loop.into_iter().chain(of_step).collect();
+    // What is not good comes first.
+    if !analysis.verdicts.step.as_ref().is_none_or(Verdict::is_good) {
+        sentences.reverse();
+    }
+    sentences.push(plant);
+    let mut summary = Summary::new(&sentences.join(" "));
     if let Some(note) = &analysis.note {
         summary.wrap("", &format!("note: {note}"), 2);
     }
@@ -141,15 +156,15 @@ pub(super) fn verdict(analysis: &LinearAnalysis) -> String {
     }
 }
 
-fn verdict_of_loop(own: &ClosedLoop) -> String {
-    let moments = own.mean_square_growth.exp_m1();
-    let verb = if own.stable { "fall" } else { "grow" };
-    format!(
-        "The loop is {} with a period of {} s: second moments {verb} by {} % per period.",
-        if own.stable { "stable" } else { "unstable" },
-        significant(own.period, 6),
-        significant(100.0 * moments.abs(), 4)
-    )
+/// A verdict as a sentence about `subject`, which is `inside` of a sentence.
+fn in_words(subject: &str, inside: &str, scope: &str, verdict: &Verdict) -> String {
+    let Verdict { outcome, evidence, .. } = verdict;
+    match outcome {
+        Outcome::Unknown => {
+            format!("Whether {inside} is stable {scope} is not known: {evidence}.")
+        }
+        outcome => format!("{subject} is {outcome} {scope}: {evidence}."),
+    }
 }
 
 fn append_modes(analysis: &LinearAnalysis, summary: &mut Summary) {
