@@ -163,10 +163,11 @@ def case(number, rng):
         },
     }
 
-parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-parser.add_argument("--count", type=int, required=True)
-parser.add_argument("--seed", type=int, required=True)
-options = parser.parse_args()
-rng = np.random.default_rng(options.seed)
-cases = [case(number, rng) for number in range(options.count)]
-print("[\n" + ",\n".join(json.dumps(one) for one in cases) + "\n]")
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--count", type=int, required=True)
+    parser.add_argument("--seed", type=int, required=True)
+    options = parser.parse_args()
+    rng = np.random.default_rng(options.seed)
+    cases = [case(number, rng) for number in range(options.count)]
+    print("[\n" + ",\n".join(json.dumps(one) for one in cases) + "\n]")

@@ -321,8 +321,8 @@ def _limit(budget: Mapping[str, Any]) -> Any:
     return f"beyond {budget['tried_up_to']:.6g}" if budget["stable_up_to"] is None else budget["stable_up_to"]
 
 
-_STEPS = 1_000_000
-"""Default number of steps for the largest energy drift."""
+_MOTION_STEPS = 1000
+"""Default number of steps of a motion by equations."""
 
 
 @check_keywords
@@ -334,7 +334,7 @@ def analyze(
     dt: float | None = None,
     q: Any = None,
     v: Any = None,
-    steps: int = _STEPS,
+    steps: int | None = None,
     max_drift: float | None = None,
     max_amplitude: float | None = None,
     max_error: float | None = None,
@@ -367,7 +367,7 @@ def analyze(
     latency, jitter, skew:
         As in :func:`~libration.simulate`; of a loop around a linear plant as in :func:`~libration.advise`.
     steps:
-        Number of steps for the largest energy drift (linear systems: up to 10¹⁵).
+        Number of steps of the motion and its energy drift (linear systems: up to 10¹⁵; default: 1,000,000, of a nonlinear motion 1000).
     max_drift, max_amplitude, max_error:
         Limits for which the largest ``dt`` is added (oscillator): a relative energy drift, a length in m, an error relative to the
         amplitude.
@@ -387,7 +387,7 @@ def analyze(
     of_catalogue = {
         "q": q,
         "v": v,
-        "steps": None if steps == _STEPS else steps,
+        "steps": steps,
         "max_drift": max_drift,
         "max_amplitude": max_amplitude,
         "max_error": max_error,
@@ -409,7 +409,7 @@ def analyze(
             system._text,
             text("integrator", integrator),
             number("dt", dt, "finite and greater than 0"),
-            whole("steps", steps),
+            whole("steps", _MOTION_STEPS if steps is None else steps),
         )
         return Analysis(json.loads(answer))
     if (plant := plant_of(system)) is not None:
@@ -436,7 +436,7 @@ def analyze(
         step_request(system, integrator, dt, q, v),
         loop_request(feedback, latency, jitter, skew, loss, cost_weights),
         {
-            "steps": whole("steps", steps),
+            "steps": None if steps is None else whole("steps", steps),
             **{
                 name: None if value is None else number(name, value, "1e-60 to 1e60")
                 for name, value in criteria.items()

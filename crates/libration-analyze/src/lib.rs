@@ -5,21 +5,26 @@
 pub mod adaptive;
 pub mod bodies;
 pub mod comparison;
+mod digits;
 pub mod equation_analysis;
 pub mod equation_trajectory;
 pub mod export;
 pub mod linear_analysis;
 pub mod linear_trajectory;
+pub mod motion;
 mod program_simulation;
 pub mod program_stepper;
 mod recording;
 pub mod reference_flow;
 mod step;
+mod step_verdict;
 pub mod temperature;
 pub mod trajectory;
 
+pub use digits::change_per_step;
+pub use motion::DEFAULT_STEPS;
 pub use step::{
     Analysis, AnalyzeError, Criteria, Drift, LargestDt, LatencyOption, LoopAnalysis, LoopCost,
     LoopGrowth, ModifiedHamiltonian, OrderOfWord, Request, RequestSummary, StableLatencies,
-    Stepping, Timing, analyze, analyze_until, loop_growth,
+    StepVerdicts, Stepping, Timing, analyze, analyze_until, loop_growth,
 };

@@ -50,7 +50,7 @@ impl Rows {
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct AnalysisOptions {
-    steps: i64,
+    steps: Option<i64>,
     max_drift: Option<f64>,
     max_amplitude: Option<f64>,
     max_error: Option<f64>,
@@ -172,9 +172,12 @@ pub(crate) fn _analyze(
         }
     }
     let steps = match setting.system.is_linear() {
-        true => limits::forecast_steps("steps", steps.into()),
+        true => limits::forecast_steps("steps", steps.unwrap_or(1_000_000).into()),
         // What cannot be forecast is simulated.
-        false => limits::steps("steps", steps.into()),
+        false => {
+            let steps = steps.map_or(libration_analyze::DEFAULT_STEPS.into(), i128::from);
+            limits::steps("steps", steps)
+        }
     };
     let request = libration_analyze::Request {
         system: setting.system,

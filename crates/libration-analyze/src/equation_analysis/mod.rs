@@ -4,6 +4,7 @@ mod motion;
 mod motion_steps;
 mod step;
 mod summary;
+mod verdicts;
 
 use std::sync::atomic::AtomicBool;
 
@@ -18,10 +19,12 @@ use crate::AnalyzeError;
 use crate::linear_analysis::{self, LinearAnalysis, LinearAnalysisError, LinearRequest};
 use crate::step::Stepping;
 
-pub use motion::{EnergyChange, EquationMotion, StateError};
+pub use crate::motion::{EnergyChange, MotionExamination, StateExamination};
+pub use motion::{EquationMotion, StateError};
 pub use motion_steps::MotionSteps;
 pub use step::{spectral_radius, step_order};
 pub use summary::{EquationSummary, SummaryParameter, SummaryState, SummaryTask};
+pub use verdicts::EquationVerdicts;
 
 /// Version of the JSON format.
 pub const SCHEMA: &str = "libration.equation-analysis/1";
@@ -43,10 +46,12 @@ pub struct EquationAnalysis {
     pub steps_along_motion: MotionSteps,
     /// The reason why there are no modes, if there are none.
     pub no_modes: Option<String>,
+    /// The verdicts on the step and on the motion.
+    pub verdicts: EquationVerdicts,
 }
 
-/// Analyses steps of `dt` seconds of a system from its start and about an equilibrium, until `stop` is set. The drift of the energy is
-/// that of `steps` steps, or of fewer where they take long.
+/// Analyses steps of `dt` seconds of a system from its start and about an equilibrium, until `stop` is set. Errors and the drift of the
+/// energy are those of `steps` steps, or of fewer where they take long.
 ///
 /// # Errors
 /// [`AnalyzeError::Simulation`] for an invalid time step, [`AnalyzeError::ImplicitDegrees`], and [`AnalyzeError::Interrupted`].
@@ -95,6 +100,8 @@ pub fn analyze(
     let motion = EquationMotion::new(system, method, dt, steps, equilibrium.as_deref(), stop)?;
     let horizon = motion.error_steps as f64 * dt;
     let steps_along_motion = MotionSteps::new(system, method, horizon, stop)?;
+    let verdicts =
+        EquationVerdicts::new(system, method, &motion, equilibrium.as_deref(), linear.as_ref());
     let system = EquationSummary::new(system);
     Ok(EquationAnalysis {
         schema: SCHEMA,
@@ -104,5 +111,6 @@ pub fn analyze(
         linear,
         steps_along_motion,
         no_modes,
+        verdicts,
     })
 }

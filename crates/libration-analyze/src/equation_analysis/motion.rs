@@ -1,14 +1,17 @@
 //! The motion of a system by equations under steps of an integrator: order, errors and energy, predicted and measured.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
-use libration::equations::StepProgram;
+use libration::equations::{Degree, StepProgram};
 use libration::{AnyMethod, Float};
-use libration_settings::equations::EquationSystem;
+use libration_settings::equations::{EquationSystem, NamedState};
 use serde::Serialize;
 
 use super::step::{lost_order, spectral_radius, step_order};
 use crate::AnalyzeError;
+use crate::motion::{
+    EnergyChange, MotionExamination, MotionState, MotionSubject, StepRun, examine, most_steps,
+};
 
 /// The motion from the start of a system.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -31,19 +34,14 @@ pub struct EquationMotion {
     pub error_steps: u64,
     /// The least factor by which a halved step reduces errors, predicted for small steps: 2 to the power of the order.
     pub predicted_reduction: Option<f64>,
-    /// The errors of states after these steps.
+    /// The states in these steps, and what halved steps change.
     pub errors: Vec<StateError>,
+    /// All steps of the request beside the exact motion.
+    pub examination: MotionExamination,
     /// The drift of the energy; none if the system has no energy.
     pub energy: Option<EnergyChange>,
     /// The first step after which a state is not finite; none if there is none.
     pub diverged_at_step: Option<u64>,
-}
-
-impl EquationMotion {
-    /// Whether a measured reduction is that of small steps: at least half of the predicted one.
-    pub fn is_resolved(&self, reduction: Option<f64>) -> bool {
-        reduction.is_none_or(|x| self.predicted_reduction.is_none_or(|least| x > least / 2.0))
-    }
 }
 
 /// The error of a state, estimated by halved steps.
@@ -55,39 +53,14 @@ pub struct StateError {
     pub unit: String,
     /// The value in the end.
     pub value: f64,
-    /// The error of the value.
+    /// The largest error in these steps, as halved steps have it. They may agree on something wrong; the examination is independent.
     pub error: f64,
-    /// The factor by which a halved step reduces it, measured; none where rounding hides it.
-    pub reduction: Option<f64>,
-}
-
-/// The largest change of the energy.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct EnergyChange {
-    /// The energy at the start.
-    pub start: f64,
-    /// The unit; empty without one.
-    pub unit: String,
-    /// Number of steps.
-    pub steps: u64,
-    /// The largest absolute change.
-    pub largest: f64,
-    /// The step at which it occurs.
-    pub largest_at_step: u64,
-    /// The change in the end.
-    pub last: f64,
-    /// The factor by which a halved step reduces the largest change over the same time, measured; none without a change.
+    /// The factor by which halved steps reduce the largest error, measured; none where rounding hides it.
     pub reduction: Option<f64>,
 }
 
 /// The most steps over which errors are estimated.
 const ERROR_STEPS: u64 = 1000;
-
-/// Operations of all steps of a motion: less than a second.
-const MOST_OPERATIONS: u64 = 1 << 29;
-
-/// Steps between two checks of the stop flag.
-const CHUNK: u64 = 1 << 12;
 
 /// Changes below this many roundings of a value are rounding: each of up to 4000 steps rounds a state two times or more.
 const ROUNDINGS: f64 = 1e4;
@@ -108,10 +81,7 @@ impl EquationMotion {
     ) -> Result<Self, AnalyzeError> {
         let step = StepProgram::of(method, system.equations.dynamics());
         let operations = step.program().operations();
-        // Three runs, with steps of which two and four take the time of one.
-        let most = (MOST_OPERATIONS / (operations.max(1) as u64 * 7)).max(1);
-        let steps = steps.min(most);
-        let error_steps = steps.min(ERROR_STEPS);
+        let error_steps = steps.min(ERROR_STEPS).min(most_steps(&step));
         let places: Vec<usize> = system.states.iter().map(|state| state.place).collect();
         let certified_order = match method {
             AnyMethod::Explicit(method) => {
@@ -129,40 +99,29 @@ impl EquationMotion {
             false => step_order(&step, &start, &places, dt),
         });
         let predicted_reduction = order.map(|order| 2_f64.powi(order as i32));
-        let runs = [0, 1, 2].map(|halvings| Run {
-            system,
+        let runs = [0, 1, 2].map(|halvings| StepRun {
+            start: &start,
             step: &step,
             dt: dt / f64::from(1 << halvings),
             substeps: 1 << halvings,
         });
-        let mut ends = Vec::new();
-        for run in &runs {
-            ends.push(run.end(error_steps, stop)?);
-        }
-        let errors = system.states.iter().map(|state| {
-            let [coarse, middle, fine] = [0, 1, 2].map(|i| ends[i].state[state.place]);
-            let (first, second) = (coarse - middle, middle - fine);
-            let rounding = ROUNDINGS * f64::UNIT_ROUNDOFF * coarse.abs().max(middle.abs());
-            let reduction = (second.abs() > rounding).then(|| first / second);
-            let factor = predicted_reduction.unwrap_or(2.0);
-            StateError {
-                name: state.name.clone(),
-                unit: state.unit.clone(),
-                value: coarse,
-                error: (first * factor / (factor - 1.0)).abs(),
-                reduction,
-            }
-        });
-        let errors = errors.collect();
-        let energy = match system.equations.dynamics().energy().is_some() {
-            true => {
-                let [coarse, fine] = [runs[0].energy(steps, stop)?, runs[1].energy(steps, stop)?];
-                let rounding = ROUNDINGS * f64::UNIT_ROUNDOFF * coarse.start.abs();
-                let reduction = (fine.largest > rounding).then(|| coarse.largest / fine.largest);
-                Some(EnergyChange { reduction, ..coarse })
-            }
-            false => None,
+        let errors = errors(system, &runs, error_steps, predicted_reduction, stop)?;
+        let states: Vec<MotionState> = motion_states(system);
+        let subject = MotionSubject {
+            dynamics: system.equations.dynamics(),
+            start: &start,
+            states: &states,
+            is_affine: is_affine(system),
+            energy_unit: &system.energy_unit,
         };
+        let mut examination = examine(&subject, &step, dt, steps, stop)?;
+        let mut energy = examination.energy.take();
+        if let Some(change) = &mut energy {
+            let fine = largest_energy_change(system, &runs[1], change.steps, stop)?;
+            let size = change.scale.unwrap_or_default().max(change.start.abs());
+            let rounding = ROUNDINGS * f64::UNIT_ROUNDOFF * size;
+            change.reduction = (fine > rounding).then(|| change.largest / fine);
+        }
         Ok(EquationMotion {
             integrator: method.name(),
             dt,
@@ -174,89 +133,85 @@ impl EquationMotion {
             error_steps,
             predicted_reduction,
             errors,
+            diverged_at_step: examination.diverged_at_step,
+            examination,
             energy,
-            diverged_at_step: ends[0].diverged_at,
         })
     }
 }
 
-/// The motion under steps of one length.
-struct Run<'a> {
-    system: &'a EquationSystem,
-    step: &'a StepProgram,
-    dt: f64,
-    /// Steps that take the time of one of the request.
-    substeps: u64,
+/// Whether the rates of all states are sums of constants times states, and of constants.
+pub(super) fn is_affine(system: &EquationSystem) -> bool {
+    system.equations.polynomial_degree().is_some_and(|degree| degree <= 1)
 }
 
-struct End {
-    state: Vec<f64>,
-    diverged_at: Option<u64>,
+fn motion_states(system: &EquationSystem) -> Vec<MotionState> {
+    let degrees = system.equations.degrees();
+    let state = |state: &NamedState| MotionState {
+        place: state.place,
+        name: state.name.clone(),
+        unit: state.unit.clone(),
+        is_velocity: state
+            .place
+            .checked_sub(degrees.len())
+            .is_some_and(|degree| matches!(degrees[degree], Degree::Coordinate(_))),
+    };
+    system.states.iter().map(state).collect()
 }
 
-impl Run<'_> {
-    fn end(&self, steps: u64, stop: &AtomicBool) -> Result<End, AnalyzeError> {
-        let mut end = End { state: self.system.start(), diverged_at: None };
-        self.follow(steps, stop, |step, state| {
-            end.state = state.to_vec();
-            end.diverged_at = state.iter().any(|x| !x.is_finite()).then_some(step);
-        })?;
-        Ok(end)
+/// The states after steps, and what two and four steps in their place change, in the largest sizes over all steps.
+fn errors(
+    system: &EquationSystem,
+    runs: &[StepRun<'_>; 3],
+    steps: u64,
+    predicted_reduction: Option<f64>,
+    stop: &AtomicBool,
+) -> Result<Vec<StateError>, AnalyzeError> {
+    let mut all: [Vec<Vec<f64>>; 3] = Default::default();
+    for (run, states) in runs.iter().zip(&mut all) {
+        run.follow(steps, stop, |_, state| states.push(state.to_vec()))?;
     }
-
-    fn energy(&self, steps: u64, stop: &AtomicBool) -> Result<EnergyChange, AnalyzeError> {
-        let program = self.system.equations.dynamics().energy();
-        let mut energy = program.map(|energy| energy.on::<f64>());
-        let mut of = |state: &[f64]| {
-            energy.as_mut().and_then(|energy| energy.run(state).next()).unwrap_or(f64::NAN)
+    let [coarse, middle, fine] = &all;
+    let state = |state: &NamedState| {
+        let place = state.place;
+        let largest = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold(0.0_f64, |most, x| if x > most || x.is_nan() { x } else { most })
         };
-        let start = of(&self.system.start());
-        let unit = self.system.energy_unit.clone();
-        let mut change = EnergyChange {
-            start,
-            unit,
-            steps,
-            largest: 0.0,
-            largest_at_step: 0,
-            last: 0.0,
-            reduction: None,
+        let apart = |a: &[Vec<f64>], b: &[Vec<f64>]| {
+            largest(&mut a.iter().zip(b).map(|(a, b)| (a[place] - b[place]).abs()))
         };
-        self.follow(steps, stop, |step, state| {
-            change.last = of(state) - start;
-            // What is no number is the largest.
-            if change.last.is_nan() || change.last.abs() > change.largest {
-                (change.largest, change.largest_at_step) = (change.last.abs(), step);
-            }
-        })?;
-        Ok(change)
-    }
-
-    /// Shows positions and velocities with the inputs after each step of the request, until one is not finite.
-    fn follow(
-        &self,
-        steps: u64,
-        stop: &AtomicBool,
-        mut show: impl FnMut(u64, &[f64]),
-    ) -> Result<(), AnalyzeError> {
-        let mut run = self.step.program().on::<f64>();
-        let mut inputs = self.system.start();
-        let last = inputs.len();
-        inputs.push(self.dt);
-        let mut next = Vec::with_capacity(last);
-        for step in 1..=steps {
-            if step % CHUNK == 0 && stop.load(Ordering::Relaxed) {
-                return Err(AnalyzeError::Interrupted);
-            }
-            for _ in 0..self.substeps {
-                next.clear();
-                next.extend(run.run(&inputs));
-                inputs[..next.len()].copy_from_slice(&next);
-            }
-            show(step, &inputs[..last]);
-            if next.iter().any(|x| !x.is_finite()) {
-                break;
-            }
+        let (first, second) = (apart(coarse, middle), apart(middle, fine));
+        let size = largest(&mut coarse.iter().map(|state| state[place].abs()));
+        let rounding = ROUNDINGS * f64::UNIT_ROUNDOFF * size;
+        let reduction = (second > rounding).then(|| first / second);
+        let factor = predicted_reduction.unwrap_or(2.0);
+        StateError {
+            name: state.name.clone(),
+            unit: state.unit.clone(),
+            value: coarse.last().map_or(state.start, |state| state[place]),
+            error: first * factor / (factor - 1.0),
+            reduction: reduction.filter(|reduction| reduction.is_finite()),
         }
-        Ok(())
-    }
+    };
+    Ok(system.states.iter().map(state).collect())
+}
+
+/// The largest change of the energy under steps.
+fn largest_energy_change(
+    system: &EquationSystem,
+    run: &StepRun<'_>,
+    steps: u64,
+    stop: &AtomicBool,
+) -> Result<f64, AnalyzeError> {
+    let program = system.equations.dynamics().energy();
+    let mut energy = program.map(|energy| energy.on::<f64>());
+    let mut of = |state: &[f64]| {
+        energy.as_mut().and_then(|energy| energy.run(state).next()).unwrap_or(f64::NAN)
+    };
+    let (start, mut largest) = (of(run.start), 0.0_f64);
+    run.follow(steps, stop, |_, state| {
+        let change = (of(state) - start).abs();
+        largest = if change > largest || change.is_nan() { change } else { largest };
+    })?;
+    Ok(largest)
 }

@@ -6,6 +6,7 @@ mod mode;
 mod plant_verdict;
 mod simulated_mode;
 mod step;
+mod verdicts;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -24,6 +25,7 @@ pub use error::LinearAnalysisError;
 pub use mode::Mode;
 pub use simulated_mode::SimulatedMode;
 pub use step::{ModeUnderSteps, StepAnalysis};
+pub use verdicts::LinearVerdicts;
 
 /// Version of the JSON format.
 pub const SCHEMA: &str = "libration.linear-analysis/1";
@@ -85,6 +87,8 @@ pub struct LinearAnalysis {
     /// The closed loop; none without a controller.
     #[serde(rename = "loop")]
     pub closed_loop: Option<ClosedLoop>,
+    /// The verdicts on the step of the request and on the loop.
+    pub verdicts: LinearVerdicts,
     /// A restriction of the numbers, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
@@ -165,8 +169,9 @@ pub fn analyze(
         slowest_rate: slowest,
         stiffness: slowest.map(|slowest| fastest / slowest),
         dt: request.dt,
-        steps,
         not_applicable: not_applicable.into_iter().map(AnyMethod::name).collect(),
+        verdicts: LinearVerdicts::new(request.integrator.and(steps.first()), closed_loop.as_ref()),
+        steps,
         closed_loop,
         note: request.note.clone(),
     })

@@ -3,10 +3,12 @@
 use libration::AnyMethod;
 use libration::analysis::{LinearStepper, StabilityFunction, StepMode, StepWindow};
 use libration::linear::{Complex64, Discretisation, LinearPlant, Matrix, eigenvalues};
+use libration_report::verdict::{Outcome, Verdict};
 use serde::Serialize;
 
 use super::SimulatedMode;
 use crate::Stepping;
+use crate::step_verdict::StepGrowth;
 
 /// Steps of an integrator on a plant.
 #[derive(Clone, Debug, Serialize)]
@@ -42,6 +44,9 @@ pub struct StepAnalysis {
     pub largest_phase_error: Option<(f64, usize)>,
     /// The modes of the plant in their order; empty without a time step, or if the step overflows.
     pub modes: Vec<ModeUnderSteps>,
+    /// Whether the step lets deviations grow more than exact steps do; none without a time step.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<Verdict>,
 }
 
 /// A mode of the plant under steps of an integrator.
@@ -116,6 +121,7 @@ impl Subject<'_> {
             largest_growth_error: None,
             largest_phase_error: None,
             modes: Vec::new(),
+            verdict: None,
         };
         match (dt, method, self.stepper) {
             (Some(dt), None, _) => self.add_exact(&mut analysis, dt),
@@ -124,7 +130,24 @@ impl Subject<'_> {
             }
             _ => {}
         }
+        analysis.verdict = dt.map(|dt| match method {
+            Some(_) => self.growth(&analysis, dt).verdict(),
+            None => Verdict::new(Outcome::Stable, "exact steps"),
+        });
         analysis
+    }
+
+    /// The growth of the plant in steps and in exact ones.
+    fn growth<'s>(&self, analysis: &'s StepAnalysis, dt: f64) -> StepGrowth<'s> {
+        let rates = self.shapes.iter().map(|(value, _)| value.re);
+        StepGrowth {
+            dt,
+            radius: analysis.predicted_spectral_radius.or(analysis.spectral_radius),
+            exact_rate: rates.fold(f64::NEG_INFINITY, f64::max),
+            has_zeros: self.shapes.iter().any(|(value, _)| value.norm() == 0.0),
+            stable_dt: analysis.stable_dt.as_deref(),
+            modes: &analysis.modes,
+        }
     }
 
     /// The stable time steps, or the reason for which they are not known.

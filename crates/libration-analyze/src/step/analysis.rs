@@ -9,7 +9,8 @@ use libration::simulation::{EnergyDrift, SimulationError};
 use serde::{Serialize, Serializer};
 use serde_json::value::RawValue;
 
-use super::{LargestDt, LoopAnalysis, OrderOfWord, Request};
+use super::{LargestDt, LoopAnalysis, OrderOfWord, Request, StepVerdicts};
+use crate::motion::MotionExamination;
 
 /// The analysis of one step; the fields are the keys of `analyze --json`.
 #[derive(Debug, Serialize)]
@@ -62,6 +63,11 @@ pub struct Analysis {
     /// The energy drift; none if the initial energy is zero.
     #[serde(flatten, serialize_with = "drift_or_nulls")]
     pub drift: Option<Drift>,
+    /// The motion of a nonlinear system beside the exact one, without a loop.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<MotionExamination>,
+    /// The verdicts on the step, the motion and the loop.
+    pub verdicts: StepVerdicts,
     /// The analysis of the loop, if the request has timing options.
     #[serde(flatten)]
     pub timing: Option<LoopAnalysis>,

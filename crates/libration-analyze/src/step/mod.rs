@@ -12,6 +12,7 @@ mod loop_analysis;
 mod modes;
 mod request;
 mod timing;
+mod verdicts;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -31,6 +32,7 @@ pub use loop_analysis::{LoopAnalysis, StableLatencies, loop_growth};
 use modes::{Modes, flow_radius_minus_one};
 pub use request::{Request, Stepping};
 pub use timing::{LatencyOption, Timing};
+pub use verdicts::StepVerdicts;
 
 /// Analyses one step of the request.
 ///
@@ -59,7 +61,8 @@ pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, A
     check_turn(request)?;
     check_sizes(request)?;
     let timing = loop_analysis::answer(request)?;
-    with_system!(
+    let motion = verdicts::motion(request, stop)?;
+    let mut analysis = with_system!(
         request.system,
         dimension,
         |model, D| {
@@ -94,7 +97,10 @@ pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, A
             answer(model, &start, step, timing, request)
         },
         Err(request.system.entry().wrong_dimension(dimension).into())
-    )
+    )?;
+    analysis.verdicts = StepVerdicts::new(&analysis, request, motion.as_ref());
+    analysis.motion = motion;
+    Ok(analysis)
 }
 
 /// The results that depend on the integrator; [`answer`] is compiled per system only.
@@ -202,6 +208,8 @@ fn answer<const D: usize>(
         phase_error_per_step: modes.phase_error.map(Wide::to_f64),
         force_evaluations_per_step: evaluations,
         drift,
+        motion: None,
+        verdicts: StepVerdicts::default(),
         timing,
     })
 }

@@ -1,5 +1,7 @@
 //! Systems by equations: the examples against SciPy, and their conserved energies.
 
+mod verdicts;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 

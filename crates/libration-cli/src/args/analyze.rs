@@ -44,15 +44,10 @@ pub(crate) struct AnalyzeArgs {
     pub(crate) timing: TimingArgs,
     #[command(flatten)]
     pub(crate) cost: CostArgs,
-    /// Number of steps for the largest energy drift (linear systems: up to 1e15); measured steps of each thermostat
-    #[arg(
-        long,
-        value_name = "N",
-        default_value = "1000000",
-        value_parser = forecast_steps,
-        allow_hyphen_values = true
-    )]
-    pub(crate) steps: u64,
+    /// Number of steps of the motion and its energy drift (linear systems: up to 1e15), or measured steps of each thermostat [default:
+    /// 1000000; of a nonlinear motion and of equations 1000]
+    #[arg(long, value_name = "N", value_parser = forecast_steps, allow_hyphen_values = true)]
+    pub(crate) steps: Option<u64>,
     /// Print the largest dt with a relative energy drift below DRIFT over --steps (oscillator; worst phase of the orbit)
     #[arg(long, value_name = "DRIFT", value_parser = criterion, allow_hyphen_values = true)]
     pub(crate) max_drift: Option<f64>,

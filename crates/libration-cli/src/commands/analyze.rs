@@ -5,9 +5,10 @@ use std::io;
 use std::io::Write as _;
 
 use libration_analyze::{
-    Analysis, Criteria, ModifiedHamiltonian, OrderOfWord, Request, Stepping, Timing, analyze,
+    Analysis, Criteria, DEFAULT_STEPS, ModifiedHamiltonian, OrderOfWord, Request, Stepping, Timing, analyze,
 };
 use libration_report::notation::plural;
+use libration_report::verdict::{self, exit_code};
 use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::limits;
 
@@ -19,6 +20,9 @@ use super::{
 };
 use crate::args::{AnalyzeArgs, CostArgs};
 use crate::error::Failure;
+
+/// Steps of a forecast without `--steps`.
+pub(super) const FORECAST_STEPS: u64 = 1_000_000;
 
 /// Analyzes one step and prints the result.
 pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
@@ -37,10 +41,12 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
         return Err(failure);
     }
     if let Some(request) = args.linear_request(linear_file) {
-        return print(&analyze_linear::run(&request?, args)?);
+        let (text, code) = analyze_linear::run(&request?, args)?;
+        return judged(&text, code);
     }
     if let Some(system) = args.system.as_ref().and_then(equation_file::system) {
-        return print(&analyze_equations::run(args, &system?)?);
+        let (text, code) = analyze_equations::run(args, &system?)?;
+        return judged(&text, code);
     }
     let (Some(system), Some(stepping), Some(dt)) = (&args.system, args.integrator, args.dt) else {
         return Err(Failure::usage("--system is required without --plant and --config"));
@@ -48,9 +54,13 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     let InitialValueProblem { system, actuation, q, v } = system.resolve()?;
     let CostArgs { loss, cost_weights: weights } = args.cost;
     let timing = Timing { loss, weights, ..args.timing.timing() };
+    let steps = args.steps.unwrap_or(match system.is_linear() {
+        true => FORECAST_STEPS,
+        false => DEFAULT_STEPS,
+    });
     if !system.is_linear() {
         // What cannot be forecast is simulated.
-        limits::steps("--steps", args.steps.into()).map_err(Failure::usage)?;
+        limits::steps("--steps", steps.into()).map_err(Failure::usage)?;
     }
     let criteria = Criteria {
         max_drift: args.max_drift,
@@ -58,14 +68,23 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
         max_error: args.max_error,
     };
     let request =
-        Request { system, actuation, stepping, dt, q, v, steps: args.steps, criteria, timing };
+        Request { system, actuation, stepping, dt, q, v, steps, criteria, timing };
     let analysis = analyze(&request).map_err(Failure::usage)?;
     let text = match (args.json, args.verbose) {
         (true, _) => serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n",
         (false, true) => describe(&analysis, &request),
         (false, false) => summary::of_step(&analysis, &request),
     };
-    print(&text)
+    judged(&text, exit_code(analysis.verdicts.all()))
+}
+
+/// Prints a result, and fails if one of its verdicts is not good.
+fn judged(text: &str, code: u8) -> Result<(), Failure> {
+    print(text)?;
+    match code {
+        verdict::GOOD => Ok(()),
+        _ => Err(Failure::Disagreement),
+    }
 }
 
 /// The properties of a splitting method.
@@ -106,6 +125,15 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
     );
     if analysis.timing.is_some() {
         text += "Open loop: one step of the plant\n";
+    }
+    for (what, own) in [
+        ("verdict on the step", &analysis.verdicts.step),
+        ("verdict on the motion", &analysis.verdicts.motion),
+        ("verdict on the loop", &analysis.verdicts.closed_loop),
+    ] {
+        if let Some(own) = own {
+            text += &format!("  {what:<22} {own}\n");
+        }
     }
     // Writing into a string cannot fail.
     let mut line = |name: &str, value: String| {

@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
-use libration_analyze::AnalyzeError;
+use libration_analyze::{AnalyzeError, DEFAULT_STEPS};
 use libration_analyze::equation_analysis::{EquationAnalysis, EquationMotion, analyze};
+use libration_report::verdict::exit_code;
 use libration_settings::equations::EquationSystem;
 
 use super::{analyze_linear, summary};
@@ -11,8 +12,11 @@ use crate::args::AnalyzeArgs;
 use crate::error::Failure;
 use crate::interrupt;
 
-/// Returns the analysis as text or as JSON.
-pub(super) fn run(args: &AnalyzeArgs, system: &EquationSystem) -> Result<String, Failure> {
+/// Returns the analysis as text or as JSON, and its exit code.
+pub(super) fn run(
+    args: &AnalyzeArgs,
+    system: &EquationSystem,
+) -> Result<(String, u8), Failure> {
     let (Some(stepping), Some(dt)) = (args.integrator, args.dt) else {
         return Err(Failure::usage("--integrator and --dt are required with --system"));
     };
@@ -26,24 +30,30 @@ pub(super) fn run(args: &AnalyzeArgs, system: &EquationSystem) -> Result<String,
             "--integrator exact: exact steps require a linear system of the catalogue or --plant",
         ));
     };
-    let analysis = analyze(system, method, dt, args.steps, interrupt::listen());
+    let steps = args.steps.unwrap_or(DEFAULT_STEPS);
+    let analysis = analyze(system, method, dt, steps, interrupt::listen());
     let analysis = analysis.map_err(|error| match error {
         AnalyzeError::Interrupted => Failure::Interrupted(error.to_string()),
         error => Failure::usage(error),
     })?;
-    match (args.json, args.verbose) {
-        (true, _) => Ok(serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n"),
-        (false, true) => Ok(describe(&analysis)),
+    let text = match (args.json, args.verbose) {
+        (true, _) => serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n",
+        (false, true) => describe(&analysis),
         (false, false) => {
             let order = order_in_words(&analysis.motion, analysis.system.smooth);
-            Ok(summary::of_equations(&analysis, &order))
+            summary::of_equations(&analysis, &order)
         }
-    }
+    };
+    Ok((text, exit_code(analysis.verdicts.all())))
 }
 
 fn describe(analysis: &EquationAnalysis) -> String {
     let EquationAnalysis { system, operating_point, linear, no_modes, motion, .. } = analysis;
     let mut text = format!("{}, {} with dt = {} s\n", system.name, motion.integrator, motion.dt);
+    if let Some(step) = &analysis.verdicts.step {
+        text += &format!("  verdict on the step  {step}\n");
+    }
+    text += &format!("  of the motion        {}\n", analysis.verdicts.motion);
     describe_motion(motion, system.smooth, &mut text);
     let steps = summary::along_motion(&analysis.steps_along_motion, motion);
     text += &format!("\nalong the motion: {steps}\n");
@@ -74,66 +84,73 @@ fn describe_motion(motion: &EquationMotion, is_smooth: bool, text: &mut String) 
     if let Some(step) = motion.diverged_at_step {
         let _ = writeln!(text, "  a state is not finite after step {step}");
     }
-    let ratio = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), |x| format!("{x:.4}"));
-    let time = motion.error_steps as f64 * motion.dt;
+    describe_errors(motion, text);
+    let _ = match &motion.energy {
+        Some(energy) => writeln!(
+            text,
+            "\nenergy: {} at the start; {}\n  largest change at step {}; in the end {:+.3e}",
+            format!("{:.9e} {}", energy.start, energy.unit).trim_end(),
+            summary::energy_change(energy),
+            energy.largest_at_step,
+            energy.last
+        ),
+        None => writeln!(text, "\nenergy: the file has none, so nothing is said of its drift"),
+    };
+}
+
+/// The errors over all steps, and those that halved steps reduce.
+fn describe_errors(motion: &EquationMotion, text: &mut String) {
+    let EquationMotion { examination, errors, dt, .. } = motion;
+    let examined = examination.examined_steps;
     let _ = writeln!(
         text,
-        "\nafter {} steps ({time} s)  {:>20} {:>12} {:>22} {:>12}",
-        motion.error_steps, "value", "error", "halved steps reduce by", "predicted"
+        "\nagainst the exact motion ({}, known to {:.1e}), {examined} of {} steps ({} s)\n  {:<24} {:>20} {:>12} {:>12}",
+        examination.reference,
+        examination.reference_error,
+        examination.requested_steps,
+        examined as f64 * dt,
+        "state",
+        "size of the motion",
+        "error",
+        "at step"
     );
-    let predicted = || match motion.predicted_reduction {
-        Some(least) => format!("{least:.0} or more"),
-        None => "-".to_owned(),
+    let named = |name: &str, unit: &str| match unit {
+        "" => name.to_owned(),
+        unit => format!("{name} ({unit})"),
     };
-    for state in &motion.errors {
-        let name = match state.unit.as_str() {
-            "" => state.name.clone(),
-            unit => format!("{} ({unit})", state.name),
-        };
+    for state in &examination.states {
         let _ = writeln!(
             text,
-            "  {name:<24} {:>20.12e} {:>12.2e} {:>22} {:>12}{}",
+            "  {:<24} {:>20.6e} {:>12.2e} {:>12}{}",
+            named(&state.name, &state.unit),
+            state.range,
+            state.largest_error,
+            state.largest_error_at_step,
+            if state.resolved { "" } else { "  not resolved" }
+        );
+    }
+    let ratio = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), |x| format!("{x:.4}"));
+    let _ = writeln!(
+        text,
+        "\nafter {} steps ({} s)  {:>20} {:>12} {:>22} {:>12}",
+        motion.error_steps,
+        motion.error_steps as f64 * dt,
+        "value",
+        "error",
+        "halved steps reduce by",
+        "predicted"
+    );
+    let predicted = motion.predicted_reduction;
+    for state in errors {
+        let _ = writeln!(
+            text,
+            "  {:<24} {:>20.12e} {:>12.2e} {:>22} {:>12}",
+            named(&state.name, &state.unit),
             state.value,
             state.error,
             ratio(state.reduction),
-            predicted(),
-            if motion.is_resolved(state.reduction) {
-                ""
-            } else {
-                "  not resolved: take smaller steps"
-            }
+            predicted.map_or_else(|| "-".to_owned(), |least| format!("{least:.0} or more"))
         );
-    }
-    match &motion.energy {
-        Some(energy) => {
-            let part = match energy.start {
-                0.0 => String::new(),
-                start => format!(" ({:.2e} of the start)", energy.largest / start.abs()),
-            };
-            let _ = writeln!(
-                text,
-                "\nenergy: {} at the start; largest change over {} steps {:.3e}{part}, at step {}; in the end {:+.3e}",
-                format!("{:.9e} {}", energy.start, energy.unit).trim_end(),
-                energy.steps,
-                energy.largest,
-                energy.largest_at_step,
-                energy.last
-            );
-            let _ = writeln!(
-                text,
-                "  halved steps reduce the largest change by {}, predicted {}{}",
-                ratio(energy.reduction),
-                predicted(),
-                if motion.is_resolved(energy.reduction) {
-                    ""
-                } else {
-                    "; not resolved: take smaller steps"
-                }
-            );
-        }
-        None => {
-            let _ = writeln!(text, "\nenergy: the file has none, so nothing is said of its drift");
-        }
     }
 }
 

@@ -7,6 +7,8 @@ use libration_analyze::linear_analysis::{
     LinearAnalysis, LinearAnalysisError, LinearRequest, Mode, SimulatedMode, StepAnalysis, analyze,
 };
 
+use libration_report::verdict::exit_code;
+
 use super::digits::{least, limit};
 use super::linear_closed_loop::closed_loop;
 use super::mode_text::{counted, known, shape};
@@ -14,23 +16,30 @@ use super::summary;
 use crate::args::AnalyzeArgs;
 use crate::error::Failure;
 
-/// Returns the analysis as text or as JSON.
-pub(super) fn run(request: &LinearRequest, args: &AnalyzeArgs) -> Result<String, Failure> {
+/// Returns the analysis as text or as JSON, and its exit code.
+pub(super) fn run(request: &LinearRequest, args: &AnalyzeArgs) -> Result<(String, u8), Failure> {
     let analysis = analyze(request, &AtomicBool::new(false)).map_err(|error| match error {
         LinearAnalysisError::Interrupted => Failure::Interrupted(error.to_string()),
         error => Failure::usage(error),
     })?;
     let is_one = request.integrator.is_some();
-    match (args.json, args.verbose) {
-        (true, _) => Ok(serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n"),
-        (false, true) => Ok(describe(&analysis, is_one)),
-        (false, false) => Ok(summary::of_plant(&analysis, is_one)),
-    }
+    let text = match (args.json, args.verbose) {
+        (true, _) => serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n",
+        (false, true) => describe(&analysis, is_one),
+        (false, false) => summary::of_plant(&analysis, is_one),
+    };
+    Ok((text, exit_code(analysis.verdicts.all())))
 }
 
 /// Returns the analysis as text.
 pub(super) fn describe(analysis: &LinearAnalysis, detail: bool) -> String {
     let mut text = String::new();
+    let verdicts = &analysis.verdicts;
+    for (what, own) in [("step", &verdicts.step), ("loop", &verdicts.closed_loop)] {
+        if let Some(own) = own.as_ref().filter(|_| detail) {
+            let _ = writeln!(text, "Verdict on the {what}: {own}");
+        }
+    }
     plant(analysis, &mut text);
     if let Some(point) = &analysis.operating_point {
         text += &format!("{}\n", point.sentence());

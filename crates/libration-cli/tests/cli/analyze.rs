@@ -8,8 +8,10 @@ fn libration(words: &[&str]) -> assert_cmd::assert::Assert {
 }
 
 fn json(words: &[&str]) -> Value {
-    let output = libration(&[words, &["--json"]].concat()).success().get_output().stdout.clone();
-    let text = String::from_utf8(output).unwrap();
+    // An unstable step has exit code 1 and its numbers.
+    let output = libration(&[words, &["--json"]].concat()).get_output().clone();
+    assert!(matches!(output.status.code(), Some(0 | 1)), "{words:?}");
+    let text = String::from_utf8(output.stdout).unwrap();
     // A drift beyond f64 is a valid JSON number that this reader refuses; its logarithm is tested.
     let fits = |line: &&str| {
         !line.contains("\"max_energy_drift\"") || {
@@ -90,7 +92,8 @@ fn a_negative_velocity_and_several_coordinates_are_taken_as_they_stand() {
 
 #[test]
 fn a_nonlinear_answer_says_that_it_is_a_linearisation() {
-    let words = ["analyze", "--system", "pendulum", "--integrator", "rk4", "--dt", "0.1"];
+    let words = "analyze --system pendulum --integrator rk4 --dt 0.1 --steps 100";
+    let words: Vec<&str> = words.split(' ').collect();
     let text = libration(&words).success().get_output().stdout.clone();
     assert!(String::from_utf8(text).unwrap().contains("linearisation"));
 }

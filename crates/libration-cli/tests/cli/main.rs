@@ -6,6 +6,7 @@ mod actions;
 mod adaptive;
 mod advise;
 mod analyze;
+mod analyze_verdicts;
 mod audit;
 mod bench;
 mod bodies;

@@ -2,11 +2,13 @@
 
 use libration_analyze::equation_analysis::{EquationAnalysis, EquationMotion, MotionSteps};
 use libration_analyze::linear_analysis::StepAnalysis;
+use libration_report::verdict::Verdict;
 
 use super::super::digits::{limit, significant};
 use super::super::repeat_command::{SYSTEM, of_subcommand, with_option};
 use super::linear_plant::verdict;
 use super::linear_steps::append_steps;
+use super::motion::{energy_change, sentence};
 use super::{Summary, numbers, words};
 
 /// Largest number of states.
@@ -15,7 +17,7 @@ const MOST: usize = 6;
 /// Returns a screen of an analysis; `order` is the order of the steps in words.
 pub(crate) fn of_equations(analysis: &EquationAnalysis, order: &str) -> String {
     let EquationAnalysis { system, motion, .. } = analysis;
-    let mut summary = Summary::new(&verdict_of_motion(analysis));
+    let mut summary = Summary::new(&verdicts_in_words(analysis));
     if let Some(reason) = &analysis.no_modes {
         summary.wrap("", &format!("warning: no modes: {reason}"), 2);
     }
@@ -44,17 +46,15 @@ pub(crate) fn of_equations(analysis: &EquationAnalysis, order: &str) -> String {
     }
     let horizon = significant(motion.error_steps as f64 * motion.dt, 4);
     let more = ["--tolerance", "trajectory=1e-6", "--horizon", &horizon];
-    match resolves(motion) {
+    match is_good(analysis) {
         true => summary.command(
             "Find the cheapest integrator for an error",
             &of_subcommand("advise", &SYSTEM, &more),
         ),
-        // Forces with kinks have no order, whatever the step.
-        false if system.smooth => {
+        false => {
             let dt = significant(shorter(analysis), 6);
             summary.command("Take shorter steps", &with_option("--dt", &dt));
         }
-        false => {}
     }
     let system = format!("the operations of a step, all states of {}, and the modes", system.name);
     summary.finish(&system)
@@ -96,56 +96,47 @@ fn shorter(analysis: &EquationAnalysis) -> f64 {
     0.5 * end.map_or(motion.dt, |end| end.min(motion.dt))
 }
 
-fn verdict_of_motion(analysis: &EquationAnalysis) -> String {
-    let EquationAnalysis { system, motion, .. } = analysis;
-    let step = format!(
-        "{} in steps of {} s on {}",
-        motion.integrator,
-        significant(motion.dt, 6),
-        system.name
-    );
-    if let Some(diverged) = motion.diverged_at_step {
-        return format!("{step} diverges: a state is not finite after step {diverged}.");
-    }
-    let time = significant(motion.error_steps as f64 * motion.dt, 6);
-    let verdict = match resolves(motion) {
-        true => "resolves the motion: halved steps reduce errors as predicted.",
-        false if system.smooth => "does not resolve the motion.",
-        false => "has no order: its forces have kinks or jumps.",
-    };
-    format!("{step} {verdict} Errors are those after {time} s.")
+/// The first sentence is about an instability of the step, if there is one, else about the motion.
+fn verdicts_in_words(analysis: &EquationAnalysis) -> String {
+    let EquationAnalysis { system, motion, verdicts, .. } = analysis;
+    let step = format!("{} in steps of {} s", motion.integrator, significant(motion.dt, 6));
+    let of_step = verdicts.step.as_ref().filter(|_| verdicts.is_unstable()).map(|verdict| {
+        format!("{step} is {} on {}: {}. ", verdict.outcome, system.name, verdict.evidence)
+    });
+    let on = format!("{step} on {}", system.name);
+    let subject = if of_step.is_some() { "It" } else { &on };
+    let of_motion = sentence(subject, &verdicts.motion, &motion.examination, motion.dt);
+    of_step.unwrap_or_default() + &of_motion.replace("Whether It", "Whether it")
 }
 
-/// Whether the state stays finite and its errors are those of small steps.
-fn resolves(motion: &EquationMotion) -> bool {
-    let small = motion.errors.iter().all(|state| motion.is_resolved(state.reduction));
-    small && motion.diverged_at_step.is_none()
+/// Whether all verdicts are good.
+fn is_good(analysis: &EquationAnalysis) -> bool {
+    analysis.verdicts.all().all(Verdict::is_good)
 }
 
 fn append_errors(motion: &EquationMotion, summary: &mut Summary) {
-    let rows: Vec<Vec<String>> = motion
-        .errors
-        .iter()
+    let states = motion.examination.states.iter().zip(&motion.errors);
+    let rows: Vec<Vec<String>> = states
         .take(MOST)
-        .map(|state| {
+        .map(|(state, halved)| {
             let name = match state.unit.as_str() {
                 "" => state.name.clone(),
                 unit => format!("{} ({unit})", state.name),
             };
             vec![
                 name,
-                significant(state.value, 6),
-                significant(state.error, 2),
-                ratio(state.reduction),
+                significant(state.range, 4),
+                significant(state.largest_error, 2),
+                halved.reduction.map_or_else(|| "-".to_owned(), |x| significant(x, 4)),
                 predicted(motion),
-                resolved(motion, state.reduction).to_owned(),
+                if state.resolved { "" } else { "not resolved" }.to_owned(),
             ]
         })
         .collect();
     let heads = [
         words("state"),
-        numbers("value"),
-        numbers("error"),
+        numbers("size of motion"),
+        numbers("largest error"),
         numbers("halved steps reduce by"),
         numbers("predicted"),
         words(""),
@@ -155,44 +146,13 @@ fn append_errors(motion: &EquationMotion, summary: &mut Summary) {
     summary.rest(motion.errors.len() - rows.len());
 }
 
-/// Distance of a reduction from 1 below which the steps have no part in a change of the energy.
-const OWN: f64 = 0.02;
-
 fn append_energy(motion: &EquationMotion, summary: &mut Summary) {
-    let Some(energy) = &motion.energy else {
-        return summary.row("energy", "the file has none, so its drift is not known");
-    };
-    let part = match energy.start {
-        0.0 => String::new(),
-        start => format!(", {} of the start", significant(energy.largest / start.abs(), 3)),
-    };
-    let largest = format!("{} {}", significant(energy.largest, 3), energy.unit);
-    if energy.reduction.is_some_and(|reduction| (reduction - 1.0).abs() < OWN) {
-        let change = largest.trim_end();
-        return summary.row(
-            "energy",
-            &format!("changes by at most {change}{part}, over {} steps, as much as in halved steps: the system itself changes it, or the steps are far too long", energy.steps),
-        );
+    match &motion.energy {
+        Some(energy) => summary.row("energy", &energy_change(energy)),
+        None => summary.row("energy", "the file has none, so its drift is not known"),
     }
-    let shown = format!(
-        "changes by at most {}{part}, over {} steps; halved steps reduce this by {} ({} predicted) {}",
-        largest.trim_end(),
-        energy.steps,
-        ratio(energy.reduction),
-        predicted(motion),
-        resolved(motion, energy.reduction)
-    );
-    summary.row("energy", shown.trim_end());
-}
-
-fn ratio(reduction: Option<f64>) -> String {
-    reduction.map_or_else(|| "-".to_owned(), |x| significant(x, 4))
 }
 
 fn predicted(motion: &EquationMotion) -> String {
     motion.predicted_reduction.map_or_else(|| "-".to_owned(), |least| format!("{least:.0} or more"))
-}
-
-fn resolved(motion: &EquationMotion, reduction: Option<f64>) -> &'static str {
-    if motion.is_resolved(reduction) { "" } else { "not resolved" }
 }

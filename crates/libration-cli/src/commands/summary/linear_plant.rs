@@ -32,10 +32,19 @@ const LOOP: [&str; 9] = [
 /// Returns a screen of an analysis; `is_one` is whether one integrator is analysed.
 pub(crate) fn of_plant(analysis: &LinearAnalysis, is_one: bool) -> String {
     let plant = verdict(analysis);
-    let mut summary = match &analysis.closed_loop {
-        Some(own) => Summary::new(&format!("{} {plant}", verdict_of_loop(own))),
-        None => Summary::new(&plant),
-    };
+    let of_loop = analysis.closed_loop.as_ref().map(verdict_of_loop);
+    let of_step = analysis.verdicts.step.as_ref().zip(analysis.dt).map(|(verdict, dt)| {
+        let name = analysis.steps.first().map_or("exact", |step| step.integrator);
+        let step = format!("{name} in steps of {} s", significant(dt, 6));
+        in_words(&step, &step, "on the plant", verdict)
+    });
+    let mut sentences: Vec<String> = of_loop.into_iter().chain(of_step).collect();
+    // What is not good comes first.
+    if !analysis.verdicts.step.as_ref().is_none_or(Verdict::is_good) {
+        sentences.reverse();
+    }
+    sentences.push(plant);
+    let mut summary = Summary::new(&sentences.join(" "));
     if let Some(note) = &analysis.note {
         summary.wrap("", &format!("note: {note}"), 2);
     }
@@ -135,6 +144,17 @@ fn verdict_of_loop(own: &ClosedLoop) -> String {
             format!("{first}: second moments {verb} by {} % per period.", significant(moments, 4))
         }
         false => format!("{first}: {}.", own.verdict.evidence),
+    }
+}
+
+/// A verdict as a sentence about `subject`, which is `inside` of a sentence.
+fn in_words(subject: &str, inside: &str, scope: &str, verdict: &Verdict) -> String {
+    let Verdict { outcome, evidence, .. } = verdict;
+    match outcome {
+        Outcome::Unknown => {
+            format!("Whether {inside} is stable {scope} is not known: {evidence}.")
+        }
+        outcome => format!("{subject} is {outcome} {scope}: {evidence}."),
     }
 }
 

@@ -1,22 +1,27 @@
 //! One step of a system of the catalogue.
 
-use libration_analyze::{Analysis, Request, Stepping};
+use libration_analyze::{Analysis, Request, Stepping, change_per_step};
+use libration_report::verdict::{Outcome, Verdict};
 
 use super::super::digits::{UNKNOWN, limit, short, significant};
 use super::super::repeat_command::{SYSTEM, of_subcommand, with_option};
 use super::Summary;
-use super::step_loop::{append_loop, changes, verdict};
+use super::motion::{energy_change, sentence};
+use super::step_loop::append_loop;
 
 /// Largest number of windows of stable steps.
 const MOST: usize = 3;
 
 /// Returns a screen of an analysis.
 pub(crate) fn of_step(analysis: &Analysis, request: &Request) -> String {
-    let of_loop = analysis.timing.as_ref().and_then(verdict);
+    let of_loop = analysis.verdicts.closed_loop.as_ref();
     let is_loop = of_loop.is_some();
-    let mut summary = Summary::new(&of_loop.unwrap_or_else(|| verdict_of_step(analysis)));
-    if is_loop {
-        summary.sentence(&format!("Without feedback: {}", verdict_of_step(analysis)));
+    let mut summary = match of_loop {
+        Some(verdict) => Summary::new(&in_words("The loop", "the loop", "", verdict)),
+        None => Summary::new(&first_sentence(analysis)),
+    };
+    if is_loop || analysis.verdicts.motion.is_some() {
+        summary.sentence(&growth(analysis, is_loop));
     }
     if let Some(step) = analysis.drift.as_ref().and_then(|drift| drift.stopped_at_step) {
         summary.warnings(&[format!("the state leaves the range of f64 at step {step}")]);
@@ -36,49 +41,46 @@ pub(crate) fn of_step(analysis: &Analysis, request: &Request) -> String {
     summary.finish(more)
 }
 
-fn verdict_of_step(analysis: &Analysis) -> String {
+/// A verdict as a sentence about `subject`, which is `inside` of a sentence.
+fn in_words(subject: &str, inside: &str, scope: &str, verdict: &Verdict) -> String {
+    let Verdict { outcome, evidence, .. } = verdict;
+    match outcome {
+        Outcome::Unknown => {
+            format!("Whether {inside} is stable{scope} is not known: {evidence}.")
+        }
+        outcome => format!("{subject} is {outcome}{scope}: {evidence}."),
+    }
+}
+
+/// The verdict on the step, or of a nonlinear system on the motion.
+fn first_sentence(analysis: &Analysis) -> String {
     let about = &analysis.request;
     let step = format!("{} in steps of {} s", about.integrator, short(about.dt));
-    let excess = analysis.spectral_radius_minus_one;
     let parameters: Vec<String> = about
         .parameters
         .iter()
         .map(|(name, value)| format!("{name} = {}", short(*value)))
         .collect();
     let system = format!("{} ({})", about.system, parameters.join(", "));
-    // What rounded parameters change in the growth of exact steps.
-    let rounding = 0.5 * f64::EPSILON * analysis.flow_spectral_radius_minus_one.abs();
-    if about.linear && excess != 0.0 && excess.abs() <= rounding {
-        return format!(
-            "{step} is at the limit of stability on {system}: motions neither grow nor decay beyond the rounding of its parameters."
-        );
+    match (&analysis.verdicts.step, &analysis.verdicts.motion, &analysis.motion) {
+        (Some(verdict), ..) => in_words(&step, &step, &format!(" on {system}"), verdict),
+        (None, Some(verdict), Some(motion)) => {
+            sentence(&format!("{step} on {system}"), verdict, motion, about.dt)
+        }
+        _ => format!("{step} on {system}: {}", growth(analysis, false)),
     }
-    match (analysis.bounded, about.linear) {
-        (Some(true), _) if excess < 0.0 => {
-            format!("{step} is stable on {}: motions {}.", system, changes(excess))
-        }
-        (Some(true), _) => {
-            format!("{step} is stable on {}: every motion stays bounded.", system)
-        }
-        (Some(false), _) if excess == 0.0 => {
-            format!("Motions of {step} on {} are unbounded, without exponential growth.", system)
-        }
-        (Some(false), _) => {
-            format!("{step} is unstable on {}: motions {}.", system, changes(excess))
-        }
-        (None, true) => format!(
-            "Whether {step} is stable on {} is not known: its coupled modes neither grow nor decay.",
-            system
-        ),
-        (None, false) => {
-            let exact = analysis.flow_spectral_radius_minus_one;
-            format!(
-                "{step} on {system}: linearised at the start, motions {}, and those of exact steps {}.",
-                changes(excess),
-                changes(exact)
-            )
-        }
-    }
+}
+
+/// How motions grow in steps without feedback.
+fn growth(analysis: &Analysis, is_loop: bool) -> String {
+    let [own, exact] =
+        [analysis.spectral_radius_minus_one, analysis.flow_spectral_radius_minus_one]
+            .map(change_per_step);
+    let at = if analysis.request.linear { "" } else { "Linearised at the start, " };
+    let without = if is_loop { "Without feedback: " } else { "" };
+    let motions = if at.is_empty() && !is_loop { "Motions" } else { "motions" };
+    format!("{without}{at}{motions} {own}, and those of exact steps {exact}.")
+        .replace(": Linearised", ": linearised")
 }
 
 fn append_step(analysis: &Analysis, request: &Request, summary: &mut Summary) {
@@ -126,6 +128,10 @@ fn append_step(analysis: &Analysis, request: &Request, summary: &mut Summary) {
     );
     summary.row("phase error", &phase);
     summary.row("force evaluations", &format!("{} per step", analysis.force_evaluations_per_step));
+    let of_motion = analysis.motion.as_ref().and_then(|motion| motion.energy.as_ref());
+    if let Some(energy) = of_motion {
+        return summary.row("energy", &energy_change(energy));
+    }
     let drift = match &analysis.drift {
         None => "undefined: the energy at the start is zero".to_owned(),
         Some(drift) => {

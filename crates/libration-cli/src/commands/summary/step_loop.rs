@@ -1,6 +1,6 @@
 //! The loop around a step of a system of the catalogue.
 
-use libration_analyze::{LoopAnalysis, Timing};
+use libration_analyze::{LoopAnalysis, Timing, change_per_step};
 
 use super::super::closed_loop::{CLIPPED, NOMINAL, TOO_FAR, dephasing};
 use super::super::digits::{least, limit, significant};
@@ -8,33 +8,6 @@ use super::Summary;
 
 /// Largest number of later windows of stable latencies.
 const MOST: usize = 3;
-
-/// How motions and second moments change.
-pub(super) fn verdict(analysis: &LoopAnalysis) -> Option<String> {
-    let excess = analysis.closed_loop_spectral_radius_minus_one?;
-    let moments = analysis.growth.and_then(|growth| growth.mean_square_growth);
-    let motions = format!("its motions {}", changes(excess));
-    let squares = moments.map(|growth| format!(", and their second moments {}", changes(growth)));
-    let worst = moments.map_or(excess, |growth| excess.max(growth));
-    let is_known = analysis.growth.is_none() || moments.is_some();
-    let verdict = match (worst > 0.0, worst < 0.0) {
-        (true, _) => "unstable",
-        _ if !is_known => "stable without jitter and losses, and with them it is not known",
-        (_, true) => "stable",
-        _ => "at the limit of stability",
-    };
-    Some(format!("The loop is {verdict}: {motions}{}.", squares.unwrap_or_default()))
-}
-
-/// A relative change per step, in words.
-pub(super) fn changes(change: f64) -> String {
-    let percent = significant(100.0 * change.abs(), 4);
-    match (change > 0.0, change < 0.0) {
-        (true, _) => format!("grow by {percent} % per step"),
-        (_, true) => format!("decay by {percent} % per step"),
-        _ => "neither grow nor decay".to_owned(),
-    }
-}
 
 /// Appends latencies, growth and cost.
 pub(super) fn append_loop(
@@ -69,7 +42,7 @@ pub(super) fn append_loop(
         }
     }
     if let Some(growth) = &analysis.growth {
-        let shown = growth.mean_square_growth.map(changes);
+        let shown = growth.mean_square_growth.map(change_per_step);
         summary.row("second moments", shown.as_deref().unwrap_or(TOO_FAR));
         if analysis.jitter_clips == Some(true) {
             summary.row("", CLIPPED);

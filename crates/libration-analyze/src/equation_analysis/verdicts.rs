@@ -1,0 +1,92 @@
+//! Verdicts on steps of systems by equations.
+
+use libration::AnyMethod;
+use libration::analysis::jacobian;
+use libration::equations::StepProgram;
+use libration::linear::eigenvalues;
+use libration_report::verdict::{Outcome, Verdict};
+use libration_settings::equations::EquationSystem;
+use serde::Serialize;
+
+use super::EquationMotion;
+use super::motion::is_affine;
+use super::step::spectral_radius;
+use crate::linear_analysis::LinearAnalysis;
+use crate::step_verdict::StepGrowth;
+
+/// The verdicts on a system by equations.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EquationVerdicts {
+    /// Whether the step lets deviations from the equilibrium, or of a linear system from any motion, grow more than exact steps do. None
+    /// without an equilibrium near the motion, and where rounding hides the growth.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step: Option<Verdict>,
+    /// Whether the steps resolve the motion.
+    pub motion: Verdict,
+}
+
+impl EquationVerdicts {
+    pub(super) fn new(
+        system: &EquationSystem,
+        method: AnyMethod,
+        motion: &EquationMotion,
+        equilibrium: Option<&[f64]>,
+        linear: Option<&LinearAnalysis>,
+    ) -> Self {
+        let places = system.states.iter().map(|state| state.place);
+        let is_relevant =
+            |at: &[f64]| is_affine(system) || motion.examination.is_near(at, places.clone());
+        let step = match (equilibrium.filter(|at| is_relevant(at)), linear) {
+            (Some(_), Some(linear)) => about_equilibrium(motion, linear),
+            _ if is_affine(system) => of_affine(system, method, motion.dt),
+            _ => None,
+        };
+        // The motion shows what rounding hides at the equilibrium.
+        let step = step.filter(|verdict| verdict.outcome != Outcome::Unknown);
+        EquationVerdicts { step, motion: motion.examination.verdict.clone() }
+    }
+
+    /// All that there are.
+    pub fn all(&self) -> impl Iterator<Item = &Verdict> {
+        self.step.iter().chain([&self.motion])
+    }
+
+    /// Whether an instability of the step is known.
+    pub fn is_unstable(&self) -> bool {
+        self.step.as_ref().is_some_and(|verdict| verdict.outcome == Outcome::Unstable)
+    }
+}
+
+fn about_equilibrium(motion: &EquationMotion, linear: &LinearAnalysis) -> Option<Verdict> {
+    let own = linear.steps.iter().find(|step| step.integrator == motion.integrator);
+    if let Some(verdict) = own.and_then(|step| step.verdict.clone()) {
+        return Some(verdict);
+    }
+    let growth = StepGrowth {
+        dt: motion.dt,
+        radius: Some(motion.spectral_radius?),
+        exact_rate: linear.modes.first()?.growth_rate,
+        has_zeros: linear.modes.iter().any(|mode| mode.natural_frequency == 0.0),
+        stable_dt: None,
+        modes: &[],
+    };
+    Some(growth.verdict())
+}
+
+/// The step of a linear system without an equilibrium: its derivatives are the same everywhere.
+fn of_affine(system: &EquationSystem, method: AnyMethod, dt: f64) -> Option<Verdict> {
+    let step = StepProgram::of(method, system.equations.dynamics());
+    let start = system.start();
+    let rates = jacobian(system.equations.dynamics(), &start);
+    let values = eigenvalues(&system.state_matrix(&rates))?;
+    let growth = StepGrowth {
+        dt,
+        radius: Some(spectral_radius(&step, system, &start, dt)?),
+        exact_rate: values.iter().map(|value| value.re).fold(f64::NEG_INFINITY, f64::max),
+        // Without an equilibrium there is one.
+        has_zeros: true,
+        stable_dt: None,
+        modes: &[],
+    };
+    Some(growth.verdict())
+}

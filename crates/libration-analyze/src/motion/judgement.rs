@@ -1,0 +1,93 @@
+//! The verdict on a motion.
+
+use libration_report::verdict::{Outcome, Verdict};
+
+use super::reference::End;
+use super::{MotionExamination, StateExamination};
+use crate::digits::significant;
+
+/// The part of the range of a state up to which an error is small beside its motion: the width of a line in a plot. Twice as much of an
+/// amplitude.
+pub(super) const SMALL: f64 = 0.01;
+
+/// Fewer samples of the exact motion than up to this step decide nothing, unless fewer steps are examined.
+const LEAST_STEPS: u64 = 1000;
+
+/// What exceeds the limit first.
+pub(super) struct Excess {
+    pub(super) step: u64,
+    pub(super) state: usize,
+    /// Whether the exact motion is known there.
+    pub(super) is_known: bool,
+}
+
+impl MotionExamination {
+    /// The verdict on the motion over `steps` steps of `dt` seconds, fewer than those of the request where they take long.
+    pub(super) fn judge(
+        &self,
+        dt: f64,
+        excess: Option<Excess>,
+        unsure: Option<u64>,
+        steps: u64,
+        end: Option<End>,
+    ) -> Verdict {
+        let time = |step: u64| significant(step as f64 * dt, 6);
+        if let Some(step) = self.diverged_at_step {
+            return Verdict::new(
+                Outcome::NotResolved,
+                format!("a state is not finite after step {step}"),
+            );
+        }
+        if let Some(Excess { step, state, is_known: true }) = excess {
+            let StateExamination { name, .. } = &self.states[state];
+            let worst = 100.0 * self.states[state].relative_error();
+            return Verdict::new(
+                Outcome::NotResolved,
+                format!(
+                    "the error of {name} is above {} % of its motion from step {step} on ({} s), and reaches {} %",
+                    100.0 * SMALL,
+                    time(step),
+                    significant(worst, 3)
+                ),
+            );
+        }
+        if let Some(step) = unsure.or(excess.map(|first| first.step)) {
+            return Verdict::unknown(format!(
+                "the motion amplifies small differences, and the exact one is not known beyond {} s",
+                time(step)
+            ));
+        }
+        if let Some(End::Motion(at)) = end {
+            return Verdict::unknown(format!(
+                "the exact motion cannot be followed beyond {} s: it ends there, or its forces jump",
+                significant(at, 6)
+            ));
+        }
+        if self.examined_steps < LEAST_STEPS.min(steps) {
+            return Verdict::unknown(format!(
+                "the reference takes too many steps beyond {} s of {} s, as of a stiff motion",
+                time(self.examined_steps),
+                time(self.requested_steps)
+            ));
+        }
+        let worst =
+            self.states.iter().max_by(|a, b| a.relative_error().total_cmp(&b.relative_error()));
+        let moved = worst.filter(|worst| worst.largest_error > 0.0);
+        let evidence = moved.map_or_else(
+            || "it has no error".to_owned(),
+            |worst| {
+                let percent = significant(100.0 * worst.relative_error(), 2);
+                format!("the largest error is {percent} % of the motion of {}", worst.name)
+            },
+        );
+        let verdict = Verdict::new(Outcome::Resolved, evidence);
+        match self.examined_steps < self.requested_steps {
+            true => verdict.without(format!(
+                "steps {} to {}",
+                self.examined_steps + 1,
+                self.requested_steps
+            )),
+            false => verdict,
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! Whether a step lets deviations grow more than exact steps do.
+
+use libration_report::verdict::{Outcome, Verdict};
+
+use crate::digits::{beside_one, change_per_step};
+use crate::linear_analysis::ModeUnderSteps;
+
+/// Growth per step of a matrix of simple eigenvalues that is rounding.
+const ROUNDING: f64 = 1e-11;
+
+/// The same of a plant with eigenvalues at zero, which rounding parts by their root.
+const ROUNDING_OF_ZEROS: f64 = 1e-7;
+
+/// Growth per step up to which exact windows are believed, not eigenvalues of matrices in `f64`: of eigenvalues that nearly coincide these
+/// are known to the root of a rounding.
+const DEFECTIVE: f64 = 1e-6;
+
+/// A mode of the plant that grows may grow by this part faster in steps: they are inaccurate then, not unstable.
+const FASTER: f64 = 1.5;
+
+/// The growth of deviations in steps of an integrator on a linear system, or about an equilibrium.
+pub(crate) struct StepGrowth<'a> {
+    /// The time step in s.
+    pub(crate) dt: f64,
+    /// The largest size of a multiplier of a step; none if the step overflows.
+    pub(crate) radius: Option<f64>,
+    /// The largest growth rate of an exact mode in 1/s.
+    pub(crate) exact_rate: f64,
+    /// Whether the system has eigenvalues at zero.
+    pub(crate) has_zeros: bool,
+    /// The time steps at which no mode grows that does not grow in exact steps, if they are known.
+    pub(crate) stable_dt: Option<&'a [[Option<f64>; 2]]>,
+    /// The modes, if it is known which multiplier belongs to which.
+    pub(crate) modes: &'a [ModeUnderSteps],
+}
+
+impl StepGrowth<'_> {
+    /// The verdict on the step.
+    pub(crate) fn verdict(&self) -> Verdict {
+        let is_in = |&[from, to]: &[Option<f64>; 2]| {
+            from.is_none_or(|from| from <= self.dt) && to.is_none_or(|to| self.dt <= to)
+        };
+        let inside = self.stable_dt.map(|windows| windows.iter().any(is_in));
+        let Some(radius) = self.radius else {
+            return match inside {
+                Some(false) => Verdict::new(Outcome::Unstable, "multipliers of the step overflow"),
+                _ => Verdict::unknown("multipliers of the step overflow"),
+            };
+        };
+        let rounding = if self.has_zeros { ROUNDING_OF_ZEROS } else { ROUNDING };
+        let exact = (self.exact_rate * self.dt).exp_m1();
+        let is_growing = exact > rounding;
+        let excess = radius - 1.0;
+        let evidence =
+            format!("spectral radius {}, {} of exact steps", beside_one(excess), beside_one(exact));
+        let spurious = self.modes.iter().filter(|mode| mode.exact_growth <= 1.0 + rounding);
+        let spurious = spurious.map(|mode| mode.growth - 1.0).fold(0.0, f64::max);
+        let added = match is_growing {
+            true if radius.ln() > FASTER * self.exact_rate * self.dt => excess - exact,
+            true => spurious,
+            false => excess.max(spurious),
+        };
+        let evidence = match is_growing && spurious > rounding {
+            true => format!(
+                "{evidence}; motions that do not grow in exact steps {}",
+                change_per_step(spurious)
+            ),
+            false => evidence,
+        };
+        let decays = excess < -ROUNDING_OF_ZEROS && spurious <= 0.0;
+        let outcome = match inside {
+            Some(true) if added <= DEFECTIVE => Outcome::Stable,
+            Some(false) if !decays => Outcome::Unstable,
+            _ if added <= ROUNDING => Outcome::Stable,
+            _ if added <= rounding => Outcome::Unknown,
+            _ => Outcome::Unstable,
+        };
+        Verdict::new(outcome, evidence)
+    }
+}
