@@ -10,6 +10,7 @@ pub mod equation_trajectory;
 pub mod export;
 pub mod linear_analysis;
 pub mod linear_trajectory;
+pub mod newton_residual;
 mod program_simulation;
 pub mod program_stepper;
 mod recording;

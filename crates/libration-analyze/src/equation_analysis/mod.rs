@@ -17,6 +17,7 @@ use crate::AnalyzeError;
 use crate::linear_analysis::{self, LinearAnalysis, LinearAnalysisError, LinearRequest};
 use crate::step::Stepping;
 
+use crate::newton_residual::{self, NewtonResidual};
 pub use motion::{EnergyChange, EquationMotion, StateError};
 pub use step::{spectral_radius, step_order};
 pub use summary::{EquationSummary, SummaryParameter, SummaryState, SummaryTask};
@@ -33,6 +34,9 @@ pub struct EquationAnalysis {
     pub system: EquationSummary,
     /// The motion from its start.
     pub motion: EquationMotion,
+    /// What the Newton steps of an implicit integrator leave in the motion; none without an iteration.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub newton_residual: Option<NewtonResidual>,
     /// The equilibrium near its start; none if none was found.
     pub operating_point: Option<OperatingPoint>,
     /// The system about the equilibrium.
@@ -85,6 +89,17 @@ pub fn analyze(
     };
     let equilibrium = operating_point.as_ref().map(|point| point.state_of(system));
     let motion = EquationMotion::new(system, method, dt, steps, equilibrium.as_deref(), stop)?;
-    let system = EquationSummary::new(system);
-    Ok(EquationAnalysis { schema: SCHEMA, system, motion, operating_point, linear, no_modes })
+    let places = system.states.iter().map(|state| state.place).collect();
+    let dynamics = system.equations.dynamics();
+    let newton_residual =
+        newton_residual::of_run(method, dynamics, &system.start(), places, (dt, steps), stop);
+    Ok(EquationAnalysis {
+        schema: SCHEMA,
+        system: EquationSummary::new(system),
+        motion,
+        newton_residual,
+        operating_point,
+        linear,
+        no_modes,
+    })
 }

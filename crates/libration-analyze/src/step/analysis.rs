@@ -10,6 +10,7 @@ use serde::{Serialize, Serializer};
 use serde_json::value::RawValue;
 
 use super::{LargestDt, LoopAnalysis, OrderOfWord, Request};
+use crate::newton_residual::NewtonResidual;
 
 /// The analysis of one step; the fields are the keys of `analyze --json`.
 #[derive(Debug, Serialize)]
@@ -62,6 +63,9 @@ pub struct Analysis {
     /// The energy drift; none if the initial energy is zero.
     #[serde(flatten, serialize_with = "drift_or_nulls")]
     pub drift: Option<Drift>,
+    /// What the Newton steps of an implicit integrator leave in the motion of a nonlinear system; none without an iteration.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub newton_residual: Option<NewtonResidual>,
     /// The analysis of the loop, if the request has timing options.
     #[serde(flatten)]
     pub timing: Option<LoopAnalysis>,

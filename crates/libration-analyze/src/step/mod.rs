@@ -59,7 +59,7 @@ pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, A
     check_turn(request)?;
     check_sizes(request)?;
     let timing = loop_analysis::answer(request)?;
-    with_system!(
+    let analysis = with_system!(
         request.system,
         dimension,
         |model, D| {
@@ -94,7 +94,9 @@ pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, A
             answer(model, &start, step, timing, request)
         },
         Err(request.system.entry().wrong_dimension(dimension).into())
-    )
+    );
+    let newton_residual = implicit_step::residual(request, stop);
+    analysis.map(|analysis| Analysis { newton_residual, ..analysis })
 }
 
 /// The results that depend on the integrator; [`answer`] is compiled per system only.
@@ -202,6 +204,7 @@ fn answer<const D: usize>(
         phase_error_per_step: modes.phase_error.map(Wide::to_f64),
         force_evaluations_per_step: evaluations,
         drift,
+        newton_residual: None,
         timing,
     })
 }

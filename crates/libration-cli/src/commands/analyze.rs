@@ -23,7 +23,7 @@ use crate::error::Failure;
 /// Analyzes one step and prints the result.
 pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     if args.compare {
-        return print(&compare_integrators::run(args)?);
+        return compare_integrators::run(args);
     }
     // The parser does not require what conflicts with other options.
     let of_comparisons = [("--tolerance", args.tolerance), ("--horizon", args.horizon)];
@@ -40,7 +40,9 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
         return print(&analyze_linear::run(&request?, args)?);
     }
     if let Some(system) = args.system.as_ref().and_then(equation_file::system) {
-        return print(&analyze_equations::run(args, &system?)?);
+        let (text, error) = analyze_equations::run(args, &system?)?;
+        print(&text)?;
+        return error.map_or(Ok(()), |error| Err(Failure::run(error)));
     }
     let (Some(system), Some(stepping), Some(dt)) = (&args.system, args.integrator, args.dt) else {
         return Err(Failure::usage("--system is required without --plant and --config"));
@@ -65,7 +67,9 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
         (false, true) => describe(&analysis, &request),
         (false, false) => summary::of_step(&analysis, &request),
     };
-    print(&text)
+    print(&text)?;
+    let residual = analysis.newton_residual.and_then(|residual| residual.error());
+    residual.map_or(Ok(()), |error| Err(Failure::run(error)))
 }
 
 /// The properties of a splitting method.

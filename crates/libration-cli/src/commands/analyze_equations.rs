@@ -11,8 +11,11 @@ use crate::args::AnalyzeArgs;
 use crate::error::Failure;
 use crate::interrupt;
 
-/// Returns the analysis as text or as JSON.
-pub(super) fn run(args: &AnalyzeArgs, system: &EquationSystem) -> Result<String, Failure> {
+/// Returns the analysis as text or as JSON, and the error of steps that do not solve their equations.
+pub(super) fn run(
+    args: &AnalyzeArgs,
+    system: &EquationSystem,
+) -> Result<(String, Option<String>), Failure> {
     let (Some(stepping), Some(dt)) = (args.integrator, args.dt) else {
         return Err(Failure::usage("--integrator and --dt are required with --system"));
     };
@@ -31,14 +34,15 @@ pub(super) fn run(args: &AnalyzeArgs, system: &EquationSystem) -> Result<String,
         AnalyzeError::Interrupted => Failure::Interrupted(error.to_string()),
         error => Failure::usage(error),
     })?;
-    match (args.json, args.verbose) {
-        (true, _) => Ok(serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n"),
-        (false, true) => Ok(describe(&analysis)),
+    let text = match (args.json, args.verbose) {
+        (true, _) => serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n",
+        (false, true) => describe(&analysis),
         (false, false) => {
             let order = order_in_words(&analysis.motion, analysis.system.smooth);
-            Ok(summary::of_equations(&analysis, &order))
+            summary::of_equations(&analysis, &order)
         }
-    }
+    };
+    Ok((text, analysis.newton_residual.and_then(|residual| residual.error())))
 }
 
 fn describe(analysis: &EquationAnalysis) -> String {

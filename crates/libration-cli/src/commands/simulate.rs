@@ -98,16 +98,18 @@ fn write(
         None => into_stdout(rows, format, &watcher),
     };
     watcher.clear();
-    match outcome? {
+    let outcome = outcome?;
+    let unsolved = outcome.newton_residual().and_then(|residual| residual.error());
+    match outcome {
         _ if quiet => {}
-        Outcome::Complete => {}
-        Outcome::Diverged(Divergence { step, t, reason }) => {
+        Outcome::Complete | Outcome::Iterated(_) => {}
+        Outcome::Diverged(Divergence { step, t, reason, .. }) => {
             let last = step - 1;
             terminal::say(&format!(
                 "note: the last row is step {last}: at step {step} (t = {t} s) {reason}"
             ));
         }
-        Outcome::NotFinite { count, first, reason } => {
+        Outcome::NotFinite { count, first, reason, .. } => {
             let named: Vec<String> = first.iter().map(usize::to_string).collect();
             let more = if count > first.len() { ", …" } else { "" };
             let are = if count == 1 { "trajectory is" } else { "trajectories are" };
@@ -118,7 +120,7 @@ fn write(
             ));
         }
     }
-    Ok(())
+    unsolved.map_or(Ok(()), |error| Err(Failure::run(error)))
 }
 
 /// Returns the format of `--format` or of the extension of `--output`; both must agree.
