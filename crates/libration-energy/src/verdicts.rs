@@ -6,6 +6,9 @@ use libration_report::verdict::{Outcome, Verdict};
 use crate::cause::OscillationCause;
 use crate::{EnergyReport, EnergyTrace, FindingKind, LargestDt};
 
+/// Part of an energy below which its digits are those of double precision.
+const FINE: f64 = 1e-12;
+
 /// Whether the runs show a fault. What they do not tell is unknown, and no success.
 pub(crate) fn of_faults(report: &EnergyReport) -> Verdict {
     let faults: Vec<&str> = report
@@ -24,9 +27,11 @@ pub(crate) fn of_faults(report: &EnergyReport) -> Verdict {
         .runs
         .iter()
         .filter(|run| !run.resolves_oscillation())
-        .map(|run| run.resolution.max(f64::EPSILON * run.largest_energy))
+        .map(|run| run.resolution)
         .fold(0.0, f64::max);
-    let verdict = match coarse > 0.0 {
+    // Double precision has more digits than anybody asks for.
+    let digits = report.runs.iter().map(|run| run.largest_energy).fold(0.0, f64::max);
+    let verdict = match coarse > FINE * digits {
         true => verdict
             .without(format!("fluctuations below {}, the digits of a run", number(coarse, 2))),
         false => verdict,
