@@ -107,8 +107,9 @@ def _analyze_temperature(
 ) -> str: ...
 def _audit_energy(
     traces: list[tuple[str, float | None, Any, Any]],
-    tolerance: float,
+    tolerance: float | None,
     horizon: float | None,
+    scale: float | None,
     invocation: str,
 ) -> tuple[str, bool, str]: ...
 def _compare_integrators(

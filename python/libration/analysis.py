@@ -123,6 +123,9 @@ class Analysis(Answer):
     stopped_at_step: int
     """First step whose state is not finite, if there is one."""
 
+    newton_residual: dict[str, Any]
+    """Of an implicit integrator that iterates: what its Newton steps leave in the motion, and in which step."""
+
     # Of a loop around a system of the catalogue.
     command: str
     """Quantity of commands, ``acceleration`` or ``force``."""
@@ -225,7 +228,7 @@ class Advice(Answer):
     q: list[float]
     v: list[float]
     tolerance: dict[str, Any]
-    """The measure ``of``, and the largest allowed value ``most``."""
+    """The measure ``of``, the largest allowed value ``most``, and the ``scale`` of an error of the energy."""
     horizon: float
     """Duration in s."""
     loop: dict[str, Any] | Any
@@ -234,6 +237,10 @@ class Advice(Answer):
     """Each integrator with its largest step, cheapest first."""
     command: str | None
     """A command that takes the advised steps."""
+    search: dict[str, Any] | None
+    """What the search covers: ``integrators``, the shortest and the longest of ``steps`` in s, ``not_tried``; None for a loop."""
+    verdict: dict[str, Any] | Any
+    """Whether an integrator meets the tolerance: ``outcome``, ``evidence`` and what was ``not_examined``; None for a loop."""
     tried_down_to: float | None
     runner_up: str | None
     floats: list[dict[str, Any]]

@@ -43,9 +43,14 @@ class IntegratorComparison:
 
     @property
     def best(self) -> dict[str, Any] | None:
-        """The cheapest integrator; ``None`` if none meets the tolerance."""
+        """The cheapest of the integrators that were tried; ``None`` if none of them meets the tolerance."""
         first = self.results["integrators"][0]
         return None if first["dt"] is None else dict(first)
+
+    @property
+    def verdict(self) -> dict[str, Any]:
+        """Whether an integrator meets the tolerance: ``outcome``, ``evidence`` and what was ``not_examined``."""
+        return dict(self.results["verdict"])
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write all numbers as JSON."""

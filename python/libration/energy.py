@@ -23,7 +23,7 @@ class EnergyReport:
     def __init__(self, results: dict[str, Any], holds: bool, page: str) -> None:
         self.results = results
         self.holds = holds
-        """Whether the audit names no fault."""
+        """Whether all verdicts are good: no fault, and all runs within a stated tolerance. Unknown is not good."""
         self._page = page
 
     def __repr__(self) -> str:
@@ -33,6 +33,17 @@ class EnergyReport:
     def answer(self) -> str:
         """The answer in a few sentences."""
         return str(self.results["answer"])
+
+    @property
+    def verdict(self) -> dict[str, Any]:
+        """Whether there is a fault: ``outcome`` (``no-fault``, ``fault`` or ``unknown``) and its ``evidence``."""
+        return dict(self.results["verdict"])
+
+    @property
+    def tolerance_verdict(self) -> dict[str, Any] | None:
+        """Whether all runs keep the tolerance: ``within``, ``exceeds`` or ``unknown``; ``None`` without a stated tolerance."""
+        verdict = self.results["tolerance_verdict"]
+        return None if verdict is None else dict(verdict)
 
     @property
     def findings(self) -> list[dict[str, Any]]:
@@ -60,8 +71,9 @@ def audit_energy(
     traces: Sequence[tuple[ArrayLike, ArrayLike]],
     dt: Sequence[float] | None = None,
     *,
-    tolerance: float = 1e-4,
+    tolerance: float | None = None,
     horizon: float | None = None,
+    scale: float | None = None,
     titles: Sequence[str] | None = None,
 ) -> EnergyReport:
     """Audit the energies of runs of the same system at several time steps, by any program.
@@ -73,9 +85,12 @@ def audit_energy(
     dt
         The time step of each run in s; by default the spacing of the samples, and then there is no largest step.
     tolerance
-        The largest deviation from the energy at the start, relative to it.
+        The largest deviation from the energy at the start, relative to ``scale``: judges each run. Without it runs have no verdict, and the
+        largest step is that for 1e-4.
     horizon
         The duration in s for which the tolerance holds; by default that of the runs.
+    scale
+        The energy that the tolerance is relative to, such as the mean kinetic energy; by default that at the start.
     titles
         Names of the runs.
     """
@@ -92,7 +107,9 @@ def audit_energy(
         times, energies = (np.ascontiguousarray(part, dtype=np.float64).reshape(-1) for part in trace)
         given.append((name, step, times, energies))
     until = None if horizon is None else positive("horizon", horizon)
-    options = f", tolerance={tolerance!r}" + ("" if horizon is None else f", horizon={horizon!r}")
+    stated = {"tolerance": tolerance, "horizon": horizon, "scale": scale}
+    options = "".join(f", {name}={value!r}" for name, value in stated.items() if value is not None)
+    limits = [None if value is None else positive(name, value) for name, value in (("tolerance", tolerance), ("scale", scale))]
     call = f"libration.audit_energy(traces, dt={None if dt is None else steps!r}{options})"
-    results, holds, page = _native._audit_energy(given, positive("tolerance", tolerance), until, call)
+    results, holds, page = _native._audit_energy(given, limits[0], until, limits[1], call)
     return EnergyReport(json.loads(results), holds, page)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import warnings
 from typing import Any, Mapping
 
 import numpy as np
@@ -44,6 +45,11 @@ class Trajectory(Mapping[str, np.ndarray]):
         self.not_finite: dict[str, Any] | None = ended if "count" in ended else None
         """For several trajectories: ``count`` of those that are not finite in the end, the ``first`` ten of them, and the ``reason``,
         if known."""
+        self.newton_residual: dict[str, Any] | None = ended.get("newton_residual")
+        """Of an implicit integrator that iterates: the ``largest`` correction by a further Newton step as a part of the change of a state, its
+        ``step`` and ``t``, and the numbers of ``examined`` and ``exceeding`` steps. A run with more than 1e-6 warns: its numbers are wrong."""
+        if "error" in ended:
+            warnings.warn(ended["error"], RuntimeWarning, stacklevel=3)
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         if name not in self._columns:

@@ -44,6 +44,21 @@ def test_a_force_with_curl_is_named():
     assert report.findings[0]["kind"] == "step-independent-drift"
 
 
+def test_a_stated_tolerance_is_judged_and_an_exceeded_one_does_not_hold():
+    traces, steps = [verlet(dt) for dt in (0.2, 0.1)], [0.2, 0.1]
+    assert libration.audit_energy(traces, dt=steps).tolerance_verdict is None
+    # The energy deviates by about dt²/4 of itself: 1e-2 and 2.5e-3.
+    exceeded = libration.audit_energy(traces, dt=steps, tolerance=1e-6)
+    assert exceeded.tolerance_verdict["outcome"] == "exceeds" and not exceeded.holds
+    assert exceeded.verdict["outcome"] == "no-fault"
+    kept = libration.audit_energy(traces, dt=steps, tolerance=0.02)
+    assert kept.tolerance_verdict["outcome"] == "within" and kept.holds
+    # Relative to a stated energy, whatever the constant of the potential.
+    raised = [(t, np.asarray(energies) + 1000) for t, energies in traces]
+    assert libration.audit_energy(raised, dt=steps, tolerance=0.02, scale=0.8).holds
+    assert not libration.audit_energy(raised, dt=steps, tolerance=1e-4, scale=0.8).holds
+
+
 @pytest.mark.parametrize(
     ("traces", "dt", "message"),
     [

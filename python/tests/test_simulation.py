@@ -384,3 +384,15 @@ def test_a_process_that_was_forked_has_threads_of_its_own():
     else:
         os.kill(child, signal.SIGKILL)
     assert done and status == 0
+
+
+def test_implicit_steps_that_do_not_solve_their_equations_warn():
+    cubic = System(rate={"x": "-x^3"}, start={"x": 10.0})
+    with pytest.warns(RuntimeWarning, match="did not solve their equations"):
+        path = simulate(cubic, integrator="backward-euler", dt=10.0, steps=1)
+    # The root of x + 10 x³ = 10 is 0.966679, and five Newton steps end at 1.41405.
+    assert path["x"][-1] == pytest.approx(1.41405, abs=1e-5)
+    assert path.newton_residual["exceeding"] == 1 and path.newton_residual["largest"] > 0.01
+    solved = simulate(cubic, integrator="backward-euler", dt=1e-3, steps=10)
+    assert solved.newton_residual["exceeding"] == 0
+    assert simulate(cubic, integrator="rk4", dt=1e-3, steps=10).newton_residual is None

@@ -6,12 +6,13 @@ use libration::Method;
 use libration::linear::{LoopStability, StabilityOutcome};
 use libration::live::Setting;
 use libration_analyze::linear_analysis::loop_verdict;
+use libration_report::notation::cut_off;
 use libration_report::verdict::{Outcome, Verdict};
 use serde::Serialize;
 
 use super::budget::{Budget, FirstFailure};
 use super::combined_effect::CombinedEffect;
-use super::integrator_choice::{IntegratorChoice, evaluations, sort_by_cost};
+use super::integrator_choice::{IntegratorChoice, SearchExtent, evaluations, sort_by_cost};
 use super::live_setting;
 use super::request::{Measure, Request, Tolerance};
 use super::stabilising_changes::StabilisingChanges;
@@ -46,6 +47,8 @@ pub struct Advice {
     pub integrators: Vec<IntegratorChoice>,
     /// A command that takes the advised steps; none without advised steps.
     pub command: Option<String>,
+    /// What the search of integrators covers; none for a loop.
+    pub search: Option<SearchExtent>,
     /// The shortest tried step, in s, if no step meets the tolerance and a shorter one may.
     pub tried_down_to: Option<f64>,
     /// The disadvantage of the second integrator; none without one.
@@ -71,6 +74,8 @@ pub struct ToleranceAnswer {
     pub of: &'static str,
     /// The largest allowed value.
     pub most: f64,
+    /// What an error of the energy is relative to, in its unit: the mean kinetic energy of the motion; none for other measures.
+    pub scale: Option<f64>,
 }
 
 /// The advice on a loop.
@@ -168,27 +173,6 @@ impl Advice {
         self.verdict.is_good()
     }
 
-    /// The verdict on a motion without a controller: whether an integrator keeps the tolerance. Of steps that were not tried it is unknown.
-    pub(super) fn verdict_of_motion(&self) -> Verdict {
-        let ToleranceAnswer { of, most } = self.tolerance;
-        match (self.chosen(), self.tried_down_to) {
-            (Some((choice, dt)), _) => Verdict::new(
-                Outcome::Within,
-                format!(
-                    "{of} error {:.3e} ≤ {most:e} with {} in steps of {dt:e} s",
-                    choice.lost, choice.integrator
-                ),
-            ),
-            (None, Some(shortest)) => Verdict::unknown(format!(
-                "no step from {shortest:.4e} s on keeps the {of} error below {most:e}, and shorter ones were not tried"
-            )),
-            (None, None) => Verdict::new(
-                Outcome::Exceeds,
-                format!("no tried step keeps the {of} error below {most:e}"),
-            ),
-        }
-    }
-
     pub(super) fn new(request: &Request) -> Self {
         let Tolerance { of, most } = request.tolerance;
         Advice {
@@ -202,11 +186,12 @@ impl Advice {
             },
             q: request.q.clone(),
             v: request.v.clone(),
-            tolerance: ToleranceAnswer { of: of.name(), most },
+            tolerance: ToleranceAnswer { of: of.name(), most, scale: None },
             horizon: request.horizon,
             looped: None,
             integrators: Vec::new(),
             command: None,
+            search: None,
             tried_down_to: None,
             runner_up: None,
             floats: Vec::new(),
@@ -282,8 +267,37 @@ impl Advice {
         self.integrators = choices;
     }
 
-    /// Warns of integrators whose search ended at the longest tried step.
-    pub(super) fn warn_of_limits(&mut self, longest: f64) {
+    /// Whether an integrator meets the tolerance, with what was not tried.
+    pub(super) fn judge_integrators(&self) -> Verdict {
+        let most = self.tolerance.most;
+        let verdict = match (self.chosen(), self.tried_down_to) {
+            (Some((choice, dt)), _) => Verdict::new(
+                Outcome::Within,
+                format!(
+                    "{} in steps of {:.4e} s: an error of {:.3e} of at most {most:e}",
+                    choice.integrator,
+                    cut_off(dt, 5),
+                    choice.lost
+                ),
+            ),
+            (None, Some(shortest)) => Verdict::unknown(format!(
+                "no tried step keeps {most:e}, and steps shorter than {shortest:.4e} s were not tried"
+            )),
+            (None, None) => {
+                let least =
+                    self.integrators.iter().map(|choice| choice.lost).fold(f64::INFINITY, f64::min);
+                Verdict::new(
+                    Outcome::Exceeds,
+                    format!("the least error of a tried step is {least:.3e}, above {most:e}"),
+                )
+            }
+        };
+        let not_tried = self.search.iter().flat_map(|search| &search.not_tried);
+        not_tried.fold(verdict, Verdict::without)
+    }
+
+    /// Warns of integrators that meet the tolerance with the longest step that was tried.
+    pub(super) fn warn_of_limits(&mut self, horizon: f64) {
         let most = self.tolerance.most;
         let ended =
             |choice: &&IntegratorChoice| choice.lost_beyond.is_some_and(|lost| lost <= most);
@@ -291,8 +305,7 @@ impl Advice {
             self.integrators.iter().filter(ended).map(|c| c.integrator).collect();
         if !names.is_empty() {
             self.warnings.push(format!(
-                "steps of more than {longest:.4e} s were not tried: 4 rad of the fastest motion, or the horizon; longer ones of {} may meet \
-                 the tolerance, too",
+                "longer steps of {} were not tried: they would be longer than the horizon of {horizon} s",
                 names.join(", ")
             ));
         }

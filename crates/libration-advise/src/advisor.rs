@@ -10,7 +10,9 @@ use super::advice::{Advice, FloatChoice, LoopAdvice};
 use super::combined_effect::CombinedEffect;
 use super::control::Control;
 use super::free_motion::FreeMotion;
-use super::integrator_choice::{best_possible, largest_step, offered_methods};
+use super::integrator_choice::{
+    IntegratorChoice, SearchExtent, best_possible, largest_step, offered_methods,
+};
 use super::loop_check::UnstableLoop;
 use super::loop_simulation::{LoopSimulation, MOST_PERIODS};
 use super::loops::{Loop, LoopError, PlantModel};
@@ -30,6 +32,7 @@ pub(super) fn advise_simulation(
     let most = request.tolerance.most;
     let is_short = |method: &Method| free.steps_of(*method).is_sorted();
     let methods: Vec<Method> = offered_methods(system.is_positional()).filter(is_short).collect();
+    advice.tolerance.scale = free.energy_scale;
     let mut choices = work.sweep("the largest step of each integrator", &methods, |&method| {
         largest_step(work, &free, method, most, free.steps_of(method))
     })?;
@@ -43,8 +46,31 @@ pub(super) fn advise_simulation(
         let ends = best.and_then(|best| best.best_dt).is_none_or(|dt| dt < 2.0 * shortest);
         advice.tried_down_to = Some(shortest).filter(|_| ends);
     }
+    let too_long: Vec<&str> = offered_methods(system.is_positional())
+        .filter(|method| !is_short(method))
+        .map(Method::name)
+        .collect();
+    let mut not_tried =
+        vec!["implicit integrators".to_owned(), "steps of variable length".to_owned()];
+    if !too_long.is_empty() {
+        not_tried.push(format!("{}, which takes too long over this horizon", too_long.join(", ")));
+    }
+    let tried = |least: f64, choice: &IntegratorChoice| {
+        choice
+            .tried_down_to
+            .into_iter()
+            .chain(choice.dt)
+            .chain(choice.best_dt)
+            .fold(least, f64::min)
+    };
+    let longest = choices.iter().filter_map(|choice| choice.dt).fold(free.steps()[1], f64::max);
+    advice.search = Some(SearchExtent {
+        integrators: choices.len(),
+        steps: [choices.iter().fold(f64::INFINITY, tried), longest],
+        not_tried,
+    });
     advice.choose(request, choices);
-    advice.warn_of_limits(free.steps()[1]);
+    advice.warn_of_limits(free.horizon);
     if !system.is_smooth() {
         advice.warnings.push(
             "the equations have kinks or jumps: errors are those of the steps that were tried, a shorter step may have a larger one, and \
@@ -57,7 +83,7 @@ pub(super) fn advise_simulation(
     {
         let turn = free.turn(dt);
         advice.warnings.push(format!(
-            "a step is {turn:.2} rad of the fastest motion: it meets the tolerance, but does not resolve the motion"
+            "a step is {turn:.2} rad of the fastest rate of the equations: it meets the tolerance, but may not resolve the motion"
         ));
     }
     if let Some((choice, dt)) = advice.chosen() {
@@ -68,8 +94,8 @@ pub(super) fn advise_simulation(
         let narrow = advice.float().is_some_and(|float| float.float == f32::NAME);
         advice.throughput = Some(Throughput::measure(work, request, method, dt, narrow)?);
     }
+    advice.verdict = advice.judge_integrators();
     let answer = describe_integrator(&advice, request);
-    advice.verdict = advice.verdict_of_motion();
     advice.finish(request, answer);
     Ok(advice)
 }

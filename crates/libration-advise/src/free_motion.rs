@@ -19,7 +19,9 @@ pub(super) struct FreeMotion<'a> {
     pub(super) horizon: f64,
     pub(super) of: Measure,
     /// The mean one scales velocities to lengths.
-    rates: MotionRates,
+    pub(super) rates: MotionRates,
+    /// The energy that errors of the energy are relative to.
+    pub(super) energy_scale: Option<f64>,
 }
 
 /// The angle of the fastest motion in a step below which errors fall with the step, in rad.
@@ -77,20 +79,15 @@ impl<'a> FreeMotion<'a> {
                 "a phase requires one degree of freedom, and forces without time",
             );
         }
-        let zero = "the energy at the start is zero, so a relative error is undefined";
-        if of == Measure::Energy {
-            let Some(mut energy) = system.energy() else {
-                return tolerance_error(
-                    "the system has no `energy`; add one, or set a tolerance of trajectory",
-                );
-            };
-            if energy(&start) == 0.0 {
-                return tolerance_error(zero);
-            }
+        if of == Measure::Energy && system.energy().is_none() {
+            return tolerance_error(
+                "the system has no `energy`; add one, or set a tolerance of trajectory",
+            );
         }
         let rates = MotionRates { mean: 1.0, fastest: 1.0, stiffest: 1.0 };
-        let free = FreeMotion { system, start, horizon: request.horizon, of, rates };
-        let free = FreeMotion { rates: free.rates(work)?, ..free };
+        let energy_scale = None;
+        let free = FreeMotion { system, start, horizon: request.horizon, of, rates, energy_scale };
+        let mut free = FreeMotion { rates: free.rates(work)?, ..free };
         if of == Measure::Energy {
             match free.energy_kind(&free.rates) {
                 EnergyKind::Kept => {}
@@ -99,7 +96,12 @@ impl<'a> FreeMotion<'a> {
                         "the system does not conserve it; set a tolerance of trajectory",
                     );
                 }
-                EnergyKind::Zero => return tolerance_error(zero),
+            }
+            free.energy_scale = free.energy_scale(work)?;
+            if free.energy_scale.is_none() {
+                return tolerance_error(
+                    "the motion has no kinetic energy, to which an error is relative; set a tolerance of trajectory",
+                );
             }
         }
         let [least, longest] = free.steps();
@@ -161,9 +163,9 @@ impl<'a> FreeMotion<'a> {
         let steps = steps_over(self.horizon, dt);
         let is_narrow = S::NAME == f32::NAME;
         let trajectory = (self.system.steps(is_narrow, method, dt, &self.start), steps);
-        if let (Measure::Energy, Some(mut energy)) = (self.of, self.system.energy()) {
+        if let (Some(scale), Some(mut energy)) = (self.energy_scale, self.system.energy()) {
             let first = energy(&self.start);
-            let mut error = |state: &[f64]| ((energy(state) - first) / first).abs();
+            let mut error = |state: &[f64]| ((energy(state) - first) / scale).abs();
             return largest(work, trajectory, most, &mut error);
         }
         match self.system.exact_steps(dt, &self.start) {
@@ -244,6 +246,10 @@ impl StepTrial for FreeMotion<'_> {
 
     fn resolving_step(&self) -> f64 {
         RESOLVED / self.rates.fastest
+    }
+
+    fn whole_motion(&self) -> f64 {
+        self.horizon
     }
 }
 

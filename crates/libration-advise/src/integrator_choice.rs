@@ -22,6 +22,8 @@ pub struct IntegratorChoice {
     pub best_dt: Option<f64>,
     /// The error with a step 1.2 times as long, or with the next longer part of a period; none without one.
     pub lost_beyond: Option<f64>,
+    /// The shortest tried step, in s; none for a loop.
+    pub tried_down_to: Option<f64>,
     /// Steps per period of a loop.
     pub substeps: Option<u64>,
     /// Force evaluations per second of simulated time; none if no step meets the tolerance.
@@ -37,10 +39,22 @@ impl IntegratorChoice {
             lost: f64::INFINITY,
             best_dt: None,
             lost_beyond: None,
+            tried_down_to: None,
             substeps: None,
             evaluations: None,
         }
     }
+}
+
+/// What a search of integrators covers.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct SearchExtent {
+    /// Number of integrators that were tried.
+    pub integrators: usize,
+    /// The shortest and the longest tried step, in s.
+    pub steps: [f64; 2],
+    /// What was not tried, in words.
+    pub not_tried: Vec<String>,
 }
 
 /// The error of a step, for a search.
@@ -51,6 +65,9 @@ pub(super) trait StepTrial: Sync {
 
     /// The step below which errors fall with the step.
     fn resolving_step(&self) -> f64;
+
+    /// The step that is the whole motion, in s: none is longer.
+    fn whole_motion(&self) -> f64;
 }
 
 /// Runge–Kutta methods of high orders that are tried.
@@ -92,7 +109,8 @@ const SHARP: f64 = 0.002;
 /// Ratio of the step tried beyond the chosen step.
 pub(super) const BEYOND: f64 = 1.2;
 
-/// The largest step between `least` and `most` with an error of at most `tolerance`, searched from above.
+/// The largest step between `least` and `most` with an error of at most `tolerance`, searched from above; a longer one if `most` meets the
+/// tolerance and steps between do, too.
 pub(super) fn largest_step(
     work: &Work<'_>,
     trial: &impl StepTrial,
@@ -101,8 +119,12 @@ pub(super) fn largest_step(
     [least, most]: [f64; 2],
 ) -> Result<IntegratorChoice, AdviseError> {
     let mut choice = IntegratorChoice::none(method);
-    let mut longest = most;
-    while let Some(found) = next_step(work, trial, method, tolerance, [least, longest], most)? {
+    let (mut longest, mut shortest) = (most, most);
+    let ranges = [least, most];
+    while let Some(found) =
+        next_step(work, trial, method, tolerance, longest, ranges, &mut shortest)?
+    {
+        choice.tried_down_to = Some(shortest);
         let [dt, lost, beyond] = found;
         (choice.dt, choice.lost, choice.lost_beyond) = (Some(dt), lost, Some(beyond));
         // An error that rises faster than that of its order may have passed through zero: shorter steps may exceed the tolerance.
@@ -122,7 +144,7 @@ pub(super) fn largest_step(
             None => return Ok(choice),
         }
     }
-    Ok(IntegratorChoice::none(method))
+    Ok(IntegratorChoice { tried_down_to: Some(shortest), ..IntegratorChoice::none(method) })
 }
 
 /// Shorter steps that are tried where an error may have passed through zero, evenly on a scale of logarithms.
@@ -135,14 +157,16 @@ const NEIGHBOURHOOD: f64 = -1.5;
 /// How many times faster than with its order an error rises where it may have passed through zero.
 const STEEP: f64 = 4.0;
 
-/// A largest step of at most `longest` within the tolerance, with its error and that of a step [beyond](BEYOND) it.
+/// A largest step of at most `longest` within the tolerance, with its error and that of a step [beyond](BEYOND) it; `shortest` is the
+/// shortest tried one.
 fn next_step(
     work: &Work<'_>,
     trial: &impl StepTrial,
     method: Method,
     tolerance: f64,
-    [least, longest]: [f64; 2],
-    most: f64,
+    longest: f64,
+    [least, most]: [f64; 2],
+    shortest: &mut f64,
 ) -> Result<Option<[f64; 3]>, AdviseError> {
     let lost = |dt: f64| trial.lost(work, method, dt, tolerance);
     let (mut above, mut low) = (longest, longest);
@@ -153,6 +177,7 @@ fn next_step(
         if low < least {
             return Ok(None);
         }
+        *shortest = shortest.min(low);
         at = lost(low)?;
     }
     while above / low > 1.0 + SHARP {
@@ -162,9 +187,19 @@ fn next_step(
     }
     // The error may decrease again beyond; not where a longer step has been left.
     let mut beyond = lost(BEYOND * low)?;
-    while longest == most && beyond <= tolerance && BEYOND * low < most {
+    let is_possible = |low: f64| BEYOND * low <= trial.whole_motion();
+    while longest == most && beyond <= tolerance && (BEYOND * low < most || is_possible(low)) {
         (low, at) = (BEYOND * low, beyond);
         beyond = lost(BEYOND * low)?;
+    }
+    // The range ended at a step that meets the tolerance, and the search went on.
+    if low > most {
+        let mut above = BEYOND * low;
+        while beyond > tolerance && above / low > 1.0 + SHARP {
+            let middle = (low * above).sqrt();
+            let here = lost(middle)?;
+            if here <= tolerance { (low, at) = (middle, here) } else { above = middle }
+        }
     }
     // The exact error beyond the tolerance.
     beyond = trial.lost(work, method, BEYOND * low, f64::INFINITY)?;
@@ -182,6 +217,7 @@ pub(super) fn best_possible(
     let mut dt = most;
     while dt >= least {
         let here = trial.lost(work, method, dt, f64::INFINITY)?;
+        choice.tried_down_to = Some(dt);
         if here < choice.lost {
             (choice.lost, choice.best_dt) = (here, Some(dt));
         } else if here > 2.0 * choice.lost && here.is_finite() {

@@ -53,7 +53,7 @@ pub use combined_effect::{CombinedEffect, SimulatedCost};
 pub use control::{Control, Correction, Law, Regulator};
 pub use file::{DEFAULT, parse};
 pub use imperfection::Imperfection;
-pub use integrator_choice::IntegratorChoice;
+pub use integrator_choice::{IntegratorChoice, SearchExtent};
 pub use loops::LoopError;
 pub use page::page;
 pub use region_of_attraction::RegionOfAttraction;

@@ -15,8 +15,6 @@ pub(super) enum EnergyKind {
     Kept,
     /// It is not conserved.
     Lost,
-    /// It is conserved, and zero but for rounding.
-    Zero,
 }
 
 /// Rates of a motion in rad/s.
@@ -103,6 +101,35 @@ impl FreeMotion<'_> {
         )))
     }
 
+    /// The energy that errors are relative to: the mean kinetic energy of the motion, where the kinetic energy is the energy less that without
+    /// velocities. It does not depend on the constant of the potential, as the energy at the start does, and is `|E|` for a closed orbit under
+    /// gravity (virial theorem). None if it is zero or no number.
+    pub(super) fn energy_scale(&self, work: &Work<'_>) -> Result<Option<f64>, AdviseError> {
+        const ANGLE: f64 = 0.05;
+        const TURNS: f64 = 200.0;
+        let Some(mut energy) = self.system.energy() else { return Ok(None) };
+        let degrees = self.system.degrees();
+        let mut kinetic = |state: &[f64]| {
+            let mut still = state.to_vec();
+            still[degrees..].fill(0.0);
+            energy(state) - energy(&still)
+        };
+        let long = self.horizon.min(TURNS * TAU / self.rates.mean);
+        let [_, most] = self.system.most_steps();
+        let steps = (long * self.rates.fastest / ANGLE).ceil().clamp(64.0, most);
+        let method = self.system.reference_method();
+        let mut trajectory = self.system.steps(false, method, long / steps, &self.start);
+        let mut sum = 0.5 * kinetic(&self.start);
+        let mut last = 0.0;
+        for _ in 0..steps as u64 {
+            last = kinetic(trajectory.next());
+            sum += last;
+        }
+        work.check()?;
+        let mean = ((sum - 0.5 * last) / steps).abs();
+        Ok(Some(mean).filter(|scale| scale.is_finite() && *scale > 0.0))
+    }
+
     fn is_at_rest(&self) -> bool {
         let degrees = self.system.degrees();
         let mut at = vec![0.0; degrees];
@@ -143,8 +170,6 @@ impl FreeMotion<'_> {
         let [[coarse, _], [fine, moved]] = [steps, 2.0 * steps].map(&mut change);
         if fine >= 0.3 * coarse && fine >= NOTHING * moved {
             EnergyKind::Lost
-        } else if first.abs() <= NOTHING * moved {
-            EnergyKind::Zero
         } else {
             EnergyKind::Kept
         }

@@ -10,6 +10,7 @@ use libration_report::verdict::Outcome;
 use super::advice::{Advice, LoopAdvice};
 use super::budget::Budget;
 use super::first_screen::{actions, budget_bars, budget_numbers, cut, simulated_cost, title};
+use super::integrator_choice::IntegratorChoice;
 use super::live_setting;
 use super::stability_map::StabilityMap;
 use super::summary::{ANY_PROBABILITY, is_any_probability};
@@ -211,6 +212,14 @@ pub(super) fn figure(map: &StabilityMap) -> Figure {
         .panel(panel)
 }
 
+/// The words in place of a step that meets the tolerance.
+fn none_down_to(choice: &IntegratorChoice) -> String {
+    match choice.tried_down_to {
+        Some(shortest) => format!("none tried, down to {}", number(shortest, 2)),
+        None => "none tried".to_owned(),
+    }
+}
+
 fn integrators(page: &mut Page, advice: &Advice) {
     if advice.integrators.is_empty() {
         return;
@@ -240,7 +249,7 @@ fn integrators(page: &mut Page, advice: &Advice) {
     for choice in &advice.integrators {
         table.push([
             choice.integrator.into(),
-            known(choice.dt, "none"),
+            known(choice.dt, &none_down_to(choice)),
             choice.substeps.map_or_else(|| Cell::absent(""), Cell::from),
             choice.lost.into(),
             known(choice.lost_beyond, ""),

@@ -43,7 +43,7 @@ pub struct Tolerance {
 /// A measure of the error of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
-    /// The largest relative error of the energy.
+    /// The largest error of the energy, relative to the mean kinetic energy of the motion.
     Energy,
     /// The final error of the phase, in rad.
     Phase,
@@ -71,7 +71,7 @@ impl Measure {
     /// The description in one line.
     pub fn title(self) -> &'static str {
         match self {
-            Measure::Energy => "largest relative error of the energy",
+            Measure::Energy => "largest error of the energy relative to the mean kinetic energy",
             Measure::Phase => "final error of the phase (rad)",
             Measure::Trajectory => "largest distance from the true trajectory relative to its size",
             Measure::Cost => "rise of the cost, ΔJ/J₀",

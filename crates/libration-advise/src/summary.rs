@@ -1,6 +1,6 @@
 //! Summaries in sentences.
 
-use libration_report::notation::cut_off;
+use libration_report::notation::{cut_off, plural};
 
 use super::advice::{Advice, LoopAdvice, ToleranceAnswer};
 use super::budget::{Budget, rounded_up};
@@ -26,23 +26,43 @@ pub(super) fn describe_integrator(advice: &Advice, request: &Request) -> String 
         Measure::Cost => String::new(),
         _ => format!(" over {horizon} s"),
     };
+    let count = advice.integrators.len();
+    let (range, not_tried) = advice.search.as_ref().map_or_else(Default::default, |search| {
+        let [shortest, longest] = search.steps;
+        (
+            format!(", in steps of {} to {} s,", number(longest), number(shortest)),
+            format!(" Not tried: {}.", search.not_tried.join("; ")),
+        )
+    });
     match advice.chosen() {
         None => {
             let steps = advice.tried_down_to.map_or_else(String::new, |shortest| {
                 format!(" with steps of {shortest:.4e} s or more, and shorter ones were not tried")
             });
-            format!("No integrator keeps the {} below {most:e}{over}{steps}.", of.title())
+            let tried = plural(count, "integrator");
+            let range = if steps.is_empty() { &range } else { "" };
+            let range = range.trim_end_matches(',');
+            format!(
+                "No integrator keeps the {} below {most:e}{over}{steps}, of {tried} that were tried{range}.{not_tried}",
+                of.title()
+            )
         }
         Some((choice, dt)) => {
             let float = advice.float().map_or("no float type", |float| float.float);
             format!(
-                "{} in steps of {:.4e} s, in {float}: the cheapest integrator that keeps the {} below {most:e}{over}.",
+                "{} in steps of {:.4e} s, in {float}: the cheapest of {} that were tried{range} to keep the {} below {most:e}{over}.{not_tried}",
                 choice.integrator,
                 cut_off(dt, 5),
+                plural(count, "integrator"),
                 of.title()
             )
         }
     }
+}
+
+/// A step of a search with two digits, as in the other numbers of an answer.
+fn number(dt: f64) -> String {
+    format!("{:?}", format!("{dt:.1e}").parse().unwrap_or(dt))
 }
 
 /// The stability and cost of a loop in a few sentences.

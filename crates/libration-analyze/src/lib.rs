@@ -12,6 +12,7 @@ pub mod export;
 pub mod linear_analysis;
 pub mod linear_trajectory;
 pub mod motion;
+pub mod newton_residual;
 mod program_simulation;
 pub mod program_stepper;
 mod recording;

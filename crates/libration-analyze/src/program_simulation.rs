@@ -5,12 +5,15 @@ use libration::simulation::{Sample, SimulationError, Simulator};
 use libration::system::DynSystem;
 use libration::{Float, Method, State};
 
+use crate::newton_residual::{NewtonCheck, NewtonResidual};
+
 /// A trajectory of a system without inputs, in steps of a program.
 pub(crate) struct ProgramSimulation<'p, S, const D: usize> {
     step_of: Evaluation<'p, S>,
     /// Positions, velocities and the time step.
     inputs: Vec<S>,
     step: u64,
+    check: Option<NewtonCheck<'p, S>>,
 }
 
 impl<'p, S: Float, const D: usize> ProgramSimulation<'p, S, D> {
@@ -27,7 +30,18 @@ impl<'p, S: Float, const D: usize> ProgramSimulation<'p, S, D> {
         let still = |_: &State<S, D>| [S::zero(); D];
         Simulator::new(DynSystem(&still), Method::SymplecticEuler, start, dt)?;
         let inputs = start.coordinates().chain([dt]).collect();
-        Ok(ProgramSimulation { step_of: step.program().on::<S>(), inputs, step: 0 })
+        Ok(ProgramSimulation { step_of: step.program().on::<S>(), inputs, step: 0, check: None })
+    }
+
+    /// The same trajectory, whose steps are compared with those of a [further Newton step](crate::newton_residual::refined).
+    pub(crate) fn checked(self, refined: Option<&'p StepProgram>) -> Self {
+        let places = || (0..2 * D).collect();
+        ProgramSimulation { check: refined.map(|step| NewtonCheck::new(step, places())), ..self }
+    }
+
+    /// What the Newton steps left so far; none without a comparison.
+    pub(crate) fn newton_residual(&self) -> Option<NewtonResidual> {
+        self.check.as_ref().and_then(NewtonCheck::found)
     }
 
     /// Takes `steps` steps and shows the state after each of them.
@@ -47,8 +61,11 @@ impl<'p, S: Float, const D: usize> ProgramSimulation<'p, S, D> {
                 let step = self.step + 1;
                 return Err(SimulationError::NotFinite { step, time: self.time_of(step) });
             }
-            self.inputs[..2 * D].copy_from_slice(&next);
             self.step += 1;
+            if let Some(check) = &mut self.check {
+                check.observe(&self.inputs, &next, self.step);
+            }
+            self.inputs[..2 * D].copy_from_slice(&next);
             observe(&self.sample());
         }
         Ok(())

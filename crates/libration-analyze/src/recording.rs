@@ -61,8 +61,7 @@ pub(crate) fn write<S: Number>(
         Format::Json => {
             let mut json = Json::new(&mut *out, &recording.head())?;
             let outcome = recording.run(&mut json, monitor)?;
-            let (key, value) = outcome.json_entry(several);
-            json.finish(key, &value)?;
+            json.finish(&outcome.json_entries(several))?;
             outcome
         }
         Format::Npy => {
@@ -75,8 +74,8 @@ pub(crate) fn write<S: Number>(
             let (table, outcome) = table(recording, monitor, encoding)?;
             let mut about: serde_json::Map<_, _> =
                 recording.head().into_iter().map(|(k, v)| (k.to_owned(), v)).collect();
-            let (key, value) = outcome.json_entry(several);
-            about.insert(key.to_owned(), value);
+            let entries = outcome.json_entries(several).into_iter();
+            about.extend(entries.map(|(key, value)| (key.to_owned(), value)));
             let about = Value::Object(about).to_string();
             write_parquet(&table, &[("libration.trajectory", &about)], 1, &mut *out)
                 .map_err(ExportError::from)?;

@@ -2,7 +2,7 @@
 
 use crate::integrator::{
     BackwardEuler, DampingImplicit, DampingStiffnessImplicit, GaussLegendre4, GaussLegendre6,
-    ImplicitIntegrator, ImplicitMidpoint, Integrator, StablePd, Trapezoid,
+    ImplicitIntegrator, ImplicitMidpoint, Integrator, Iterated, NEWTON_STEPS, StablePd, Trapezoid,
 };
 use crate::system::ImplicitSystem;
 use crate::{Method, Scalar, State};
@@ -84,19 +84,19 @@ impl ImplicitMethod {
                 "order 1; stable PD of Tan, Liu and Turk: forces of the next position, damping implicit"
             }
             ImplicitMethod::BackwardEuler => {
-                "order 1; stable for every step on decaying modes; takes energy away; 5 Newton steps"
+                "order 1; stable for every step on decaying modes of linear systems; takes energy away; 5 Newton steps"
             }
             ImplicitMethod::ImplicitMidpoint => {
-                "order 2; symplectic, time-reversible, without a limit of the step; 5 Newton steps"
+                "order 2; symplectic, time-reversible; no limit of the step on linear systems; 5 Newton steps"
             }
             ImplicitMethod::Trapezoid => {
                 "order 2; implicit-midpoint on linear systems, conjugate to it on others; 5 Newton steps"
             }
             ImplicitMethod::GaussLegendre4 => {
-                "order 4; 2 coupled stages; symplectic, time-reversible, without a limit of the step; 5 Newton steps"
+                "order 4; 2 coupled stages; symplectic, time-reversible; no limit of the step on linear systems; 5 Newton steps"
             }
             ImplicitMethod::GaussLegendre6 => {
-                "order 6; 3 coupled stages; symplectic, time-reversible, without a limit of the step; 5 Newton steps"
+                "order 6; 3 coupled stages; symplectic, time-reversible; no limit of the step on linear systems; 5 Newton steps"
             }
         }
     }
@@ -117,6 +117,17 @@ impl ImplicitMethod {
             ImplicitMethod::GaussLegendre4 => 2,
             ImplicitMethod::GaussLegendre6 => 3,
             _ => 1,
+        }
+    }
+
+    /// The method with one more Newton step than [`NEWTON_STEPS`]: what it changes is the error that the iteration leaves. None for a
+    /// method that solves linear equations, once.
+    pub const fn refined(self) -> Option<Iterated> {
+        match self {
+            ImplicitMethod::DampingImplicit
+            | ImplicitMethod::DampingStiffnessImplicit
+            | ImplicitMethod::StablePd => None,
+            method => Some(Iterated { method, newton_steps: NEWTON_STEPS + 1 }),
         }
     }
 

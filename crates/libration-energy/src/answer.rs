@@ -1,28 +1,37 @@
 //! The answer of an audit.
 
 use libration_report::notation::{number, plural};
+use libration_report::verdict::Outcome;
 
 use crate::interval::exponent;
 use crate::{DriftCause, EnergyReport, LargestDt, OscillationCause};
 
 /// The answer in a few sentences.
 pub(crate) fn answer(report: &EnergyReport) -> String {
-    let faults: Vec<String> = report
-        .findings
-        .iter()
-        .filter(|finding| finding.is_fault)
-        .map(|finding| finding.kind.to_string())
-        .collect();
-    let names = match faults.len() {
-        0 => format!("{}: no fault.", plural(report.runs.len(), "run")),
-        count => format!("{}: {}.", plural(count, "fault"), faults.join(", ")),
+    let runs = plural(report.runs.len(), "run");
+    let verdict = &report.verdict;
+    let names = match verdict.outcome {
+        Outcome::Fault => {
+            let count = report.findings.iter().filter(|finding| finding.is_fault).count();
+            format!("{}: {}", plural(count, "fault"), verdict.evidence)
+        }
+        Outcome::NoFault => format!("{runs}: {}", verdict.outcome),
+        _ => format!("{runs}: unknown whether there is a fault, as {}", verdict.evidence),
+    };
+    let kept = report.tolerance_verdict.as_ref().map_or_else(String::new, |verdict| match verdict
+        .outcome
+    {
+        Outcome::Exceeds => format!("; the tolerance is exceeded: {}", verdict.evidence),
+        Outcome::Within => format!("; within the tolerance: {}", verdict.evidence),
+        _ => format!("; unknown whether the tolerance is kept: {}", verdict.evidence),
+    });
+    let limits = match verdict.limits() {
+        limits if limits.is_empty() => limits,
+        limits => format!(" {limits}"),
     };
     let order = match (report.oscillation_cause, report.oscillation_law) {
         (OscillationCause::Truncation, Some(law)) => {
             format!(" The energy oscillates with order {}.", exponent(law.exponent))
-        }
-        (OscillationCause::Unclear, _) => {
-            " How the oscillation depends on the step is unclear.".to_owned()
         }
         _ => String::new(),
     };
@@ -46,14 +55,13 @@ pub(crate) fn answer(report: &EnergyReport) -> String {
         false => "",
     };
     let largest = report.largest_dt.as_ref().map_or_else(String::new, longest);
-    format!("{names}{order}{drift}{assumed}{largest}")
+    format!("{names}{kept}.{limits}{order}{drift}{assumed}{largest}")
 }
 
 fn longest(largest: &LargestDt) -> String {
     let required = format!(
-        "a deviation of {}{} over {} s",
-        number(largest.tolerance, 3),
-        if largest.scale == 1.0 { "" } else { " of the energy" },
+        "a deviation of {} over {} s",
+        largest.allowed_in_words(),
         number(largest.horizon, 4)
     );
     let Some(dt) = largest.dt else {

@@ -1,10 +1,13 @@
 //! The audit of energy traces.
 
+use libration_report::verdict::Verdict;
+
 use crate::answer::answer;
 use crate::cause::OscillationCause;
 use crate::findings::findings;
 use crate::power_law::PowerLaw;
 use crate::trace::checked;
+use crate::verdicts::{of_faults, of_tolerance};
 use crate::{
     DriftCause, EnergyReport, EnergyTrace, Estimate, LargestDt, Requirement, Run, TraceError,
     WalkCause,
@@ -36,14 +39,17 @@ pub fn audit(traces: &[EnergyTrace], requirement: Requirement) -> Result<EnergyR
     let drift_law = law(&|run| run.drifts().then_some(run.drift_rate));
     let walk_law = law(&|run| run.present_walk().map(|walk| walk.diffusion));
     let walk_cause = WalkCause::of(&runs, walk_law);
-    let largest_dt = LargestDt::search(
+    let search = LargestDt::search(
         &runs,
         requirement,
         (oscillation_cause, drift_cause, walk_cause),
         (drift_law.map(|law| law.exponent.value), walk_law.map(|law| law.exponent.value)),
     );
+    let (largest_dt, predicted) = search.unzip();
     let mut report = EnergyReport {
         answer: String::new(),
+        verdict: Verdict::unknown("not judged"),
+        tolerance_verdict: None,
         findings: Vec::new(),
         runs,
         oscillation_cause,
@@ -59,6 +65,12 @@ pub fn audit(traces: &[EnergyTrace], requirement: Requirement) -> Result<EnergyR
         repeat_command: String::new(),
     };
     report.findings = findings(&report, &sorted);
+    report.verdict = of_faults(&report);
+    if let (Some(largest), Some(predicted), Some(_)) =
+        (largest_dt, predicted, requirement.tolerance)
+    {
+        report.tolerance_verdict = Some(of_tolerance(&report, &sorted, &largest, &predicted));
+    }
     if report.is_dt_assumed {
         // Of samples that are thinned it would be too large by the thinning.
         report.largest_dt = None;

@@ -85,6 +85,23 @@ fn class_of(sizes: &[(f64, Estimate)]) -> Class {
     }
 }
 
+/// How many times a size without an interval may be too small or too large. The deviation of as few as five independent values errs by
+/// 30 %, so that a factor of 3 is more than three of its errors.
+const NO_INTERVAL: f64 = 3.0;
+
+/// Whether sizes of which some have no interval still fall with the step, from the shortest to the longest.
+fn falls(sizes: &[(f64, Estimate)]) -> bool {
+    let bounded = |(dt, size): &(f64, Estimate)| match size.high.is_infinite() {
+        true => {
+            let (low, high) = (size.value / NO_INTERVAL, size.value * NO_INTERVAL);
+            (*dt, Estimate { value: size.value, low, high })
+        }
+        false => (*dt, *size),
+    };
+    let (Some(first), Some(last)) = (sizes.first(), sizes.last()) else { return false };
+    matches!(class(local_exponent(bounded(first), bounded(last))), Class::Falls)
+}
+
 impl DriftCause {
     /// The cause in runs with the shortest step first.
     pub(crate) fn of(runs: &[Run]) -> Self {
@@ -154,10 +171,15 @@ impl OscillationCause {
             .filter(|run| run.resolves_oscillation())
             .map(|run| (run.dt, run.oscillation))
             .collect();
+        // An oscillation that only a shorter step shows does not fall with the step.
+        let is_of_longest =
+            sizes.iter().all(|(dt, _)| runs.last().is_some_and(|run| run.dt == *dt));
         match (sizes.len(), class_of(&sizes)) {
-            (0 | 1, _) => OscillationCause::Unresolved,
+            (0 | 1, _) if is_of_longest => OscillationCause::Unresolved,
+            (0 | 1, _) => OscillationCause::Unclear,
             (_, Class::Falls) => OscillationCause::Truncation,
             (_, Class::Stays | Class::Grows) => OscillationCause::StepIndependent,
+            (_, Class::Unclear) if falls(&sizes) => OscillationCause::Truncation,
             (_, Class::Unclear) => OscillationCause::Unclear,
         }
     }

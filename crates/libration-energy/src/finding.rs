@@ -26,7 +26,7 @@ pub enum FindingKind {
     UnclearDrift,
     /// The energy wanders, and the runs do not tell why.
     UnclearWalk,
-    /// A run is too short for the memory of its energy: its oscillation has no interval.
+    /// A run is too short for the memory of its energy, or the runs do not tell how the oscillation depends on the step.
     UnclearOscillation,
     /// The oscillation has order 1.
     FirstOrderOscillation,
@@ -118,7 +118,9 @@ impl FindingKind {
             FindingKind::UnclearDrift | FindingKind::UnclearWalk => {
                 "add a run with a step at least four times as short, or make all runs longer"
             }
-            FindingKind::UnclearOscillation => "make the runs longer",
+            FindingKind::UnclearOscillation => {
+                "make the runs longer; if the fluctuation still does not fall with the step, the force is not the gradient of the energy that is written"
+            }
             FindingKind::FirstOrderOscillation => {
                 "compute kinetic and potential energies at the same time; velocity Verlet has order 2"
             }

@@ -97,7 +97,8 @@ fn walk(report: &EnergyReport) -> Option<Finding> {
         return None;
     }
     let size = format!(
-        "the energy wanders as a random walk of {} of itself per step at dt = {} s",
+        "the energy wanders as a random walk of {} per step, {} of the largest energy, at dt = {} s",
+        number(per_step * run.largest_energy, 2),
         number(per_step, 2),
         number(run.dt, 4)
     );

@@ -1,5 +1,6 @@
 //! The largest time step for a tolerance over a horizon.
 
+use libration_report::notation::number;
 use serde::Serialize;
 
 use crate::estimate::NORMAL_95;
@@ -11,25 +12,32 @@ const SHORTER: f64 = 1e-3;
 const RATIO: f64 = 1.001;
 /// Energies that are as large as this many deviations have a relative tolerance.
 const RELATIVE: f64 = 10.0;
+/// Meanings of the scale.
+const START: &str = "energy at the start";
+const GIVEN: &str = "given scale";
+const UNIT: &str = "unit of the energies";
 
 /// What is required of the energy.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Requirement {
-    /// Largest deviation from the energy at the start, relative to it; in its unit, if the energy is close to 0.
-    pub tolerance: f64,
+    /// Largest deviation from the energy at the start, relative to the scale. Without it runs have no verdict, and the largest step is that
+    /// for [`Requirement::TOLERANCE`].
+    pub tolerance: Option<f64>,
     /// Duration in s; none for that of the shortest run.
     pub horizon: Option<f64>,
-}
-
-impl Default for Requirement {
-    fn default() -> Self {
-        Requirement { tolerance: 1e-4, horizon: None }
-    }
+    /// The energy that the tolerance is relative to; none for that at the start, or its unit if that is close to 0.
+    ///
+    /// The energy at the start has the arbitrary constant of the potential.
+    pub scale: Option<f64>,
 }
 
 impl Requirement {
+    /// The tolerance of the largest step where none is stated.
+    pub const TOLERANCE: f64 = 1e-4;
+
     pub(crate) fn check(&self) -> Result<(), TraceError> {
-        let named = [("tolerance", Some(self.tolerance)), ("horizon", self.horizon)];
+        let named =
+            [("tolerance", self.tolerance), ("horizon", self.horizon), ("scale", self.scale)];
         for (what, value) in named {
             if let Some(value) = value.filter(|x| !(x.is_finite() && *x > 0.0)) {
                 return Err(TraceError::Requirement { what, value });
@@ -48,6 +56,8 @@ pub struct LargestDt {
     pub horizon: f64,
     /// The energy that the tolerance is relative to; 1 for an energy close to 0.
     pub scale: f64,
+    /// The meaning of the scale: `energy at the start`, `given scale`, or `unit of the energies`.
+    pub scale_of: &'static str,
     /// The step in s by the values of the laws; none if no step of the range meets the requirement.
     pub dt: Option<f64>,
     /// Whether `dt` is none because the runs do not tell how a part depends on the step.
@@ -188,19 +198,33 @@ fn walk(runs: &[Run], cause: WalkCause, exponent: Option<f64>) -> Law {
 }
 
 impl LargestDt {
-    /// Searches the step, with runs that have the shortest step first. `exponents` are those of the drift rate and of
-    /// the variance of the walk.
+    /// The allowed deviation: `10⁻⁴ of the energy at the start`.
+    pub(crate) fn allowed_in_words(&self) -> String {
+        let tolerance = number(self.tolerance, 3);
+        match self.scale_of {
+            UNIT => format!("{tolerance} in the {UNIT}"),
+            of => format!("{tolerance} of the {of}, {}", number(self.scale, 4)),
+        }
+    }
+
+    /// Searches the step, with runs that have the shortest step first, and the deviations of the runs over the horizon at the favourable
+    /// and the unfavourable ends of all intervals. `exponents` are those of the drift rate and of the variance of the walk.
     pub(crate) fn search(
         runs: &[Run],
         requirement: Requirement,
         causes: (OscillationCause, DriftCause, WalkCause),
         exponents: (Option<f64>, Option<f64>),
-    ) -> Option<Self> {
+    ) -> Option<(Self, Vec<[f64; 2]>)> {
         let (first, last) = (runs.first()?, runs.last()?);
         let horizon = requirement.horizon.unwrap_or(first.duration);
         let start = first.energy_at_start.abs();
-        let scale = if start > RELATIVE * first.largest_deviation { start } else { 1.0 };
-        let allowed = requirement.tolerance * scale;
+        let (scale, scale_of) = match requirement.scale {
+            Some(scale) => (scale, GIVEN),
+            None if start > RELATIVE * first.largest_deviation => (start, START),
+            None => (1.0, UNIT),
+        };
+        let tolerance = requirement.tolerance.unwrap_or(Requirement::TOLERANCE);
+        let allowed = tolerance * scale;
         let laws = [
             oscillation(runs, causes.0, causes.1),
             drift(runs, causes.1, exponents.0),
@@ -225,10 +249,14 @@ impl LargestDt {
         let all = |end: End| search(end, |_| true);
         let (dt, low, high) = (all(End::Value), all(End::High), all(End::Low));
         let is_unknown = dt.is_none() && search(End::Value, |law| law.is_known).is_some();
-        Some(LargestDt {
-            tolerance: requirement.tolerance,
+        let at_runs = runs
+            .iter()
+            .map(|run| [End::Low, End::High].map(|end| deviation(run.dt, end, |_| true)));
+        let largest = LargestDt {
+            tolerance,
             horizon,
             scale,
+            scale_of,
             dt,
             is_unknown,
             shortest_dt,
@@ -237,7 +265,8 @@ impl LargestDt {
             is_limited_by_runs: dt == Some(last.dt),
             is_extrapolated: dt.is_some_and(|dt| dt < first.dt),
             resolving_duration: resolving_duration(runs, dt, horizon, allowed),
-        })
+        };
+        Some((largest, at_runs.collect()))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Audits of energy traces: what an energy drift is made of.
 //!
 //! [`audit()`] takes the energies of runs of one system at several time steps, by any program. It separates the bounded oscillation of
-//! the energy, the drift by truncation, rounding, and what does not fall with the step. It names faults, and predicts the largest step
+//! the energy, the drift by truncation, rounding, and what does not fall with the step. It names faults, judges the runs by a tolerance, and predicts the largest step
 //! for a tolerance over a horizon. Intervals honour the autocorrelation of the energy.
 
 mod answer;
@@ -25,6 +25,7 @@ mod report;
 mod run;
 mod single_precision;
 mod trace;
+mod verdicts;
 mod walk;
 
 pub use audit::audit;

@@ -41,8 +41,32 @@ pub(crate) fn first_order(report: &EnergyReport) -> Option<Finding> {
     })
 }
 
-/// That a run has no interval of its oscillation.
+/// That the runs do not tell how the oscillation depends on the step, or that a run has no interval of it.
 pub(crate) fn unclear(report: &EnergyReport) -> Option<Finding> {
+    no_interval(report).or_else(|| no_law(report))
+}
+
+fn no_law(report: &EnergyReport) -> Option<Finding> {
+    if report.oscillation_cause != OscillationCause::Unclear {
+        return None;
+    }
+    let (first, last) = (report.runs.first()?, report.runs.last()?);
+    let law = report
+        .oscillation_law
+        .map_or_else(String::new, |law| format!(", proportional to dt^{}", exponent(law.exponent)));
+    Some(Finding::new(
+        Kind::UnclearOscillation,
+        format!(
+            "the energy fluctuates by {} at dt = {} s and by {} at dt = {} s (standard deviations){law}: the runs do not tell whether it falls with the step",
+            interval(first.oscillation, 3),
+            number(first.dt, 4),
+            interval(last.oscillation, 3),
+            number(last.dt, 4),
+        ),
+    ))
+}
+
+fn no_interval(report: &EnergyReport) -> Option<Finding> {
     // What is below the digits of the energies is no oscillation.
     let is_unclear = |run: &&Run| run.has_unclear_oscillation() && run.resolves_oscillation();
     let run = report.runs.iter().find(is_unclear)?;

@@ -32,7 +32,7 @@ pub fn page(audit: &EnergyReport) -> String {
 fn findings(page: &mut Page, audit: &EnergyReport) {
     page.heading("What should be changed?");
     if audit.findings.is_empty() {
-        page.paragraph("Nothing: the audit has no finding.");
+        page.paragraph("The audit has no finding.");
         return;
     }
     let mut table = Table::new("findings", &["finding", "kind", "evidence", "what to change"]);
@@ -52,7 +52,7 @@ fn runs(page: &mut Page, audit: &EnergyReport) {
     page.heading("What does each run show?");
     page.paragraph(
         "Intervals are of 95 % and honour the autocorrelation of the energy. The oscillation is a standard deviation about the drift; a \
-         random walk is given by its deviation after one second.",
+         random walk is given by its deviation after one second. Oscillation, drift, walk and deviation are in the unit of the energies.",
     );
     let mut table = Table::new(
         "runs",
@@ -63,6 +63,7 @@ fn runs(page: &mut Page, audit: &EnergyReport) {
             "oscillation",
             "drift per second",
             "random walk in 1 s",
+            "largest deviation",
             "correlation time (s)",
         ],
     );
@@ -78,6 +79,7 @@ fn runs(page: &mut Page, audit: &EnergyReport) {
             interval(run.oscillation, 3).into(),
             interval(run.drift_rate, 3).into(),
             walk,
+            Cell::rounded(run.deviation_from_start, 3),
             run.correlation_time.map_or_else(|| Cell::absent("—"), |time| Cell::rounded(time, 3)),
         ]);
     }

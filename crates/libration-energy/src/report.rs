@@ -1,5 +1,6 @@
 //! The results of an audit.
 
+use libration_report::verdict::{Verdict, exit_code};
 use serde::Serialize;
 
 use crate::{DriftCause, Finding, LargestDt, OscillationCause, PowerLaw, Run, WalkCause};
@@ -9,6 +10,10 @@ use crate::{DriftCause, Finding, LargestDt, OscillationCause, PowerLaw, Run, Wal
 pub struct EnergyReport {
     /// The answer in a few sentences.
     pub answer: String,
+    /// Whether there is a fault; unknown where the runs do not tell.
+    pub verdict: Verdict,
+    /// Whether all runs keep the tolerance over the horizon; none without a stated tolerance.
+    pub tolerance_verdict: Option<Verdict>,
     /// Faults of the simulation, and facts that a reader of the numbers must know.
     pub findings: Vec<Finding>,
     /// The runs, that with the shortest time step first.
@@ -38,8 +43,13 @@ pub struct EnergyReport {
 }
 
 impl EnergyReport {
-    /// Whether no finding is a fault.
+    /// All verdicts.
+    pub fn verdicts(&self) -> impl Iterator<Item = &Verdict> {
+        [&self.verdict].into_iter().chain(&self.tolerance_verdict)
+    }
+
+    /// Whether all verdicts are good; unknown is not.
     pub fn holds(&self) -> bool {
-        !self.findings.iter().any(|finding| finding.is_fault)
+        exit_code(self.verdicts()) == libration_report::verdict::GOOD
     }
 }

@@ -47,6 +47,8 @@ pub struct Run {
     pub oscillation: Estimate,
     /// Largest deviation from the drift.
     pub largest_deviation: f64,
+    /// Largest deviation from the energy at the start.
+    pub deviation_from_start: f64,
     /// Drift rate per second: the change over the run by its duration, or at the start of an exponential growth.
     pub drift_rate: Estimate,
     /// Half of the width of the interval that holds but for 10⁻⁴.
@@ -113,6 +115,7 @@ impl Run {
             largest_deviation: residuals
                 .iter()
                 .fold(0.0, |most, x| most.max((x - residuals[0]).abs())),
+            deviation_from_start: energies.iter().fold(0.0, |most, x| most.max(x.abs())),
             correlation_time: fluctuation.correlation_time,
             oscillation: fluctuation.oscillation,
             drift_rate: Estimate::symmetric(trend.rate, width(NORMAL_95)),

@@ -9,12 +9,13 @@ use crate::error::value_error;
 /// A trace: its title, time step, times and energies.
 type Trace<'py> = (String, Option<f64>, PyReadonlyArray1<'py, f64>, PyReadonlyArray1<'py, f64>);
 
-/// Audits energies. Gives JSON, whether there is no fault, and a page.
+/// Audits energies. Gives JSON, whether all verdicts are good, and a page.
 #[pyfunction]
 pub(crate) fn _audit_energy(
     traces: Vec<Trace<'_>>,
-    tolerance: f64,
+    tolerance: Option<f64>,
     horizon: Option<f64>,
+    scale: Option<f64>,
     invocation: String,
 ) -> PyResult<(String, bool, String)> {
     let mut all = Vec::with_capacity(traces.len());
@@ -24,7 +25,7 @@ pub(crate) fn _audit_energy(
     }
     let wrong = |error: &dyn core::fmt::Display| value_error(error.to_string());
     let mut report =
-        audit(&all, Requirement { tolerance, horizon }).map_err(|error| wrong(&error))?;
+        audit(&all, Requirement { tolerance, horizon, scale }).map_err(|error| wrong(&error))?;
     report.repeat_command = invocation;
     let json = serde_json::to_string(&report).map_err(|error| wrong(&error))?;
     Ok((json, report.holds(), page(&report)))

@@ -3,6 +3,7 @@
 use half::{bf16, f16};
 use libration::control::clock::Recorded;
 use libration_analyze::Criteria;
+use libration_analyze::newton_residual::NewtonResidual;
 use libration_analyze::trajectory;
 use libration_analyze::trajectory::{Divergence, EnsembleOptions, FloatType, Outcome, Request};
 use libration_data::Values;
@@ -138,17 +139,31 @@ fn ended<'py>(py: Python<'py>, outcome: &Outcome) -> PyResult<Bound<'py, PyDict>
     let dict = PyDict::new(py);
     match outcome {
         Outcome::Complete => {}
-        Outcome::Diverged(Divergence { step, t, reason }) => {
+        Outcome::Iterated(_) => {}
+        Outcome::Diverged(Divergence { step, t, reason, .. }) => {
             dict.set_item("step", step)?;
             dict.set_item("t", t)?;
             dict.set_item("reason", keywords(reason))?;
         }
-        Outcome::NotFinite { count, first, reason } => {
+        Outcome::NotFinite { count, first, reason, .. } => {
             dict.set_item("count", count)?;
             dict.set_item("first", first)?;
             if let Some(reason) = reason {
                 dict.set_item("reason", keywords(reason))?;
             }
+        }
+    }
+    if let Some(residual) = outcome.newton_residual() {
+        let NewtonResidual { largest, step, t, examined, exceeding } = *residual;
+        let own = PyDict::new(py);
+        own.set_item("largest", largest)?;
+        own.set_item("step", step)?;
+        own.set_item("t", t)?;
+        own.set_item("examined", examined)?;
+        own.set_item("exceeding", exceeding)?;
+        dict.set_item("newton_residual", own)?;
+        if let Some(error) = residual.error() {
+            dict.set_item("error", error)?;
         }
     }
     Ok(dict)

@@ -140,7 +140,7 @@ impl AdaptiveRequest {
             AdaptiveFailure::NoTime => "steps are so short that time stands still: a collision",
             AdaptiveFailure::OffGrid => "the state is too large for the grid",
         };
-        Outcome::Diverged(Divergence { step, t, reason: reason.to_owned() })
+        Outcome::Diverged(Divergence { step, t, reason: reason.to_owned(), newton_residual: None })
     }
 }
 

@@ -94,7 +94,10 @@ impl Changes {
     }
 }
 
-/// The sizes to which changes are compared: `|E|`, `Σ m|v|` and `Σ m|r||v|`; where the energy is zero, the kinetic energy.
+/// The part of the kinetic energy below which an energy is the small difference of larger ones, as near a parabolic orbit, and no scale.
+const SMALL: f64 = 0.1;
+
+/// The sizes to which changes are compared: `|E|`, `Σ m|v|` and `Σ m|r||v|`; where the energy is small beside it, the kinetic energy.
 pub(super) fn sizes(bodies: &Bodies, start: &Conserved) -> [f64; 3] {
     let length = |of: [f64; 3]| of.iter().map(|x| x * x).sum::<f64>().sqrt();
     let (mut momenta, mut turns) = (0.0, 0.0);
@@ -103,6 +106,7 @@ pub(super) fn sizes(bodies: &Bodies, start: &Conserved) -> [f64; 3] {
         momenta += momentum;
         turns += momentum * length(body.position);
     }
-    let energy = if start.energy == 0.0 { start.kinetic } else { start.energy.abs() };
+    let is_small = start.energy.abs() < SMALL * start.kinetic;
+    let energy = if is_small { start.kinetic } else { start.energy.abs() };
     [energy, momenta, turns]
 }

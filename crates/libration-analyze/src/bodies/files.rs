@@ -77,7 +77,7 @@ impl Recording<f64> for BodiesRecording<'_> {
         let audit = simulate(self.request, rows, monitor)?;
         let outcome = audit.stopped.as_ref().map_or(Outcome::Complete, |reason| {
             let (step, t) = (audit.steps + 1, (audit.steps + 1) as f64 * audit.dt);
-            Outcome::Diverged(Divergence { step, t, reason: reason.clone() })
+            Outcome::Diverged(Divergence { step, t, reason: reason.clone(), newton_residual: None })
         });
         self.audit.replace(Some(audit));
         Ok(outcome)

@@ -8,6 +8,8 @@ mod search;
 
 use libration::Method;
 use libration::equations::Dynamics;
+use libration_report::notation::cut_off;
+use libration_report::verdict::{Outcome, Verdict};
 use libration_work::Work;
 use serde::Serialize;
 
@@ -54,6 +56,10 @@ pub struct Comparison {
     pub is_smooth: bool,
     /// The integrators, the cheapest first; those that do not meet the tolerance come last.
     pub integrators: Vec<ComparedIntegrator>,
+    /// Whether an integrator meets the tolerance, with what was not tried.
+    pub verdict: Verdict,
+    /// The most force evaluations of the motion that an integrator was tried with.
+    pub most_evaluations: f64,
 }
 
 /// An integrator on a motion.
@@ -76,9 +82,28 @@ pub struct ComparedIntegrator {
     pub predicted_evaluations: Option<f64>,
     /// The error with this step; without one, the smallest error found.
     pub error: Option<f64>,
-    /// The largest error of the energy with this step, relative to the largest of kinetic, potential and total energy at the start; none
-    /// without an energy.
+    /// The largest error of the energy with this step, relative to the mean kinetic energy of the motion; none without an energy.
+    ///
+    /// The same scale as that of `advise --tolerance energy=`.
     pub energy_error: Option<f64>,
+}
+
+/// Whether an integrator meets the tolerance.
+fn judge(integrators: &[ComparedIntegrator], tolerance: f64, most: f64) -> Verdict {
+    let verdict = match integrators.first().and_then(|one| Some((one, one.dt?, one.error?))) {
+        Some((best, dt, error)) => Verdict::new(
+            Outcome::Within,
+            format!(
+                "{} in steps of {} s: an error of {error:.3e} of at most {tolerance:e}",
+                best.integrator,
+                cut_off(dt, 4)
+            ),
+        ),
+        None => Verdict::unknown(format!(
+            "no integrator keeps {tolerance:e} with at most {most:.0} force evaluations, and more were not tried"
+        )),
+    };
+    verdict.without("implicit integrators").without("steps of variable length")
 }
 
 /// Compares all explicit integrators on a motion.
@@ -99,7 +124,10 @@ pub fn compare(
     Yardsticks::new(&integrators).predict(&mut integrators);
     let cost = |one: &ComparedIntegrator| one.evaluations.unwrap_or(f64::INFINITY);
     integrators.sort_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.order.cmp(&b.order)));
+    let verdict = judge(&integrators, request.tolerance, search.most_evaluations());
     Ok(Comparison {
+        verdict,
+        most_evaluations: search.most_evaluations(),
         schema: SCHEMA,
         system: request.system.clone(),
         horizon: request.horizon,

@@ -101,16 +101,23 @@ impl<'r> Motion<'r> {
         if is_finite && !worst.is_nan() { worst } else { f64::INFINITY }
     }
 
-    /// The largest difference of the energy from that of the exact motion, relative to the largest of its parts at the start: kinetic,
-    /// potential and total. None without an energy or without such a size.
+    /// The largest difference of the energy from that of the exact motion, relative to the mean kinetic energy of that motion, which does not
+    /// depend on the constant of the potential. None without an energy or without such a size.
     pub(super) fn energy_error(&self, step: &StepProgram, steps: u64) -> Option<f64> {
         let mut energy = self.request.dynamics.energy()?.on::<f64>();
         let mut energy_of = |state: &[f64]| energy.run(state).next().unwrap_or(f64::NAN);
-        let mut at_rest = self.request.start.clone();
-        let total = energy_of(&at_rest);
-        at_rest[self.request.start.len() / 2..].fill(0.0);
-        let potential = energy_of(&at_rest);
-        let scale = total.abs().max(potential.abs()).max((total - potential).abs());
+        let (mut state, mut hint) = (self.request.start.clone(), 0);
+        let mut scale = 0.0_f64;
+        for sample in 0..=MOST_SAMPLES {
+            let time = self.request.horizon * (sample as f64 / MOST_SAMPLES as f64);
+            self.reference.write(time, &mut hint, &mut state);
+            let total = energy_of(&state);
+            state[self.request.start.len() / 2..].fill(0.0);
+            // The trapezoidal rule.
+            let weight = if sample == 0 || sample == MOST_SAMPLES { 0.5 } else { 1.0 };
+            scale += weight * (total - energy_of(&state));
+        }
+        let scale = (scale / MOST_SAMPLES as f64).abs();
         let mut worst = 0.0_f64;
         self.compare(step, steps, |state, exact| {
             let off = (energy_of(state) - energy_of(exact)).abs() / scale;

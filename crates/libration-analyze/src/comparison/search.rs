@@ -45,6 +45,11 @@ impl<'m> Search<'m> {
         Ok(search)
     }
 
+    /// The most force evaluations of the motion that an integrator is tried with.
+    pub(super) fn most_evaluations(&self) -> f64 {
+        self.most
+    }
+
     /// The largest step of an integrator that meets the tolerance, and all about it.
     pub(super) fn of(
         &self,

@@ -20,6 +20,7 @@ use crate::linear_analysis::{self, LinearAnalysis, LinearAnalysisError, LinearRe
 use crate::step::Stepping;
 
 pub use crate::motion::{EnergyChange, MotionExamination, StateExamination};
+use crate::newton_residual::{self, NewtonResidual};
 pub use motion::{EquationMotion, StateError};
 pub use motion_steps::MotionSteps;
 pub use step::{spectral_radius, step_order};
@@ -38,6 +39,9 @@ pub struct EquationAnalysis {
     pub system: EquationSummary,
     /// The motion from its start.
     pub motion: EquationMotion,
+    /// What the Newton steps of an implicit integrator leave in the motion; none without an iteration.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub newton_residual: Option<NewtonResidual>,
     /// The equilibrium near its start; none if none was found.
     pub operating_point: Option<OperatingPoint>,
     /// The system about the equilibrium.
@@ -102,11 +106,15 @@ pub fn analyze(
     let steps_along_motion = MotionSteps::new(system, method, horizon, stop)?;
     let verdicts =
         EquationVerdicts::new(system, method, &motion, equilibrium.as_deref(), linear.as_ref());
-    let system = EquationSummary::new(system);
+    let places = system.states.iter().map(|state| state.place).collect();
+    let dynamics = system.equations.dynamics();
+    let newton_residual =
+        newton_residual::of_run(method, dynamics, &system.start(), places, (dt, steps), stop);
     Ok(EquationAnalysis {
         schema: SCHEMA,
-        system,
+        system: EquationSummary::new(system),
         motion,
+        newton_residual,
         operating_point,
         linear,
         steps_along_motion,

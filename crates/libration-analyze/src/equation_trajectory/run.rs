@@ -4,6 +4,7 @@ use libration::equations::StepProgram;
 
 use super::EquationRequest;
 use crate::export::{Number, Rows};
+use crate::newton_residual::{NewtonCheck, refined};
 use crate::trajectory::{
     Divergence, EnsembleFloat, EnsembleOptions, EnsembleRun, Monitor, Outcome, TrajectoryError,
 };
@@ -26,8 +27,8 @@ pub(super) fn run_ensemble<S: EnsembleFloat>(
     let start = |n: usize, i: usize| scale(n, i) * start[i];
     let mut all = S::equation_ensemble(system.equations.dynamics(), &start, ensemble)?;
     let run = EnsembleRun { method: *method, dt: *dt, steps: *steps, every: *every, kept: &kept };
-    let lost = run.record(&mut *all, rows, monitor)?;
-    Ok(Outcome::of_ensemble(&lost, || None))
+    let (lost, residual) = run.record(&mut *all, system.equations.dynamics(), rows, monitor)?;
+    Ok(Outcome::of_ensemble(&lost, || None).with_residual(residual))
 }
 
 /// Simulates a checked request in the float type `S`.
@@ -39,10 +40,12 @@ pub(super) fn run<S: Number>(
     let EquationRequest { system, steps, every, .. } = request;
     let equations = &system.equations;
     let program = StepProgram::of(request.method, equations.dynamics());
+    let refined = refined(request.method, equations.dynamics());
     let mut step_of = program.program().on::<S>();
     let mut energy_of = equations.dynamics().energy().map(|energy| energy.on::<S>());
     let d = equations.degrees().len();
     let kept: Vec<usize> = system.states.iter().map(|state| state.place).collect();
+    let mut check = refined.as_ref().map(|refined| NewtonCheck::new(refined, kept.clone()));
     let dt = S::from_f64(request.dt);
     // Positions, velocities, inputs, which are zero, and the time step.
     let mut inputs: Vec<S> = system.q.iter().chain(&system.v).map(|&x| S::from_f64(x)).collect();
@@ -59,7 +62,7 @@ pub(super) fn run<S: Number>(
             rows.row(&[step], time, &values)?;
         }
         if step == *steps {
-            return Ok(Outcome::Complete);
+            return Ok(Outcome::Complete.with_residual(check.and_then(|check| check.found())));
         }
         if step % CHUNK == 0 {
             if monitor.should_stop() {
@@ -73,7 +76,11 @@ pub(super) fn run<S: Number>(
         if !next.iter().all(|x| x.is_finite()) {
             let reason = "the state stopped being finite".to_owned();
             let t = step as f64 * dt.to_f64();
-            return Ok(Outcome::Diverged(Divergence { step, t, reason }));
+            let outcome = Outcome::Diverged(Divergence { step, t, reason, newton_residual: None });
+            return Ok(outcome.with_residual(check.and_then(|check| check.found())));
+        }
+        if let Some(check) = &mut check {
+            check.observe(&inputs, &next, step);
         }
         inputs[..2 * d].copy_from_slice(&next);
     }

@@ -34,13 +34,16 @@ impl<W: Write> Json<W> {
         Ok(Json { out, line: String::new(), first: true })
     }
 
-    /// Ends the object with one more entry.
+    /// Ends the object with more entries.
     ///
     /// # Errors
     /// If `out` cannot be written.
-    pub fn finish(mut self, key: &str, value: &impl Serialize) -> Result<(), ExportError> {
-        self.out.write_all(b"\n  ],\n")?;
-        entry(&mut self.out, key, value)?;
+    pub fn finish(mut self, tail: &[(&str, Value)]) -> Result<(), ExportError> {
+        self.out.write_all(b"\n  ]")?;
+        for (key, value) in tail {
+            self.out.write_all(b",\n")?;
+            entry(&mut self.out, key, value)?;
+        }
         Ok(self.out.write_all(b"\n}\n")?)
     }
 }

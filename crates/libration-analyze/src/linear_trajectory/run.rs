@@ -44,7 +44,12 @@ pub(super) fn run(
         let is_finite = |n| all.is_finite(n);
         if ensemble.is_none() && !is_finite(0) {
             let reason = "the state stopped being finite: the loop is unstable".to_owned();
-            return Ok(Outcome::Diverged(Divergence { step, t: all.time(0), reason }));
+            return Ok(Outcome::Diverged(Divergence {
+                step,
+                t: all.time(0),
+                reason,
+                newton_residual: None,
+            }));
         }
         if step.is_multiple_of(every) || step == steps {
             for n in 0..count {
@@ -70,6 +75,7 @@ pub(super) fn run(
                     count,
                     first: lost.into_iter().take(10).collect(),
                     reason: Some("the loop is unstable".to_owned()),
+                    newton_residual: None,
                 },
             });
         }

@@ -11,6 +11,7 @@ use serde_json::value::RawValue;
 
 use super::{LargestDt, LoopAnalysis, OrderOfWord, Request, StepVerdicts};
 use crate::motion::MotionExamination;
+use crate::newton_residual::NewtonResidual;
 
 /// The analysis of one step; the fields are the keys of `analyze --json`.
 #[derive(Debug, Serialize)]
@@ -68,6 +69,9 @@ pub struct Analysis {
     pub motion: Option<MotionExamination>,
     /// The verdicts on the step, the motion and the loop.
     pub verdicts: StepVerdicts,
+    /// What the Newton steps of an implicit integrator leave in the motion of a nonlinear system; none without an iteration.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub newton_residual: Option<NewtonResidual>,
     /// The analysis of the loop, if the request has timing options.
     #[serde(flatten)]
     pub timing: Option<LoopAnalysis>,

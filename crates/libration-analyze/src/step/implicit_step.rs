@@ -10,7 +10,8 @@ use libration::number::{Dual, Wide};
 use libration::simulation::{EnergyDrift, Observer, Sample, SimulationError};
 use libration::{ImplicitMethod, Model, State};
 
-use super::{AnalyzeError, Drift, PIECE, Request, Step, check_jacobian};
+use super::{AnalyzeError, Drift, PIECE, Request, Step, Stepping, check_jacobian};
+use crate::newton_residual::{self, NewtonResidual};
 use crate::program_simulation::ProgramSimulation;
 
 impl<const D: usize> Step<D> {
@@ -41,6 +42,18 @@ impl<const D: usize> Step<D> {
         };
         Ok(Step { linear, evaluations: program.evaluations() as u64, drift })
     }
+}
+
+/// What the Newton steps leave in the motion of a nonlinear system; none without an iteration.
+pub(super) fn residual(request: &Request, stop: &AtomicBool) -> Option<NewtonResidual> {
+    let Stepping::Implicit(method) = request.stepping else { return None };
+    if request.system.is_linear() {
+        return None;
+    }
+    let dynamics = dynamics_of(request.system, request.q.len())?;
+    let start: Vec<f64> = request.q.iter().chain(&request.v).copied().collect();
+    let run = (request.dt, request.steps);
+    newton_residual::of_run(method.into(), &dynamics, &start, (0..start.len()).collect(), run, stop)
 }
 
 /// The energy drift of a nonlinear system, simulated.

@@ -100,6 +100,7 @@ pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, A
     )?;
     analysis.verdicts = StepVerdicts::new(&analysis, request, motion.as_ref());
     analysis.motion = motion;
+    analysis.newton_residual = implicit_step::residual(request, stop);
     Ok(analysis)
 }
 
@@ -210,6 +211,7 @@ fn answer<const D: usize>(
         drift,
         motion: None,
         verdicts: StepVerdicts::default(),
+        newton_residual: None,
         timing,
     })
 }

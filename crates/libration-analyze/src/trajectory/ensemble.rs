@@ -3,10 +3,11 @@
 use half::{bf16, f16};
 use libration::AnyMethod;
 use libration::ensemble::{AnyEnsemble, BatchFloat, InsufficientMemory, dynamics_of};
-use libration::equations::Dynamics;
+use libration::equations::{Dynamics, StepProgram};
 
 use super::{EnsembleOptions, Monitor, Outcome, Request, TrajectoryError, loops};
 use crate::export::{Number, Rows};
+use crate::newton_residual::{NewtonCheck, NewtonResidual, refined};
 
 /// Steps of a degree of freedom between two checks of the monitor: half a second of the slowest kernel.
 const CHUNK: u64 = 1 << 21;
@@ -159,18 +160,16 @@ fn run<S: BatchFloat + Number>(
     };
     let start = |n, i| S::from_f64(ensemble.scale(n) * coordinate(i).copied().unwrap_or(0.0));
     let execution = ensemble.execution()?;
+    let wrong = || system.entry().wrong_dimension(dimension);
+    let dynamics = dynamics_of(system, dimension).ok_or_else(wrong)?;
     let mut all = match method {
         AnyMethod::Explicit(_) => S::ensemble(system, dimension, count, execution, &start)?,
-        AnyMethod::Implicit(_) => {
-            let wrong = || system.entry().wrong_dimension(dimension);
-            let dynamics = dynamics_of(system, dimension).ok_or_else(wrong)?;
-            S::program_ensemble(&dynamics, count, execution, &start)?
-        }
+        AnyMethod::Implicit(_) => S::program_ensemble(&dynamics, count, execution, &start)?,
     };
     let kept: Vec<usize> = (0..2 * dimension).collect();
     let run = EnsembleRun { method, dt, steps, every, kept: &kept };
-    let lost = run.record(&mut *all, rows, monitor)?;
-    Ok(Outcome::of::<S>(request, &lost))
+    let (lost, residual) = run.record(&mut *all, &dynamics, rows, monitor)?;
+    Ok(Outcome::of::<S>(request, &lost).with_residual(residual))
 }
 
 /// The steps of an ensemble, and what is kept of them.
@@ -186,16 +185,22 @@ pub(crate) struct EnsembleRun<'a> {
 }
 
 impl EnsembleRun<'_> {
-    /// Simulates, gives the rows of kept steps, and returns the trajectories that are not finite in the end.
+    /// Simulates, gives the rows of kept steps, and returns the trajectories that are not finite in the end, and what iterations left in the
+    /// steps after the kept ones.
     pub(crate) fn record<S: Number>(
         &self,
         all: &mut dyn AnyEnsemble<S>,
+        dynamics: &Dynamics,
         rows: &mut dyn Rows<S>,
         monitor: &dyn Monitor,
-    ) -> Result<Vec<usize>, TrajectoryError> {
+    ) -> Result<(Vec<usize>, Option<NewtonResidual>), TrajectoryError> {
         let EnsembleRun { method, dt, steps, every, kept } = *self;
         let (count, dimension) = (all.len(), all.dimension());
         let mut values = Vec::with_capacity(kept.len() + 1);
+        let refined = refined(method, dynamics);
+        let own = refined.as_ref().map(|_| StepProgram::of(method, dynamics));
+        let mut check = refined.as_ref().map(|step| NewtonCheck::new(step, kept.to_vec()));
+        let mut step_of = own.as_ref().map(|step| step.program().on::<S>());
         let at_once = (CHUNK / (count as u64 * dimension as u64).max(1)).max(1);
         loop {
             let step = all.step();
@@ -218,10 +223,30 @@ impl EnsembleRun<'_> {
                 }
             }
             if step == steps {
-                return Ok(all.not_finite());
+                return Ok((all.not_finite(), check.and_then(|check| check.found())));
             }
             if monitor.should_stop() {
                 return Err(TrajectoryError::Interrupted);
+            }
+            // The steps of an ensemble are those of the program, bit by bit.
+            if let (Some(check), Some(step_of)) = (&mut check, &mut step_of)
+                && step.is_multiple_of(every)
+            {
+                let planes = (0..2 * dimension).filter_map(|i| match i.checked_sub(dimension) {
+                    None => all.q(i),
+                    Some(i) => all.v(i),
+                });
+                let planes: Vec<&[S]> = planes.collect();
+                let mut inputs = vec![S::zero(); 2 * dimension + dynamics.inputs() + 1];
+                inputs[2 * dimension + dynamics.inputs()] = S::from_f64(dt);
+                for n in 0..count {
+                    inputs.iter_mut().zip(&planes).for_each(|(to, plane)| *to = plane[n]);
+                    let next: Vec<S> = step_of.run(&inputs).collect();
+                    if next.iter().all(|x| x.is_finite()) {
+                        check.begin();
+                        check.observe(&inputs, &next, step + 1);
+                    }
+                }
             }
             let to_next_row = (every - step % every).min(steps - step);
             let (dt, steps) = (S::from_f64(dt), to_next_row.min(at_once));

@@ -5,12 +5,15 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{Request, overflow};
+use crate::newton_residual::NewtonResidual;
 
 /// The outcome of a simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
     /// All states are finite.
     Complete,
+    /// All states are finite. The steps solved equations by an iteration, which left a residual.
+    Iterated(NewtonResidual),
     /// The single trajectory ended early.
     Diverged(Divergence),
     /// Some trajectories of an ensemble are not finite at the end. They do not affect the others.
@@ -21,6 +24,8 @@ pub enum Outcome {
         first: Vec<usize>,
         /// The cause and a suggestion, if they are known.
         reason: Option<String>,
+        /// What an iteration left in the steps before.
+        newton_residual: Option<NewtonResidual>,
     },
 }
 
@@ -38,23 +43,70 @@ impl Outcome {
                 count,
                 first: lost.iter().copied().take(10).collect(),
                 reason: cause(),
+                newton_residual: None,
             },
         }
     }
 
-    /// The key and value of the outcome in a file.
-    pub(crate) fn json_entry(&self, several: bool) -> (&'static str, Value) {
+    /// The same outcome, of steps that left a residual.
+    #[must_use]
+    pub(crate) fn with_residual(self, residual: Option<NewtonResidual>) -> Self {
+        let Some(residual) = residual else { return self };
+        let cause = |reason: String| match residual.error() {
+            Some(error) => format!("{reason}; {error}"),
+            None => reason,
+        };
+        match self {
+            Outcome::Complete | Outcome::Iterated(_) => Outcome::Iterated(residual),
+            Outcome::Diverged(own) => Outcome::Diverged(Divergence {
+                reason: cause(own.reason),
+                newton_residual: Some(residual),
+                ..own
+            }),
+            Outcome::NotFinite { count, first, reason, .. } => {
+                let reason = match (reason, residual.error()) {
+                    (Some(reason), _) => Some(cause(reason)),
+                    (None, error) => error,
+                };
+                Outcome::NotFinite { count, first, reason, newton_residual: Some(residual) }
+            }
+        }
+    }
+
+    /// What the iterations of implicit steps left; none without iterations.
+    pub fn newton_residual(&self) -> Option<&NewtonResidual> {
+        match self {
+            Outcome::Complete => None,
+            Outcome::Iterated(residual) => Some(residual),
+            Outcome::Diverged(own) => own.newton_residual.as_ref(),
+            Outcome::NotFinite { newton_residual, .. } => newton_residual.as_ref(),
+        }
+    }
+
+    /// The keys and values of the outcome in a file.
+    pub(crate) fn json_entries(&self, several: bool) -> Vec<(&'static str, Value)> {
+        let mut entries = vec![self.json_entry(several)];
+        if let Some(residual) = self.newton_residual() {
+            entries.push(("newton_residual", json!(residual)));
+            entries.push(("verdict", json!(residual.verdict())));
+        }
+        entries
+    }
+
+    fn json_entry(&self, several: bool) -> (&'static str, Value) {
         match self {
             Outcome::Diverged(stopped) => ("stopped", json!(stopped)),
-            Outcome::NotFinite { count, first, reason } => {
+            Outcome::NotFinite { count, first, reason, .. } => {
                 let mut entry = json!({ "count": count, "first": first });
                 if let Some(reason) = reason {
                     entry["reason"] = json!(reason);
                 }
                 ("not_finite", entry)
             }
-            Outcome::Complete if several => ("not_finite", json!({ "count": 0, "first": [] })),
-            Outcome::Complete => ("stopped", Value::Null),
+            Outcome::Complete | Outcome::Iterated(_) if several => {
+                ("not_finite", json!({ "count": 0, "first": [] }))
+            }
+            Outcome::Complete | Outcome::Iterated(_) => ("stopped", Value::Null),
         }
     }
 }
@@ -68,4 +120,7 @@ pub struct Divergence {
     pub t: f64,
     /// The event, with its cause and a suggestion if they are known.
     pub reason: String,
+    /// What an iteration left in the steps before.
+    #[serde(skip)]
+    pub newton_residual: Option<NewtonResidual>,
 }

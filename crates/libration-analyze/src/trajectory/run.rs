@@ -14,6 +14,7 @@ use super::exact_step::exact;
 use super::{Divergence, Monitor, Outcome, Request, TrajectoryError, overflow};
 use crate::Stepping;
 use crate::export::{Number, Rows};
+use crate::newton_residual::{NewtonResidual, refined};
 use crate::program_simulation::ProgramSimulation;
 
 /// Steps between two checks of the monitor.
@@ -83,17 +84,22 @@ fn on_model<S: EnsembleFloat, const D: usize, M: Model<D>>(
     // The model is converted per step because it can be shared between threads.
     let acceleration = |state: &State<S, D>| model.on::<S>().acceleration(state);
     let chosen = DynSystem(&acceleration);
+    let mut refined_step = None;
     let program = match request.stepping {
         Stepping::Implicit(method) => {
             let wrong = || request.system.entry().wrong_dimension(D);
             let dynamics = dynamics_of(request.system, D).ok_or_else(wrong)?;
+            refined_step = refined(method.into(), &dynamics);
             Some(StepProgram::implicit(method, &dynamics))
         }
         _ => None,
     };
     // Separate loops per method only where the speed justifies the compilation.
     let mut simulation: Box<dyn Simulation<S, D> + '_> = match (request.stepping, &program) {
-        (_, Some(program)) => Box::new(ProgramSimulation::new(program, start, dt)?),
+        (_, Some(program)) => {
+            let simulation = ProgramSimulation::new(program, start, dt)?;
+            Box::new(simulation.checked(refined_step.as_ref()))
+        }
         (Stepping::Method(method), _) if const { S::IS_NATIVE && D <= NARROW } => {
             with_method!(method, |integrator| {
                 Box::new(Simulator::new(system, integrator, start, dt)?)
@@ -119,6 +125,11 @@ fn number<S: Scalar>(x: &f64) -> S {
 trait Simulation<S, const D: usize> {
     fn run(&mut self, steps: u64) -> Result<(), SimulationError>;
     fn sample(&self) -> Sample<S, D>;
+
+    /// What the iterations of its steps left; none without iterations.
+    fn newton_residual(&self) -> Option<NewtonResidual> {
+        None
+    }
 }
 
 impl<Sys, I, S, const D: usize> Simulation<S, D> for Simulator<Sys, I, S, D>
@@ -143,6 +154,10 @@ impl<S: Float, const D: usize> Simulation<S, D> for ProgramSimulation<'_, S, D> 
 
     fn sample(&self) -> Sample<S, D> {
         ProgramSimulation::sample(self)
+    }
+
+    fn newton_residual(&self) -> Option<NewtonResidual> {
+        ProgramSimulation::newton_residual(self)
     }
 }
 
@@ -188,10 +203,12 @@ fn advance<S: Number, const D: usize>(
                     Some(cause) => reason + ": " + &cause,
                     None => reason,
                 };
-                return Ok(Outcome::Diverged(Divergence { step, t, reason }));
+                let outcome =
+                    Outcome::Diverged(Divergence { step, t, reason, newton_residual: None });
+                return Ok(outcome.with_residual(simulation.newton_residual()));
             }
             Err(error) => return Err(error.into()),
         }
     }
-    Ok(Outcome::Complete)
+    Ok(Outcome::Complete.with_residual(simulation.newton_residual()))
 }

@@ -67,7 +67,7 @@ fn json_has_null_for_what_is_not_finite() {
     let mut json = Json::new(&mut bytes, &[("name", "x".into())]).unwrap();
     json.row(&[0], 0.0, &[1.5_f32, f32::NAN]).unwrap();
     json.row(&[1], 1e-7, &[0.1, f32::INFINITY]).unwrap();
-    json.finish("stopped", &None::<u64>).unwrap();
+    json.finish(&[("stopped", serde_json::Value::Null)]).unwrap();
     let value: serde_json::Value = serde_json::from_slice(&bytes).unwrap();
     let rows = serde_json::json!([[0, 0.0, 1.5, null], [1, 1e-7, 0.1, null]]);
     assert_eq!(value, serde_json::json!({ "name": "x", "rows": rows, "stopped": null }));

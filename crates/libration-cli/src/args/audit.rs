@@ -25,9 +25,12 @@ pub(crate) struct AuditArgs {
     /// Time step of each file in s [default: a column `dt`; else the spacing of the samples]
     #[arg(long, value_name = "SECONDS", value_delimiter = ',', value_parser = number::time_step, allow_hyphen_values = true)]
     pub(crate) dt: Vec<f64>,
-    /// Largest deviation from the energy at the start, relative to it
-    #[arg(long, value_name = "NUMBER", default_value = "1e-4", value_parser = positive, allow_hyphen_values = true)]
-    pub(crate) tolerance: f64,
+    /// Largest deviation from the energy at the start, relative to it or to --scale: judges each run [default: none; the largest step is that for 1e-4]
+    #[arg(long, value_name = "NUMBER", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) tolerance: Option<f64>,
+    /// Energy that the tolerance is relative to, in the unit of the file, such as the mean kinetic energy [default: the energy at the start]
+    #[arg(long, value_name = "NUMBER", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) scale: Option<f64>,
     /// Duration for which the tolerance holds, in s, also as 10min [default: that of the runs]
     #[arg(long, value_name = "SECONDS", value_parser = positive_time, allow_hyphen_values = true)]
     pub(crate) horizon: Option<f64>,
@@ -47,7 +50,8 @@ Examples:
 
 Times are in s; of files with another unit, numbers without a unit in --dt and --horizon have that of the files.
 
-Exit codes: 0 no fault; 1 a fault, or a failed run; 2 invalid input.";
+Exit codes: 0 no fault, and all runs within a stated tolerance; 1 a fault, an exceeded tolerance, an unknown verdict, or a failed run;
+2 invalid input.";
 
 fn positive_time(text: &str) -> Result<f64, String> {
     let time = number::time(text)?;

@@ -130,7 +130,7 @@ fn describe(advice: &Advice) -> String {
     if !advice.integrators.is_empty() {
         let _ = writeln!(
             text,
-            "\n{:<34} {:>12} {:>12} {:>12} {:>12} {:>14}",
+            "\n{:<34} {:>15} {:>12} {:>12} {:>12} {:>14}",
             "integrator", "largest dt/s", "steps/period", "error", "next longer", "evaluations/s"
         );
     }
@@ -144,9 +144,12 @@ fn describe(advice: &Advice) -> String {
     for choice in &advice.integrators {
         let _ = writeln!(
             text,
-            "{:<34} {:>12} {:>12} {:>12} {:>12} {:>14}",
+            "{:<34} {:>15} {:>12} {:>12} {:>12} {:>14}",
             choice.integrator,
-            longest(choice.dt),
+            match (choice.dt, choice.tried_down_to) {
+                (None, Some(shortest)) => format!("none to {shortest:.1e}"),
+                (dt, _) => longest(dt),
+            },
             choice.substeps.map_or_else(String::new, |count| count.to_string()),
             if choice.lost.is_finite() {
                 format!("{:.3e}", choice.lost)

@@ -27,7 +27,7 @@ pub(super) const FORECAST_STEPS: u64 = 1_000_000;
 /// Analyzes one step and prints the result.
 pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     if args.compare {
-        return print(&compare_integrators::run(args)?);
+        return compare_integrators::run(args);
     }
     // The parser does not require what conflicts with other options.
     let of_comparisons = [("--tolerance", args.tolerance), ("--horizon", args.horizon)];
@@ -42,11 +42,11 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     }
     if let Some(request) = args.linear_request(linear_file) {
         let (text, code) = analyze_linear::run(&request?, args)?;
-        return judged(&text, code);
+        return judged(&text, code, None);
     }
     if let Some(system) = args.system.as_ref().and_then(equation_file::system) {
-        let (text, code) = analyze_equations::run(args, &system?)?;
-        return judged(&text, code);
+        let (text, code, error) = analyze_equations::run(args, &system?)?;
+        return judged(&text, code, error);
     }
     let (Some(system), Some(stepping), Some(dt)) = (&args.system, args.integrator, args.dt) else {
         return Err(Failure::usage("--system is required without --plant and --config"));
@@ -75,15 +75,17 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
         (false, true) => describe(&analysis, &request),
         (false, false) => summary::of_step(&analysis, &request),
     };
-    judged(&text, exit_code(analysis.verdicts.all()))
+    let residual = analysis.newton_residual.and_then(|residual| residual.error());
+    judged(&text, exit_code(analysis.verdicts.all()), residual)
 }
 
-/// Prints a result, and fails if one of its verdicts is not good.
-fn judged(text: &str, code: u8) -> Result<(), Failure> {
+/// Prints a result, and fails if one of its verdicts is not good or its steps do not solve their equations.
+fn judged(text: &str, code: u8, residual: Option<String>) -> Result<(), Failure> {
     print(text)?;
-    match code {
-        verdict::GOOD => Ok(()),
-        _ => Err(Failure::Disagreement),
+    match (residual, code) {
+        (Some(error), _) => Err(Failure::run(error)),
+        (None, verdict::GOOD) => Ok(()),
+        (None, _) => Err(Failure::Disagreement),
     }
 }
 

@@ -12,11 +12,11 @@ use crate::args::AnalyzeArgs;
 use crate::error::Failure;
 use crate::interrupt;
 
-/// Returns the analysis as text or as JSON, and its exit code.
+/// Returns the analysis as text or as JSON, its exit code, and the error of steps that do not solve their equations.
 pub(super) fn run(
     args: &AnalyzeArgs,
     system: &EquationSystem,
-) -> Result<(String, u8), Failure> {
+) -> Result<(String, u8, Option<String>), Failure> {
     let (Some(stepping), Some(dt)) = (args.integrator, args.dt) else {
         return Err(Failure::usage("--integrator and --dt are required with --system"));
     };
@@ -44,7 +44,8 @@ pub(super) fn run(
             summary::of_equations(&analysis, &order)
         }
     };
-    Ok((text, exit_code(analysis.verdicts.all())))
+    let residual = analysis.newton_residual.and_then(|residual| residual.error());
+    Ok((text, exit_code(analysis.verdicts.all()), residual))
 }
 
 fn describe(analysis: &EquationAnalysis) -> String {

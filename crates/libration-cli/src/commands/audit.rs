@@ -35,7 +35,8 @@ pub(crate) fn run(args: &AuditArgs) -> Result<(), Failure> {
         traces.push(trace);
         warnings.extend(log_warnings::warn(path, &own));
     }
-    let requirement = Requirement { tolerance: args.tolerance, horizon: args.horizon };
+    let requirement =
+        Requirement { tolerance: args.tolerance, horizon: args.horizon, scale: args.scale };
     let mut report = audit(&traces, requirement).map_err(Failure::usage)?;
     report.repeat_command = command_line();
     report.warnings = warnings;

@@ -30,8 +30,8 @@ pub(super) fn describe(report: &EnergyReport) -> String {
 fn runs(report: &EnergyReport, text: &mut String) {
     let _ = writeln!(
         text,
-        "\n{:<20} {:>10} {:>10} {:>34} {:>38} {:>12}",
-        "run", "dt s", "duration s", "oscillation", "drift 1/s", "walk in 1 s"
+        "\n{:<20} {:>10} {:>10} {:>34} {:>38} {:>12} {:>12}",
+        "run", "dt s", "duration s", "oscillation", "drift per s", "walk in 1 s", "deviation"
     );
     for run in &report.runs {
         let walk = run.walk.filter(|walk| walk.is_present);
@@ -39,15 +39,17 @@ fn runs(report: &EnergyReport, text: &mut String) {
             walk.map_or_else(|| "-".to_owned(), |walk| number(walk.diffusion.value.sqrt(), 3));
         let _ = writeln!(
             text,
-            "{:<20} {:>10} {:>10} {:>34} {:>38} {:>12}",
+            "{:<20} {:>10} {:>10} {:>34} {:>38} {:>12} {:>12}",
             run.title,
             number(run.dt, 4),
             number(run.duration, 4),
             interval(run.oscillation, 3),
             interval(run.drift_rate, 3),
-            walk
+            walk,
+            number(run.deviation_from_start, 3)
         );
     }
+    text.push_str("oscillation, drift, walk and largest deviation from the start are in the unit of the energies\n");
 }
 
 fn order(law: Option<PowerLaw>) -> String {

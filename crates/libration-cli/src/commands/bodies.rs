@@ -229,12 +229,25 @@ fn describe(audit: &BodiesAudit) -> String {
     }
     let _ = writeln!(
         text,
-        "Changes are the largest of {} samples, relative to |E| = {}, the sum of m|v| and the sum of m|r||v|.",
+        "Changes are the largest of {} samples, relative to {}, the sum of m|v| and the sum of m|r||v|.",
         audit.samples,
-        short(audit.energy.abs()),
+        energy_scale(audit),
     );
     text += "By order: the change with twice the time step, over the power of 2; 0 where rounding hides it.\n";
     text
+}
+
+/// The energy that its changes are relative to.
+fn energy_scale(audit: &BodiesAudit) -> String {
+    let size = audit.conserved.iter().find(|one| one.quantity == "energy").map(|one| one.size);
+    match size.filter(|size| *size != audit.energy.abs()) {
+        Some(kinetic) => format!(
+            "the kinetic energy at the start = {}, as |E| = {} is small beside it",
+            short(kinetic),
+            short(audit.energy.abs())
+        ),
+        None => format!("|E| = {}", short(audit.energy.abs())),
+    }
 }
 
 fn short(x: f64) -> String {

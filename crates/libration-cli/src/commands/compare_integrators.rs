@@ -4,23 +4,24 @@ use std::fmt::Write as _;
 
 use libration::ensemble::dynamics_of;
 use libration_analyze::comparison::{
-    ComparedIntegrator, Comparison, ComparisonError, ComparisonRequest, MOST_EVALUATIONS,
-    MOST_OF_BEST, compare,
+    ComparedIntegrator, Comparison, ComparisonError, ComparisonRequest, MOST_OF_BEST, compare,
 };
 use libration_report::notation::plural;
+use libration_report::verdict::{GOOD, exit_code};
 use libration_work::Work;
 
+use super::digits::limit;
 use super::{equation_file, summary};
 use crate::args::AnalyzeArgs;
 use crate::error::Failure;
-use crate::interrupt;
 use crate::progress::Reporter;
+use crate::{interrupt, terminal};
 
 /// Integrators in the text; JSON has all of them.
 const SHOWN: usize = 20;
 
-/// Returns the comparison as text or as JSON.
-pub(super) fn run(args: &AnalyzeArgs) -> Result<String, Failure> {
+/// Prints the comparison as text or as JSON.
+pub(super) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     let (Some(system), Some(horizon), Some(tolerance)) =
         (&args.system, args.horizon, args.tolerance)
     else {
@@ -50,10 +51,15 @@ pub(super) fn run(args: &AnalyzeArgs) -> Result<String, Failure> {
         ComparisonError::Interrupted => Failure::Interrupted(error.to_string()),
         error => Failure::usage(error),
     })?;
-    match (args.json, args.verbose) {
-        (true, _) => Ok(serde_json::to_string_pretty(&found).map_err(Failure::run)? + "\n"),
-        (false, true) => Ok(describe(&found)),
-        (false, false) => Ok(summary::of_comparison(&found, &verdict(&found), &notes(&found))),
+    let text = match (args.json, args.verbose) {
+        (true, _) => serde_json::to_string_pretty(&found).map_err(Failure::run)? + "\n",
+        (false, true) => describe(&found),
+        (false, false) => summary::of_comparison(&found, &verdict(&found), &notes(&found)),
+    };
+    terminal::print(&text)?;
+    match exit_code([&found.verdict]) {
+        GOOD => Ok(()),
+        _ => Err(Failure::Disagreement),
     }
 }
 
@@ -62,14 +68,16 @@ fn verdict(comparison: &Comparison) -> String {
     let Comparison { system, horizon, tolerance, integrators, .. } = comparison;
     match integrators.iter().find(|one| one.evaluations.is_some()) {
         Some(best) => format!(
-            "{}: the cheapest of {} for an error of {tolerance:e} over {horizon} s of {system}, with steps of {} s",
+            "{}: the cheapest of {} that were tried for an error of {tolerance:e} of the largest size of each state over {horizon} s of {system}, with steps of {} s",
             best.integrator,
             plural(integrators.len(), "integrator"),
-            number(best.dt),
+            step(best.dt),
         ),
-        None => {
-            format!("No integrator meets an error of {tolerance:e} over {horizon} s of {system}.")
-        }
+        None => format!(
+            "Of {} that were tried none meets an error of {tolerance:e} over {horizon} s of {system} with up to {:.0} force evaluations; more were not tried.",
+            plural(integrators.len(), "integrator"),
+            comparison.most_evaluations,
+        ),
     }
 }
 
@@ -78,15 +86,18 @@ fn notes(comparison: &Comparison) -> Vec<String> {
     let integrators = &comparison.integrators;
     let without = integrators.iter().filter(|one| one.evaluations.is_none()).count();
     let mut notes = Vec::new();
-    if without == integrators.len() {
-        notes.push(format!("The search ended at {MOST_EVALUATIONS} evaluations for each."));
-    } else if without > 0 {
+    if without > 0 && without < integrators.len() {
         let verb = if without == 1 { "does" } else { "do" };
         notes.push(format!(
-            "{} {verb} not meet the tolerance within {MOST_OF_BEST} times the evaluations of the best common ones.",
-            plural(without, "integrator")
+            "{} {verb} not meet the tolerance with up to {:.0} force evaluations, {MOST_OF_BEST} times those of the best common ones; more were not tried.",
+            plural(without, "integrator"),
+            comparison.most_evaluations,
         ));
     }
+    notes.push(format!("Not tried: {}.", comparison.verdict.not_examined.join(", ")));
+    notes.push(
+        "`advise --tolerance trajectory=` judges all states together, `energy=` the energy: for the same number their steps differ.".to_owned(),
+    );
     if !comparison.is_smooth {
         notes.push(
             "The forces have kinks or jumps: what acts for less than the horizon over 2048 may be missed.".to_owned(),
@@ -117,7 +128,7 @@ fn describe(comparison: &Comparison) -> String {
             one.integrator,
             one.order,
             one.stages,
-            number(one.dt),
+            step(one.dt),
             whole(one.evaluations),
             whole(one.predicted_evaluations),
             number(one.error),
@@ -139,6 +150,11 @@ fn describe(comparison: &Comparison) -> String {
     );
     text += "Predicted: from error constants and the integrator of the same order with the fewest stages.\n";
     text
+}
+
+/// A largest step, not beyond itself.
+fn step(dt: Option<f64>) -> String {
+    dt.map_or_else(|| "-".to_owned(), |dt| limit(dt, 4))
 }
 
 fn number(x: Option<f64>) -> String {

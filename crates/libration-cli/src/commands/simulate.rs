@@ -101,13 +101,17 @@ fn write(
         None => into_stdout(rows, format, &watcher),
     };
     watcher.clear();
-    let warning = match outcome? {
-        Outcome::Complete => return Ok(()),
-        Outcome::Diverged(Divergence { step, t, reason }) => {
+    let outcome = outcome?;
+    let unsolved = outcome.newton_residual().and_then(|residual| residual.error());
+    let warning = match outcome {
+        Outcome::Complete | Outcome::Iterated(_) => {
+            return unsolved.map_or(Ok(()), |error| Err(Failure::run(error)));
+        }
+        Outcome::Diverged(Divergence { step, t, reason, .. }) => {
             let last = step - 1;
             format!("warning: the last row is step {last}: at step {step} (t = {t} s) {reason}")
         }
-        Outcome::NotFinite { count, first, reason } => {
+        Outcome::NotFinite { count, first, reason, .. } => {
             let named: Vec<String> = first.iter().map(usize::to_string).collect();
             let more = if count > first.len() { ", …" } else { "" };
             let are = if count == 1 { "trajectory is" } else { "trajectories are" };
@@ -121,7 +125,7 @@ fn write(
     if !quiet {
         terminal::say(&warning);
     }
-    Err(Failure::Disagreement)
+    Err(unsolved.map_or(Failure::Disagreement, Failure::run))
 }
 
 /// Returns the format of `--format` or of the extension of `--output`; both must agree.

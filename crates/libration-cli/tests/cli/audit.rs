@@ -55,6 +55,37 @@ fn energies_of_a_clean_program_have_no_fault_and_a_page() {
 }
 
 #[test]
+fn an_exceeded_tolerance_and_an_unknown_law_are_no_success() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = [0.2, 0.1, 0.05].map(|dt| run(folder.path(), dt, 0.0));
+    let files = files.each_ref().map(PathBuf::as_path);
+    // Verlet from q = 1 deviates by h²/4 of the energy: 625 to 10,000 times 10⁻⁶.
+    audit(&files, &["--tolerance", "1e-6"]).code(1).stdout(
+        predicate::str::contains("3 runs: no fault; the tolerance is exceeded: 3 of 3 runs deviate by 625 to 10\u{202f}000 times")
+            .and(predicate::str::contains("are in the unit of the energies")),
+    );
+    audit(&files, &["--tolerance", "0.011"])
+        .success()
+        .stdout(predicate::str::contains("within the tolerance: 3 runs deviate by at most"));
+    // An energy that changes by the same amount twice in each run, whatever the step.
+    let jumps = [0.2, 0.1].map(|dt| {
+        let path = folder.path().join(format!("jump{dt}.csv"));
+        let mut text = "t,E\n".to_owned();
+        for step in 0..=(200.0 / dt) as usize {
+            let t = step as f64 * dt;
+            let energy = 5.0 + if (50.0..150.0).contains(&t) { 0.01 } else { 0.0 };
+            let _ = writeln!(text, "{t},{}", energy + 1e-3 * dt * dt * (3.0 * t).sin());
+        }
+        fs::write(&path, text).unwrap();
+        path
+    });
+    let output = audit(&jumps.each_ref().map(PathBuf::as_path), &["--json"]).code(1);
+    let report: Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
+    assert_eq!(report["verdict"]["outcome"], "unknown", "{report}");
+    assert_eq!(report["tolerance_verdict"], Value::Null);
+}
+
+#[test]
 fn a_column_of_time_has_precedence_over_one_of_steps() {
     let folder = tempfile::tempdir().unwrap();
     for (name, per_second) in

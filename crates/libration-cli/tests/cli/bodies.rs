@@ -33,6 +33,50 @@ fn the_audit_of_bodies_has_a_prediction_for_each_change() {
     }
 }
 
+#[test]
+fn near_a_parabolic_orbit_changes_are_relative_to_the_kinetic_energy() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("comet.csv");
+    // Of two bodies with masses 1 and 1e-3 at a distance of 1 the relative speed √(2·1.001) makes the energy zero but for rounding.
+    let size = |speed: f64| {
+        let (heavy, light) = (-1e-3 * speed / 1.001, speed / 1.001);
+        fs::write(
+            &file,
+            format!("mass,x,y,z,vx,vy,vz\n1,0,0,0,0,{heavy},0\n1e-3,1,0,0,0,{light},0\n"),
+        )
+        .unwrap();
+        let words =
+            format!("bodies {} --integrator yoshida4 --dt 0.001 --steps 1000", file.display());
+        let output = libration(&format!("{words} --json")).success();
+        let audit: Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
+        let energy = &audit["conserved"][0];
+        let text = text(&libration(&words).success().get_output().stdout);
+        (energy["size"].as_f64().unwrap(), energy["largest_change"].as_f64().unwrap(), text)
+    };
+    let parabolic = 2.002_f64.sqrt();
+    for speed in [
+        parabolic,
+        parabolic * (1.0 + 1e-9),
+        parabolic * (1.0 - 1e-9),
+        1.01 * parabolic,
+        0.98 * parabolic,
+    ] {
+        let (size, change, text) = size(speed);
+        // ½·m₁m₂/(m₁ + m₂)·v².
+        let kinetic = 0.5e-3 / 1.001 * speed * speed;
+        assert!((size / kinetic - 1.0).abs() < 1e-12, "{speed}: {size} {kinetic}");
+        // Yoshida's step of 1/1000 of the fastest motion: h⁴ and a factor of a few.
+        assert!(change < 1e-10, "{speed}: {change}");
+        assert!(text.contains("relative to the kinetic energy at the start"), "{text}");
+    }
+    // A circle has half of the potential energy, as before.
+    let (size, _, text) = size(1.001_f64.sqrt());
+    assert!(
+        (size / 0.5e-3 - 1.0).abs() < 1e-12 && text.contains("relative to |E| = "),
+        "{size} {text}"
+    );
+}
+
 /// Two charges at rest at a distance of 1.
 fn two_charges(folder: &std::path::Path) -> String {
     let file = folder.join("two.csv");

@@ -83,3 +83,121 @@ fn coupled_stages_divide_the_most_degrees_of_freedom_of_equations() {
             .stderr(contains("gauss-legendre-6").and(contains("10")).and(contains("11")));
     }
 }
+
+/// A file with these equations.
+fn written(folder: &TempDir, name: &str, equations: &str) -> String {
+    let file = folder.path().join(format!("{name}.toml"));
+    std::fs::write(&file, format!("[system]\nname = \"{name}\"\n{equations}\n")).unwrap();
+    file.display().to_string()
+}
+
+/// The root of a rising function between two values.
+fn root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if f(middle) < 0.0 { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+#[test]
+fn a_step_that_does_not_solve_its_equation_fails_the_run_and_keeps_its_rows() {
+    let folder = TempDir::new().unwrap();
+    let cubic = written(&folder, "cubic", "rate.x = \"-x^3\"\nstart = { x = 10.0 }");
+    // Of x' = −x³ from 10. Backward Euler solves y + h·y³ = 10, the midpoint rule y + h·((10 + y)/2)³ = 10, each with one root.
+    type Equation = fn(f64, f64) -> f64;
+    let backward: Equation = |y, h| y + h * y.powi(3) - 10.0;
+    let midpoint: Equation = |y, h| y + h * (5.0 + 0.5 * y).powi(3) - 10.0;
+    for (integrator, equation) in [("backward-euler", backward), ("implicit-midpoint", midpoint)] {
+        for dt in [10.0, 3.0, 1.0, 0.3, 0.1, 0.01, 1e-3] {
+            let exact = root(|y| equation(y, dt), -100.0, 10.0);
+            let words = format!(
+                "simulate --system {cubic} --integrator {integrator} --dt {dt} --steps 1 --format json"
+            );
+            let output = libration(&words);
+            let found: serde_json::Value =
+                serde_json::from_slice(&output.get_output().stdout).unwrap();
+            let end = found["rows"][1][2].as_f64().unwrap();
+            // The error of the step as a part of its change: what a further Newton step corrects but for the next one.
+            let error = ((end - exact) / (end - 10.0)).abs();
+            let residual = found["newton_residual"]["largest"].as_f64().unwrap();
+            match error > 1e-6 {
+                true => {
+                    assert!(
+                        residual > 1e-6 && residual < 2.0 * error,
+                        "{integrator} {dt}: {residual} {error}"
+                    );
+                    output.code(1).stderr(contains("did not solve their equations"));
+                    assert_eq!(found["verdict"]["outcome"], "exceeds");
+                }
+                false => {
+                    assert!(residual < 1e-6, "{integrator} {dt}: {residual} {error}");
+                    output.success();
+                    assert_eq!(found["verdict"]["outcome"], "within");
+                }
+            }
+        }
+    }
+    // Rows in a file are kept: 1.41405 in place of 0.966679.
+    let rows = folder.path().join("rows.csv");
+    let step = format!("simulate --system {cubic} --integrator backward-euler --dt 10 --steps 1");
+    libration(&format!("{step} -q --output {}", rows.display()))
+        .code(1)
+        .stderr(contains("help: a shorter time step"));
+    assert!(std::fs::read_to_string(&rows).unwrap().contains("1.4140"));
+}
+
+#[test]
+fn unsolved_steps_are_found_in_all_systems_and_solved_ones_are_not_accused() {
+    let folder = TempDir::new().unwrap();
+    let file = |name: &str, equations: &str| written(&folder, name, equations);
+    let cubic = file("cubic", "rate.x = \"-x^3\"\nstart = { x = 10.0 }");
+    let steep = file("steep", "rate.x = \"-exp(20*x)\"\nstart = { x = 3.0 }");
+    let stiff = file("stiff", "rate.x = \"-1e6*x\"\nstart = { x = 3.0 }");
+    let hit = file(
+        "hit",
+        "coordinates = [\"x\"]\nacceleration.x = \"-x - 1e6*max(x - 1, 0)\"\nstart = { x = 0.9, \"x'\" = 5.0 }",
+    );
+    let relaxation = file(
+        "relaxation",
+        "coordinates = [\"x\"]\nacceleration.x = \"1000*(1 - x^2)*x' - x\"\nstart = { x = 1.001, \"x'\" = -10.0 }",
+    );
+    for (step, is_solved) in [
+        (format!("{cubic} --integrator trapezoid --dt 10"), false),
+        (format!("{cubic} --integrator gauss-legendre-4 --dt 10"), false),
+        (format!("{cubic} --integrator gauss-legendre-6 --dt 10"), false),
+        (format!("{steep} --integrator backward-euler --dt 1"), false),
+        (format!("{relaxation} --integrator implicit-midpoint --dt 0.05"), false),
+        ("pendulum --q 2 --integrator implicit-midpoint --dt 5".to_owned(), false),
+        ("kepler --q 1,0 --v 0,0.1 --integrator backward-euler --dt 0.5".to_owned(), false),
+        (format!("{cubic} --integrator backward-euler --dt 10 --num-trajectories 3"), false),
+        ("pendulum --q 2 --integrator implicit-midpoint --dt 5 --num-trajectories 3 --save-every 5".to_owned(), false),
+        // One Newton step is exact on linear systems, whatever the step.
+        (format!("{stiff} --integrator backward-euler --dt 10"), true),
+        ("oscillator --integrator gauss-legendre-6 --dt 3".to_owned(), true),
+        ("damped-oscillator --integrator trapezoid --dt 3".to_owned(), true),
+        // Rounding is no residual, in any float type.
+        ("pendulum --q 2 --integrator implicit-midpoint --dt 1e-4".to_owned(), true),
+        ("pendulum --q 2 --integrator backward-euler --dt 0.01 --dtype f32".to_owned(), true),
+        ("pendulum --q 2 --integrator gauss-legendre-4 --dt 0.01 --dtype bf16".to_owned(), true),
+        ("kepler --integrator gauss-legendre-6 --dt 0.05".to_owned(), true),
+        ("kepler --integrator gauss-legendre-6 --dt 0.05 --num-trajectories 4".to_owned(), true),
+        // A start at rest, and one that never moves.
+        ("pendulum --q 0 --v 0 --integrator trapezoid --dt 0.1".to_owned(), true),
+        (format!("{hit} --integrator backward-euler --dt 1e-5"), true),
+    ] {
+        let output = libration(&format!("simulate --system {step} --steps 200"));
+        match is_solved {
+            true => output.success(),
+            false => output.code(1).stderr(contains("did not solve their equations")),
+        };
+    }
+}
+
+#[test]
+fn no_list_promises_an_unlimited_step_on_every_system() {
+    libration("list").success().stdout(
+        contains("no limit of the step on linear systems")
+            .and(contains("without a limit of the step").not()),
+    );
+}

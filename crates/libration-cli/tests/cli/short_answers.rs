@@ -32,7 +32,7 @@ const FORMS: [(&str, &str); 23] = [
     ),
     (
         "advise --system oscillator --tolerance energy=1e-4 --horizon 1.3",
-        "but does not resolve the motion",
+        "but may not resolve the motion",
     ),
     ("advise --system kepler --tolerance trajectory=1e-17 --horizon 0.005", "No integrator keeps"),
     ("advise --config examples/loops/two_mass_drive.toml", "Latency fails first"),

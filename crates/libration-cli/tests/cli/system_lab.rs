@@ -227,3 +227,35 @@ fn where_no_theory_predicts_a_stable_step_it_is_measured_and_named_as_such() {
     let (page, _) = report(&example("magnetic_bearing.toml"), &["stability"]);
     assert!(page.contains("The system is unstable at its equilibrium: a mode grows"));
 }
+
+#[test]
+fn errors_outside_of_the_range_of_an_order_are_undecided_and_no_disagreement() {
+    let folder = tempfile::tempdir().unwrap();
+    let polar = "coordinates = [\"r\", \"phi\"]\nacceleration.r = \"r*phi'^2 - 10/r^2\"\n\
+        acceleration.phi = \"-2*r'*phi'/r\"\nstart = { r = 1.0, \"r'\" = 0.01, \"phi'\" = 1.1 }\n";
+    let thrust = "coordinates = [\"x\", \"y\"]\nlet = { r = \"sqrt(x^2 + y^2)\", s = \"sqrt(x'^2 + y'^2)\" }\n\
+        acceleration.x = \"-398600.4418*x/r^3 + 1e-6*x'/s\"\nacceleration.y = \"-398600.4418*y/r^3 + 1e-6*y'/s\"\n\
+        start = { x = 7000.0, \"y'\" = 7.546 }\n";
+    // A force of a millionth depends on the velocity: velocity Verlet has order 1, with a coefficient of a millionth.
+    let friction =
+        "coordinates = [\"x\"]\nacceleration.x = \"-x - 1e-6*x'\"\nstart = { x = 1.0 }\n";
+    let gyroscope = "coordinates = [\"x\", \"y\"]\nacceleration.x = \"-10*x + 1e-5*y'\"\n\
+        acceleration.y = \"-7*y - 1e-5*x'\"\nstart = { x = 1.0, y = 0.4 }\n";
+    for (name, text, method) in [
+        ("polar", polar, "rk4"),
+        ("thrust", thrust, "velocity-verlet"),
+        ("friction", friction, "velocity-verlet"),
+        ("gyroscope", gyroscope, "velocity-verlet"),
+    ] {
+        let text = format!("[system]\nname = \"{name}\"\n{text}");
+        let file = written(&folder, &format!("{name}.toml"), &text);
+        // The exit code is 0: the findings that are judged agree.
+        let (_, results) = report(file.to_str().unwrap(), &["convergence"]);
+        let kind = if name == "thrust" { "local" } else { "global" };
+        let id = format!("convergence.{name}.{method}.{kind}-order");
+        let findings = results["studies"][0]["findings"].as_array().unwrap();
+        let own = findings.iter().find(|finding| finding["id"] == id.as_str()).unwrap();
+        let why = own["text"].as_str().unwrap();
+        assert!(own["predicted"].is_null() && why.contains("undecided: at the steps"), "{own}");
+    }
+}

@@ -29,7 +29,7 @@ pub use euler::{ExplicitEuler, SymplecticEuler, SymplecticEulerDriftFirst};
 pub use exact::Exact;
 pub use implicit::{
     BackwardEuler, DampingImplicit, DampingStiffnessImplicit, GaussLegendre4, GaussLegendre6,
-    ImplicitIntegrator, ImplicitMidpoint, NEWTON_STEPS, StablePd, Trapezoid,
+    ImplicitIntegrator, ImplicitMidpoint, Iterated, NEWTON_STEPS, StablePd, Trapezoid,
 };
 pub use leapfrog::Leapfrog;
 pub use method_table::MethodTable;

@@ -80,8 +80,8 @@ fn any_finite_energies_are_audited_without_a_panic() {
 
 #[test]
 fn a_requirement_is_a_positive_number() {
-    let requirement = Requirement { tolerance: -1.0, horizon: None };
+    let requirement = Requirement { tolerance: Some(-1.0), ..Requirement::default() };
     assert!(audit(&good(), requirement).unwrap_err().to_string().contains("tolerance is -1"));
-    let requirement = Requirement { tolerance: 1.0, horizon: Some(f64::NAN) };
+    let requirement = Requirement { horizon: Some(f64::NAN), ..Requirement::default() };
     assert!(audit(&good(), requirement).unwrap_err().to_string().contains("horizon is NaN"));
 }

@@ -6,3 +6,4 @@ mod faults;
 mod molecular_dynamics;
 mod programs;
 mod theory;
+mod verdicts;

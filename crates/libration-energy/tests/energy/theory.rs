@@ -12,7 +12,7 @@ pub(crate) fn audited(traces: &[EnergyTrace]) -> EnergyReport {
 }
 
 fn audited_over(traces: &[EnergyTrace], horizon: f64) -> EnergyReport {
-    match audit(traces, Requirement { tolerance: 1e-4, horizon: Some(horizon) }) {
+    match audit(traces, Requirement { horizon: Some(horizon), ..Requirement::default() }) {
         Ok(report) => report,
         Err(error) => panic!("{error}"),
     }
@@ -167,18 +167,24 @@ fn a_short_run_does_not_resolve_a_drift_and_says_which_run_does() {
     let traces = particles(20.0);
     // The oscillation of a step of 0.002 is allowed, that of 0.004 is not, so that the run with 0.002 decides.
     let tolerance = 1e-3;
-    let first = audit(&traces, Requirement { tolerance, horizon: None }).unwrap();
+    let first =
+        audit(&traces, Requirement { tolerance: Some(tolerance), ..Requirement::default() })
+            .unwrap();
     // A horizon over which the interval is eight times a fifth of the tolerance.
     let allowed = tolerance * first.largest_dt.unwrap().scale;
     let horizon = Some(8.0 * allowed / (5.0 * width(&first)));
-    let report = audit(&traces, Requirement { tolerance, horizon }).unwrap();
+    let report =
+        audit(&traces, Requirement { tolerance: Some(tolerance), horizon, scale: None }).unwrap();
     assert!(report.findings.iter().any(|finding| finding.kind == FindingKind::ShortRun));
     // Under noise with a short memory the interval falls as the power 3/2 of the duration: 4^(3/2) = 8.
     let duration = report.largest_dt.unwrap().resolving_duration.unwrap();
     assert!((duration / 80.0 - 1.0).abs() < 1e-6, "{duration}");
     // Runs that are as long as the horizon are not told to be longer.
-    let strict =
-        audit(&traces, Requirement { tolerance: 0.3 * width(&first), horizon: None }).unwrap();
+    let strict = audit(
+        &traces,
+        Requirement { tolerance: Some(0.3 * width(&first)), ..Requirement::default() },
+    )
+    .unwrap();
     let texts: Vec<&str> = strict.findings.iter().map(|finding| finding.text.as_str()).collect();
     assert!(texts.iter().any(|text| text.contains("runs are as long as the horizon")), "{texts:?}");
     let ratio =

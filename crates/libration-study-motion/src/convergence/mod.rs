@@ -1,6 +1,7 @@
 //! The order of every method, on linear and nonlinear systems.
 
 mod actions;
+mod asymptotic_range;
 mod claims;
 mod render;
 mod settings;
@@ -207,15 +208,31 @@ impl Case<'_> {
                 true => Relation::AtLeast,
                 false => Relation::Equal,
             };
-            record.find(match order.filter(|_| self.can_judge(fit)) {
-                Some(order) => {
-                    let tolerance = self.tolerance(fit);
-                    Finding::related(id, text, "1", relation, order, fit.exponent, tolerance)
-                }
-                None => Finding::measured(id, text, "1", fit.exponent),
-            });
+            let points = [&errors.dt[..], errors_of];
+            record.find(self.judge((id, text), order, relation, fit, points));
         }
         cells.map(Cell::from)
+    }
+
+    /// The finding about an exponent, with its name and text: judged by the order where it can be, else measured.
+    fn judge(
+        &self,
+        (id, text): (String, String),
+        order: Option<f64>,
+        relation: Relation,
+        fit: Fit,
+        points: [&[f64]; 2],
+    ) -> Finding {
+        let Some(order) = order.filter(|_| self.can_judge(fit)) else {
+            return Finding::measured(id, text, "1", fit.exponent);
+        };
+        match self.undecided(relation, order, fit, points) {
+            Some(why) => Finding::measured(id, format!("{text}; {why}"), "1", fit.exponent),
+            None => {
+                let tolerance = self.tolerance(fit);
+                Finding::related(id, text, "1", relation, order, fit.exponent, tolerance)
+            }
+        }
     }
 
     /// The exponent of errors; none where the last are rounding of the reference.

@@ -7,6 +7,7 @@ use libration_report::page::{Highlight, Page};
 use libration_report::record::{Record, RecordError, Series};
 
 use super::actions;
+use super::asymptotic_range::undecided_methods;
 use super::state_orders::table_name;
 use crate::method_color::method_color;
 
@@ -116,6 +117,15 @@ fn summary(record: &Record, page: &mut Page, systems: &[(String, String)]) {
         names.join("; "),
         shown.join(", ")
     );
+    for (system, title) in systems {
+        let undecided = undecided_methods(record, system);
+        if !undecided.is_empty() {
+            page.answer += &format!(
+                " Undecided on {title}: {}, whose errors still fall faster than with the order at the smallest steps that were tried.",
+                undecided.join(", ")
+            );
+        }
+    }
     let off = record.findings.iter().filter(|f| f.id.ends_with("-order"));
     let distances = off.filter_map(|f| Some((f.measured - f.predicted?).abs()));
     if let Some(worst) = distances.reduce(f64::max) {

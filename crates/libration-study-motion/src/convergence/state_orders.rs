@@ -1,6 +1,6 @@
 //! Orders of single states, by their names.
 
-use libration_report::record::{Cell, Finding, Record, Relation, Table};
+use libration_report::record::{Cell, Record, Relation, Table};
 
 use super::Case;
 use crate::subject::{Errors, StudiedState};
@@ -49,13 +49,9 @@ impl Case<'_> {
             system.title(),
             state.name
         );
-        record.find(match self.order.map(f64::from).filter(|_| self.can_judge(fit)) {
-            Some(order) => {
-                let (relation, tolerance) = (Relation::AtLeast, self.tolerance(fit));
-                Finding::related(id, text, "1", relation, order, fit.exponent, tolerance)
-            }
-            None => Finding::measured(id, text, "1", fit.exponent),
-        });
+        let points = [&errors.dt[..], &errors.states[i]];
+        let order = self.order.map(f64::from);
+        record.find(self.judge((id, text), order, Relation::AtLeast, fit, points));
         fit.exponent.into()
     }
 }

@@ -79,7 +79,11 @@ fn append_integrators(advice: &Advice, summary: &mut Summary) {
         .iter()
         .take(MOST)
         .map(|choice| {
-            let longest = choice.dt.map_or_else(|| "none".to_owned(), |dt| limit(dt, 4));
+            let longest = match (choice.dt, choice.tried_down_to) {
+                (Some(dt), _) => limit(dt, 4),
+                (None, Some(shortest)) => format!("none to {}", significant(shortest, 2)),
+                (None, None) => "none".to_owned(),
+            };
             vec![
                 choice.integrator.to_owned(),
                 longest,

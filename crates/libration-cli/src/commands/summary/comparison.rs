@@ -2,7 +2,7 @@
 
 use libration_analyze::comparison::{ComparedIntegrator, Comparison};
 
-use super::super::digits::significant;
+use super::super::digits::{limit, significant};
 use super::super::repeat_command::{SYSTEM, of_subcommand, with_option};
 use super::{Summary, numbers, words};
 
@@ -23,7 +23,7 @@ pub(crate) fn of_comparison(comparison: &Comparison, verdict: &str, notes: &[Str
         vec![
             one.integrator.to_owned(),
             one.order.to_string(),
-            number(one.dt, 4),
+            one.dt.map_or_else(|| "-".to_owned(), |dt| limit(dt, 4)),
             whole(one.evaluations),
             whole(one.predicted_evaluations),
             number(one.error, 3),

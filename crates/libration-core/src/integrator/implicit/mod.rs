@@ -7,6 +7,7 @@
 mod gauss_legendre;
 #[cfg(test)]
 mod gauss_legendre_tests;
+mod iterated;
 mod linearly_implicit;
 mod newton;
 #[cfg(test)]
@@ -16,6 +17,7 @@ use crate::system::ImplicitSystem;
 use crate::{Scalar, State};
 
 pub use gauss_legendre::{GaussLegendre4, GaussLegendre6};
+pub use iterated::Iterated;
 pub use linearly_implicit::{DampingImplicit, DampingStiffnessImplicit, StablePd};
 pub use newton::{BackwardEuler, ImplicitMidpoint, NEWTON_STEPS, Trapezoid};
 
