@@ -18,11 +18,11 @@ const ACTING: [&str; 6] = [
     "\u{7f}\u{8}",
 ];
 
-/// A file with an oscillator, whose name, description and units are this text.
+/// A file with an oscillator, whose name, description and unit are this text.
 fn system(text: &str) -> String {
     format!(
         "[system]\nname = \"{text}\"\ndescription = \"{text}\"\ncoordinates = [\"q\"]\nacceleration.q = \"-k*q\"\n\
-         parameters = {{ k = {{ value = 9.0, unit = \"{text}\" }} }}\nunits = {{ q = \"{text}\" }}\nstart = {{ q = 1.0 }}\n"
+         parameters = {{ k = {{ value = 9.0, unit = \"{text}\" }} }}\nunits = {{ q = \"rad\" }}\nstart = {{ q = 1.0 }}\n"
     )
 }
 
@@ -73,8 +73,12 @@ fn text_of_files_does_not_act_on_a_terminal() {
     let acting = ACTING.concat() + "\r\nerror: forged";
     let escaped: String = acting.encode_utf16().map(|unit| format!("\\u{unit:04x}")).collect();
     write("system.toml", &system(&format!("a{escaped}")));
+    let units = system("x").replace("\"rad\"", &format!("\"{escaped}\""));
+    write("units.toml", &units);
     write("key.toml", &format!("\"c{escaped}\" = 1\n{}", system("x")));
-    write("log.csv", &format!("time,\"d{acting}\"\n0,1\n0.01,2\n0.02,3\n0.03,1\n"));
+    // A text with others is none.
+    let header = "\u{9b}31m\u{202e}gnp\u{2066}";
+    write("log.csv", &format!("\"d{header}\",x\n0,1\n0.01,2\n0.02,3\n0.03,1\n"));
     write("bare.toml", &system(&ACTING.concat()));
     let record = |id: &str| {
         format!(
@@ -99,6 +103,7 @@ fn text_of_files_does_not_act_on_a_terminal() {
         &["analyze", "--system", "system.toml", "--integrator", "rk4", "--dt", "0.01", "--json"],
         &["analyze", "--system", "key.toml", "--integrator", "rk4", "--dt", "0.01"],
         &["analyze", "--system", "bare.toml", "--integrator", "rk4", "--dt", "0.01"],
+        &["list", "units.toml"],
         &["clock", "log.csv"],
         &["clock", "log.csv", "--json"],
         &["clock", "log.csv", "--topic", "nosuch"],
@@ -127,7 +132,9 @@ fn text_of_files_does_not_act_on_a_terminal() {
         ],
     ] {
         let text = on_terminal(folder.path(), words);
-        assert!(text.contains("\\u"), "{words:?}: {text:?}");
+        // A line of a file with an error has marks in place of such characters.
+        let is_escaped = text.contains("\\u") || words.contains(&"bare.toml");
+        assert!(is_escaped, "{words:?}: {text:?}");
         check(&text, &words.join(" "));
     }
 }
@@ -147,7 +154,7 @@ fn json_keeps_the_text_of_a_file() {
 fn names_of_any_length_are_shown() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("system.toml");
-    for length in [65_535, 65_536, 200_000] {
+    for length in [65_535, 65_536, 100_000] {
         let name = "x".repeat(length);
         let text = format!(
             "[system]\nname = \"long\"\ncoordinates = [\"{name}\"]\nacceleration.{name} = \"-1.0\"\n\
