@@ -70,6 +70,7 @@ def page_of(
     body += [f"<nav aria-label='Results'>{links}</nav>", *sections, _constants(found, columns)]
     return (
         "<!doctype html><html lang='en'><head><meta charset='utf-8'><meta name='viewport' content='width=device-width'>"
+        '<meta http-equiv="Content-Security-Policy" content="default-src \'none\'; style-src \'unsafe-inline\'; img-src data:">'
         f"<title>{html.escape(heading)}</title><style>{_STYLE}</style></head><body><main>{''.join(body)}</main></body></html>\n"
     )
 

@@ -110,10 +110,10 @@ impl From<io::Error> for Failure {
     }
 }
 
-/// Whether the folder of a data set or its manifest is unusable. That is wrong input, unlike a full disk.
+/// Whether the folder of a data set, its manifest or that of a shard is unusable. That is wrong input, unlike a full disk.
 pub(crate) fn is_unusable(error: &DatasetError, folder: &Path) -> bool {
     let DatasetError::Data(DataError::Io { path, source, .. }) = error else { return false };
-    let named = path == folder || *path == folder.join("manifest.jsonl");
+    let named = path == folder || path.file_name().is_some_and(|name| name == "manifest.jsonl");
     let kinds = [
         ErrorKind::NotFound,
         ErrorKind::PermissionDenied,

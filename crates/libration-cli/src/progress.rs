@@ -2,10 +2,12 @@
 
 use std::fmt::Write;
 use std::io::{IsTerminal, stderr};
+use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
+use libration_report::printable::printable;
 use libration_study::Progress;
 
 use crate::terminal;
@@ -122,6 +124,19 @@ pub(crate) fn spinner() -> Option<ProgressBar> {
         bar.enable_steady_tick(Duration::from_millis(200));
         bar
     })
+}
+
+/// Reads a file, with a spinner on a terminal.
+pub(crate) fn reading<R>(quiet: bool, file: &Path, read: impl FnOnce() -> R) -> R {
+    let bar = (!quiet).then(spinner).flatten();
+    if let Some(bar) = &bar {
+        bar.set_message(format!("reading {}", printable(&file.to_string_lossy())));
+    }
+    let result = read();
+    if let Some(bar) = bar {
+        bar.finish_and_clear();
+    }
+    result
 }
 
 /// Returns the style: study, bar, time left and current work, cut at the width of the terminal.

@@ -4,7 +4,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 use crate::figure;
-use crate::text::{escape, render_html};
+use crate::text::{POLICY, escape, render_html};
 
 /// The engine, which `cargo xtask live` compiles from `libration-live`, as zlib data.
 const ENGINE: &[u8] = include_bytes!("../assets/live/engine.wasm.zlib");
@@ -113,7 +113,7 @@ fn figures() -> String {
 /// A page that is the section alone.
 pub fn page(settings: &[LiveSetting], sub: &str) -> String {
     format!(
-        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">{POLICY}\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
          <title>Libration</title>\n<style>{colors}{PAGE_STYLE}\
          body{{display:block;max-width:1240px}}main{{max-width:none;padding:28px 0 64px}}.live-section h2{{margin-top:18px}}</style></head><body>\n\

@@ -2,6 +2,11 @@
 
 use std::fmt::Write;
 
+/// What a page may do: run its own scripts and its engine in a worker, and load nothing (Content Security Policy, level 3).
+pub(crate) const POLICY: &str = "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; \
+     script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; style-src 'unsafe-inline'; img-src data: blob:; \
+     base-uri 'none'; form-action 'none'\">";
+
 /// The vertical position of a run of characters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Lift {

@@ -13,6 +13,7 @@ use super::measure_jitter::print_json;
 use super::result_file::ResultFile;
 use crate::args::{ClockArgs, quoted};
 use crate::error::Failure;
+use crate::progress::reading;
 use crate::terminal;
 
 /// Analyzes the clocks of a log and prints the result.
@@ -38,7 +39,8 @@ fn report(args: &ClockArgs, quiet: bool) -> Result<ClockReport, Failure> {
         move |error: LogError| Failure::usage(format!("cannot use `{name}` ({option}): {error}"))
     };
     let option = if args.topic.time.is_some() { "--time" } else { "FILE" };
-    let log = Log::open(&args.file, &args.topic.read_options()).map_err(wrong(option))?;
+    let open = || Log::open(&args.file, &args.topic.read_options());
+    let log = reading(quiet, &args.file, open).map_err(wrong(option))?;
     let topic = match (&args.topic.topic, log.default_topic()) {
         (Some(topic), _) => Some(topic.clone()),
         (None, Ok(topic)) => Some(topic),
@@ -47,11 +49,15 @@ fn report(args: &ClockArgs, quiet: bool) -> Result<ClockReport, Failure> {
         }
         (None, Err(_)) => None,
     };
-    let of = |topic: &String| TopicClock::of(&log, topic, clock).map_err(wrong("--topic"));
+    let of = |topic: &String| {
+        let of = || TopicClock::of(&log, topic, clock);
+        reading(quiet, &args.file, of).map_err(wrong("--topic"))
+    };
     let topic_clock = topic.as_ref().map(of).transpose()?;
     let latency = match (&topic, &args.against) {
         (Some(topic), Some(against)) => {
-            Some(Latency::between(&log, topic, against, clock).map_err(wrong("--against"))?)
+            let between = || Latency::between(&log, topic, against, clock);
+            Some(reading(quiet, &args.file, between).map_err(wrong("--against"))?)
         }
         _ => None,
     };

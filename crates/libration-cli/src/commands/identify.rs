@@ -15,14 +15,14 @@ use super::repeat_command::command_line;
 use super::result_file::ResultFile;
 use crate::args::{IdentifyArgs, TimeUnitName};
 use crate::error::Failure;
-use crate::progress::Reporter;
+use crate::progress::{Reporter, reading};
 use crate::{interrupt, terminal};
 
 /// Identifies a loop from a log and prints its numbers.
 pub(crate) fn run(args: &IdentifyArgs, quiet: bool) -> Result<(), Failure> {
     check(args)?;
     let request = request(args)?;
-    let (recording, warnings) = recording(args)?;
+    let (recording, warnings) = recording(args, quiet)?;
     let page_file = ResultFile::create("--page", args.page.as_deref())?;
     let saved = ResultFile::create("--save-loop", args.save_loop.as_deref())?;
     // Before this line there is nothing to keep: a signal ends the process while it reads.
@@ -130,11 +130,11 @@ fn request(args: &IdentifyArgs) -> Result<Request, Failure> {
 }
 
 /// The signals of the options, and the warnings about the log, which are printed.
-fn recording(args: &IdentifyArgs) -> Result<(Recording, Vec<String>), Failure> {
+fn recording(args: &IdentifyArgs, quiet: bool) -> Result<(Recording, Vec<String>), Failure> {
     let path = args.log.display();
     let time_unit = args.time_unit.map(TimeUnitName::unit);
     let options = ReadOptions { time: args.time.clone(), time_unit, clock: args.clock.choice() };
-    let log = Log::open(&args.log, &options)
+    let log = reading(quiet, &args.log, || Log::open(&args.log, &options))
         .map_err(|error| Failure::usage(format!("cannot read `{path}`: {error}")))?;
     let warnings = log_warnings::warn(&args.log, &log.warnings());
     let series = |option: &str, name: &str| {

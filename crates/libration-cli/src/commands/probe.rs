@@ -230,8 +230,9 @@ fn plant_text(report: &ProbeReport, plant: &Matrices, kept: &[usize]) -> String 
         };
         (0..matrix.rows()).map(row).collect::<String>()
     };
+    // Names of a plant are text on one line.
     let names = |names: &[String]| {
-        names.iter().map(|name| toml_string(name)).collect::<Vec<_>>().join(", ")
+        names.iter().map(|name| toml_string(&printable(name))).collect::<Vec<_>>().join(", ")
     };
     format!(
         "# Deviations from the point of `{}`, in steps of {} s: exact steps of this plant are those of the simulator.\n\

@@ -84,7 +84,9 @@ fn a_linked_manifest_and_linked_parts_of_files_are_never_written() {
     fs::create_dir(&empty).unwrap();
     symlink(&target, empty.join("manifest.jsonl")).unwrap();
     for more in ["", "--resume"] {
-        write(&dir, "empty", more).code(2).stderr(contains("it is a link; expected a regular file"));
+        write(&dir, "empty", more)
+            .code(2)
+            .stderr(contains("it is a link; expected a regular file"));
     }
     run(&dir, "join set --out empty").code(2).stderr(contains("it is a link"));
     assert!(!target.exists());
@@ -195,7 +197,8 @@ fn a_shard_whose_manifest_says_what_the_settings_do_not_is_not_joined() {
         ("ends", Value::Null),
         ("mine", 1.into()),
     ] {
-        let said = contains(format!("line 3 of its manifest has another `{key}` than the settings"));
+        let said =
+            contains(format!("line 3 of its manifest has another `{key}` than the settings"));
         join(&|line| line["holds"][key] = value.clone()).code(2).stderr(said);
         assert!(!dir.path().join("joined").exists());
     }

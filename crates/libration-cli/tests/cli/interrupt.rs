@@ -56,3 +56,23 @@ fn an_interrupted_run_leaves_valid_results() {
     let studies = results["studies"].as_array().unwrap();
     assert_eq!(studies.iter().map(|study| &study["name"]).collect::<Vec<_>>(), ["spectrum"]);
 }
+
+#[test]
+fn a_signal_ends_a_comparison_while_it_follows_the_motion() {
+    // The reference alone takes minutes.
+    let words = "analyze --system kepler --compare --tolerance 1e-12 --horizon 1e5";
+    for (name, code) in [("INT", 130), ("TERM", 143)] {
+        let mut child = Command::new(assert_cmd::cargo::cargo_bin("libration"))
+            .args(words.split(' '))
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        sleep(Duration::from_millis(500));
+        signal(&child, name);
+        let begin = Instant::now();
+        wait_until("the end", || child.try_wait().unwrap().is_some());
+        assert!(begin.elapsed() < Duration::from_secs(5), "{name}: {:?}", begin.elapsed());
+        assert_eq!(child.wait().unwrap().code(), Some(code), "{name}");
+    }
+}

@@ -4,6 +4,7 @@ use std::fs;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
+use libration_report::printable::printable;
 use predicates::prelude::*;
 use predicates::str::contains;
 
@@ -130,5 +131,34 @@ fn a_plant_goes_to_a_file_whose_format_is_known() {
             .code(2)
             .stderr(contains("(--save-plant): plants are TOML; expected a file name that ends in"));
         assert!(!path.exists());
+    }
+}
+
+#[test]
+fn a_saved_plant_is_read_again_whatever_its_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("plant.toml");
+    // A line break in the title would end the comment in front of the plant.
+    let command = "sh -c 'while read q v u dt; do echo $q $v; done #\nb = [[7.0], [7.0]]'";
+    for names in [
+        ["Gelenk é", "nœud\u{a0}x"],
+        ["a\"b\\c", "関節"],
+        ["\u{202e}back", "\u{1f916}'s\u{a0}\u{200b}"],
+        ["\\u0041", "#"],
+        ["a\nb = 1", "tab\there"],
+        ["\u{1b}[31mred", "\u{7f}\u{85}"],
+    ] {
+        let words =
+            ["probe", "--command", command, "--state", "0,0", "--action", "0", "--dt", "0.1"];
+        let names_option = names.join(",");
+        let more = ["--state-names", &names_option, "--save-plant", path.to_str().unwrap()];
+        libration(&[&words[..], &more].concat());
+        let text = fs::read_to_string(&path).unwrap();
+        let plant = libration_settings::linear_loop::read_plant(&path).unwrap();
+        let plant = plant.plant().unwrap_or_else(|fault| panic!("{fault}: {text}"));
+        let found: Vec<&str> = plant.states.iter().map(|signal| signal.name.as_str()).collect();
+        // What acts on a terminal is text of its escape.
+        assert_eq!(found, names.map(printable), "{text}");
+        assert_eq!(plant.b.row(0), [0.0], "{text}");
     }
 }

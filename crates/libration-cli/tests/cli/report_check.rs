@@ -69,9 +69,7 @@ fn only_recomputes_one_finding_with_all_digits_and_writes_no_report() {
 /// The results of a short report, and its folder.
 fn report(folder: &std::path::Path, studies: &[&str]) -> (std::path::PathBuf, Value) {
     let out = folder.join("out");
-    let config = folder.join("short.toml");
-    fs::write(&config, "[drift]\nsteps = 20_000\n").unwrap();
-    let options = ["--effort", "quick", "--config", config.to_str().unwrap()];
+    let options = ["--effort", "quick"];
     let words = [&["lab"], studies, &options, &["--out", out.to_str().unwrap()]].concat();
     libration(&words).success();
     let file = out.join("results.json");
@@ -82,7 +80,7 @@ fn report(folder: &std::path::Path, studies: &[&str]) -> (std::path::PathBuf, Va
 #[test]
 fn a_report_with_a_part_that_cannot_be_recomputed_is_not_verified() {
     let folder = tempfile::tempdir().unwrap();
-    let (file, results) = report(folder.path(), &["drift"]);
+    let (file, results) = report(folder.path(), &["spectrum"]);
     let out = file.parent().unwrap().to_str().unwrap().to_owned();
     let forge = |study: &mut Value| study["findings"][0]["measured"] = 1e9.into();
     let verify = |change: &dyn Fn(&mut Vec<Value>), said: &str| {
@@ -100,18 +98,18 @@ fn a_report_with_a_part_that_cannot_be_recomputed_is_not_verified() {
             studies[0]["name"] = name.into();
         }
     };
-    verify(&renamed("drifts"), "unknown: not recomputed: `drifts` is no study of this version");
+    verify(&renamed("spectra"), "unknown: not recomputed: `spectra` is no study of this version");
     verify(&renamed("throughput"), "`throughput` measures the machine");
     verify(&renamed("a\u{1b}[2Jb\nerror: c"), "`a\\u001b[2Jb\\u000aerror: c` is no study");
     let twice = |studies: &mut Vec<Value>| {
         studies.push(studies[0].clone());
         forge(&mut studies[1]);
     };
-    verify(&twice, "`drift` is in the report twice");
+    verify(&twice, "`spectrum` is in the report twice");
     verify(&|studies| studies.clear(), "unknown: the report has no study");
     let timed = |studies: &mut Vec<Value>| {
         let mut own = studies[0]["findings"][0].clone();
-        own["id"] = "drift.forged.time".into();
+        own["id"] = "spectrum.forged.time".into();
         studies[0]["findings"].as_array_mut().unwrap().push(own);
     };
     verify(&timed, "fault: 1 difference");

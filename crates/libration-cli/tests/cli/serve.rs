@@ -85,6 +85,24 @@ fn serve_writes_a_page_that_begins_with_the_system_of_the_options() {
         .stderr(contains("cannot write `/nowhere/page.html`"));
 }
 
+#[cfg(unix)]
+#[test]
+fn a_page_that_does_not_fit_leaves_the_file_that_was_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("page.html");
+    fs::write(&page, "before").unwrap();
+    // A limit of files, as a full disk is one: 100 KiB of a page with an engine.
+    let script = "ulimit -f 100; exec \"$0\" serve --out page.html";
+    let output = Command::new("bash")
+        .args(["-c", script, env!("CARGO_BIN_EXE_libration")])
+        .current_dir(&folder)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert_eq!(fs::read_to_string(&page).unwrap(), "before");
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
+}
+
 /// Writes the file of an example to a folder, and gives its setting.
 fn example(folder: &Path, name: &str) -> (String, Setting) {
     let text = EquationExample::find(name).unwrap().text;

@@ -9,8 +9,22 @@ use serde_json::Value;
 use super::advise::libration;
 
 /// Text that acts on a terminal, or turns the direction of writing.
-const ACTING: [&str; 6] =
-    ["\u{1b}]0;owned\u{7}", "\u{1b}[2J", "\u{9b}31m", "\u{202e}gnp", "\u{2066}x\u{2069}", "\u{7f}\u{8}"];
+const ACTING: [&str; 6] = [
+    "\u{1b}]0;owned\u{7}",
+    "\u{1b}[2J",
+    "\u{9b}31m",
+    "\u{202e}gnp",
+    "\u{2066}x\u{2069}",
+    "\u{7f}\u{8}",
+];
+
+/// A file with an oscillator, whose name, description and unit are this text.
+fn system(text: &str) -> String {
+    format!(
+        "[system]\nname = \"{text}\"\ndescription = \"{text}\"\ncoordinates = [\"q\"]\nacceleration.q = \"-k*q\"\n\
+         parameters = {{ k = {{ value = 9.0, unit = \"{text}\" }} }}\nunits = {{ q = \"rad\" }}\nstart = {{ q = 1.0 }}\n"
+    )
+}
 
 /// The output of the program on a terminal: of both streams.
 fn on_terminal(folder: &Path, words: &[&str]) -> String {
@@ -39,7 +53,11 @@ fn check(text: &str, what: &str) {
     for (at, _) in text.match_indices('\u{1b}') {
         let rest = text[at..].trim_start_matches('\u{1b}').trim_start_matches('[');
         let end = rest.trim_start_matches(|c: char| c.is_ascii_digit() || c == ';');
-        assert!(end.starts_with('m'), "{what}: {:?}", &text[at..].chars().take(20).collect::<String>());
+        assert!(
+            end.starts_with('m'),
+            "{what}: {:?}",
+            &text[at..].chars().take(20).collect::<String>()
+        );
     }
     let forged = text.lines().filter(|line| line.contains("forged"));
     for line in forged {
@@ -53,13 +71,15 @@ fn text_of_files_does_not_act_on_a_terminal() {
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
     // As TOML and JSON write them.
     let acting = ACTING.concat() + "\r\nerror: forged";
-    let escaped: String =
-        acting.encode_utf16().map(|unit| format!("\\u{unit:04x}")).collect();
-    let pendulum = "[acceleration]\nq = \"-k*q\"\n[parameters]\nk = 9.0\n[start]\nq = 1.0\n";
-    write("system.toml", &format!("name = \"a{escaped}\"\ndescription = \"b{escaped}\"\n{pendulum}"));
-    write("key.toml", &format!("\"c{escaped}\" = 1\n{pendulum}"));
-    write("log.csv", &format!("time,\"d{acting}\"\n0,1\n0.01,2\n0.02,3\n0.03,1\n"));
-    write("bare.toml", &format!("name = \"{}\"\n{pendulum}", ACTING.concat()));
+    let escaped: String = acting.encode_utf16().map(|unit| format!("\\u{unit:04x}")).collect();
+    write("system.toml", &system(&format!("a{escaped}")));
+    let units = system("x").replace("\"rad\"", &format!("\"{escaped}\""));
+    write("units.toml", &units);
+    write("key.toml", &format!("\"c{escaped}\" = 1\n{}", system("x")));
+    // A text with others is none.
+    let header = "\u{9b}31m\u{202e}gnp\u{2066}";
+    write("log.csv", &format!("\"d{header}\",x\n0,1\n0.01,2\n0.02,3\n0.03,1\n"));
+    write("bare.toml", &system(&ACTING.concat()));
     let record = |id: &str| {
         format!(
             "{{\"schema\": \"{}\", \"config\": {{\"x\": \"{escaped}\"}}, \"studies\": [], \"machine\": {{\"{id}\": 1}}}}",
@@ -70,14 +90,20 @@ fn text_of_files_does_not_act_on_a_terminal() {
     write("new.json", &record("other"));
     fs::create_dir(folder.path().join("set")).unwrap();
     write("set/manifest.jsonl", &format!("{{\"version\": \"{escaped}\"}}\n"));
-    write("servos.json", &format!("{{\"mass\": [[1.0]], \"kp\": [1.0], \"kv\": [1.0], \"names\": [\"{escaped}\"]}}"));
+    write(
+        "servos.json",
+        &format!(
+            "{{\"mass\": [[1.0]], \"kp\": [1.0], \"kv\": [1.0], \"joints\": [\"{escaped}\"]}}"
+        ),
+    );
     for words in [
-        &["list", "--system", "system.toml"][..],
-        &["list", "--system", "system.toml", "--json"],
+        &["list", "system.toml"][..],
+        &["list", "system.toml", "--json"],
         &["analyze", "--system", "system.toml", "--integrator", "rk4", "--dt", "0.01"],
         &["analyze", "--system", "system.toml", "--integrator", "rk4", "--dt", "0.01", "--json"],
         &["analyze", "--system", "key.toml", "--integrator", "rk4", "--dt", "0.01"],
         &["analyze", "--system", "bare.toml", "--integrator", "rk4", "--dt", "0.01"],
+        &["list", "units.toml"],
         &["clock", "log.csv"],
         &["clock", "log.csv", "--json"],
         &["clock", "log.csv", "--topic", "nosuch"],
@@ -86,11 +112,29 @@ fn text_of_files_does_not_act_on_a_terminal() {
         &["verify", "set"],
         &["join", "set", "--out", "joined"],
         &["gains", "--matrices", "servos.json", "--dt", "0.01"],
-        &["probe", "--command", "printf '\\033]0;owned\\007\\r\\nerror: forged\\n'", "--state", "0", "--dt", "1"],
-        &["probe", "--command", "sh -c \"printf '\\033]0;owned\\007' >&2\"", "--state", "0", "--dt", "1"],
+        &[
+            "probe",
+            "--command",
+            "printf '\\033]0;owned\\007\\r\\nerror: forged\\n'",
+            "--state",
+            "0",
+            "--dt",
+            "1",
+        ],
+        &[
+            "probe",
+            "--command",
+            "sh -c \"printf '\\033]0;owned\\007' >&2\"",
+            "--state",
+            "0",
+            "--dt",
+            "1",
+        ],
     ] {
         let text = on_terminal(folder.path(), words);
-        assert!(!text.trim().is_empty(), "{words:?}");
+        // A line of a file with an error has marks in place of such characters.
+        let is_escaped = text.contains("\\u") || words.contains(&"bare.toml");
+        assert!(is_escaped, "{words:?}: {text:?}");
         check(&text, &words.join(" "));
     }
 }
@@ -100,9 +144,8 @@ fn json_keeps_the_text_of_a_file() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("system.toml");
     let name = "a\u{9b}\u{202e}b\u{7f}";
-    let pendulum = "[acceleration]\nq = \"-k*q\"\n[parameters]\nk = 9.0\n[start]\nq = 1.0\n";
-    fs::write(&file, format!("name = \"a\\u009b\\u202eb\\u007f\"\n{pendulum}")).unwrap();
-    let output = libration(&["list", "--system", file.to_str().unwrap(), "--json"]).success();
+    fs::write(&file, system("a\\u009b\\u202eb\\u007f")).unwrap();
+    let output = libration(&["list", file.to_str().unwrap(), "--json"]).success();
     let value: Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
     assert_eq!(value["name"], name);
 }
@@ -111,21 +154,22 @@ fn json_keeps_the_text_of_a_file() {
 fn names_of_any_length_are_shown() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("system.toml");
-    for length in [65_535, 65_536, 70_000, 200_000] {
+    for length in [65_535, 65_536, 100_000] {
         let name = "x".repeat(length);
-        fs::write(
-            &file,
-            format!("[acceleration]\nq = \"-{name}*q\"\n[parameters]\n{name} = 9.0\n[units]\nq = \"{name}\"\n[start]\nq = 1.0\n"),
-        )
-        .unwrap();
+        let text = format!(
+            "[system]\nname = \"long\"\ncoordinates = [\"{name}\"]\nacceleration.{name} = \"-1.0\"\n\
+             parameters = {{ k{name} = {{ value = 9.0, unit = \"{name}\" }} }}\nunits = {{ {name} = \"{name}\" }}\n\
+             start = {{ {name} = 1.0 }}\n"
+        );
+        fs::write(&file, text).unwrap();
         let file = file.to_str().unwrap();
         for words in [
-            &["list", "--system", file][..],
+            &["list", file][..],
             &["analyze", "--system", file, "--integrator", "rk4", "--dt", "0.01"],
         ] {
             let output = libration(words).get_output().clone();
             let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-            assert!(!errors.contains("this is a bug"), "{length}: {errors:.300}");
+            assert_eq!(output.status.code(), Some(0), "{length}: {errors:.300}");
         }
     }
 }

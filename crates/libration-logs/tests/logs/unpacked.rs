@@ -57,10 +57,8 @@ fn rosbag(zeros: usize) -> Vec<u8> {
     encoder.write_all(&message).unwrap();
     let chunk = encoder.finish().unwrap();
     let size = (message.len() as u32).to_le_bytes();
-    let chunk = record(
-        &[field("op", &[5]), field("compression", b"lz4"), field("size", &size)],
-        &chunk,
-    );
+    let chunk =
+        record(&[field("op", &[5]), field("compression", b"lz4"), field("size", &size)], &chunk);
     [&b"#ROSBAG V2.0\n"[..], &chunk].concat()
 }
 
@@ -79,11 +77,9 @@ fn open(path: &Path) -> Result<Log, libration_logs::LogError> {
 fn a_small_file_that_unpacks_to_many_zeros_is_refused() {
     // More than 64 MiB, which any file may unpack to, and than 200 times the file.
     let zeros = 70 << 20;
-    for (name, bytes) in [
-        ("a.mcap", mcap("zstd", zeros)),
-        ("b.mcap", mcap("lz4", zeros)),
-        ("c.bag", rosbag(zeros)),
-    ] {
+    for (name, bytes) in
+        [("a.mcap", mcap("zstd", zeros)), ("b.mcap", mcap("lz4", zeros)), ("c.bag", rosbag(zeros))]
+    {
         assert!(bytes.len() < 1 << 20, "{name}: {}", bytes.len());
         let said = error(name, &bytes);
         assert!(said.contains("unpacks to more than 67108864 bytes"), "{name}: {said}");
@@ -107,7 +103,10 @@ fn a_small_table_with_many_cells_is_refused() {
     let bytes = file((1 << 20) + 1);
     assert!(bytes.len() < 1 << 15, "{}", bytes.len());
     let said = error("a.parquet", &bytes);
-    assert!(said.contains("cells of a file of this size is 1048577; expected at most 1048576"), "{said}");
+    assert!(
+        said.contains("cells of a file of this size is 1048577; expected at most 1048576"),
+        "{said}"
+    );
     let said = error("b.parquet", &file(1000));
     assert!(!said.contains("cells"), "{said}");
 }

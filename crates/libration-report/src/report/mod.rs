@@ -6,7 +6,7 @@ mod first_screen;
 use crate::figure;
 use crate::live::{self, LIVE_ID, LiveSetting};
 use crate::page::{Block, Chapter, Page};
-use crate::text::{escape, plain, render_html};
+use crate::text::{POLICY, escape, plain, render_html};
 
 const STYLE: &str = include_str!("../../assets/report.css");
 const SCRIPT: &str = include_str!("../../assets/report.js");
@@ -64,7 +64,7 @@ pub fn render(cover: &Cover, chapters: &[Chapter]) -> String {
     }
     links += "<a href=\"#machine\">This machine</a>";
     format!(
-        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">{POLICY}\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
          <title>{name}</title>\n<style>{STYLE}</style></head><body>\n\
          <nav aria-label=\"Chapters\"><b>Libration</b>{links}</nav>\n<main id=\"top\">\n\
@@ -104,7 +104,7 @@ pub fn render_page(page: &Page, sub: &str) -> String {
         };
     }
     format!(
-        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">{POLICY}\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
          <title>{name}</title>\n<style>{STYLE}</style></head><body>\n\
          <nav aria-label=\"Chapters\"><b>Libration</b>{links}</nav>\n<main id=\"top\">\n\

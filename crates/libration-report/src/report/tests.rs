@@ -15,6 +15,25 @@ fn a_single_page_has_a_link_to_each_of_its_headings() {
     }
 }
 
+#[test]
+fn a_page_may_load_nothing() {
+    let page = render_page(&Page::default(), "");
+    for html in [page, crate::live::page(&[], "")] {
+        let (head, _) = html.split_once("</head>").unwrap();
+        let (_, policy) =
+            head.split_once("<meta http-equiv=\"Content-Security-Policy\" content=\"").unwrap();
+        let (policy, _) = policy.split_once('"').unwrap();
+        // Before anything that it could forbid.
+        assert!(head.find("Content-Security-Policy") < head.find("<style>"), "{head:.300}");
+        let parts: Vec<&str> = policy.split(';').map(str::trim).collect();
+        assert_eq!(parts[0], "default-src 'none'");
+        for source in parts.iter().flat_map(|part| part.split(' ').skip(1)) {
+            let own = source.starts_with('\'') || ["blob:", "data:"].contains(&source);
+            assert!(own && source != "'self'" && source != "'unsafe-eval'", "{policy}");
+        }
+    }
+}
+
 /// A chapter of a study with an answer, a figure `NAME-figure` and two actions.
 fn chapter(name: &str, findings: &[&str]) -> Chapter {
     let mut record = Record::new(name, "Is it so?");
