@@ -6,6 +6,7 @@
 mod arrival_filter;
 mod arrival_information;
 mod arrival_parameters;
+mod arrival_selection;
 mod arrivals;
 mod bootstrap;
 mod candidate;
@@ -38,6 +39,7 @@ mod simulation;
 mod small_step;
 mod start;
 mod summary;
+mod task;
 mod verdict;
 mod warnings;
 mod whitening;
