@@ -19,6 +19,7 @@ mod hypothesis;
 mod identification;
 mod identify;
 mod information;
+mod initial_states;
 mod interval;
 mod likelihood_map;
 mod loop_file;
