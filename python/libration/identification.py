@@ -177,7 +177,7 @@ def identify(
     command_before:
         The command before the recording (default: the first one).
     budget:
-        Most evaluations of the likelihood in the search of a model (default: 2000 to 20,000, fewer for long recordings).
+        Most evaluations of the likelihood in the search of a model (default: 1000 to 20,000, fewer for long recordings).
     random_arrivals:
         Whether losses, jitter and two dead times are looked for.
     bootstrap:

@@ -54,6 +54,8 @@ const STARTS: usize = 2;
 /// Most calls per coordinate of each simplex of a search, and of the fit to all responses.
 const ROUGH_CALLS: usize = 40;
 const FINE_CALLS: usize = 60;
+/// Hypotheses about the acting command of each response, in the mean: steps of the effort.
+const HYPOTHESES: usize = 2;
 /// Responses of a search, before all of them.
 const SEARCHED: usize = 500;
 
@@ -231,7 +233,7 @@ impl<'a> ArrivalSearch<'a> {
     /// The negative log likelihood of the first responses.
     fn cost_of(&self, coordinates: &[f64], responses: usize) -> f64 {
         let model = self.arrival_model(coordinates);
-        model.filter(|_| self.model.effort.spend(responses.min(self.count()))).map_or(
+        model.filter(|_| self.model.effort.spend(HYPOTHESES * responses.min(self.count()))).map_or(
             f64::INFINITY,
             |model| {
                 let plant = self.model.response.dynamics(&model.shape[1..]);

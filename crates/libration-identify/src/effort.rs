@@ -7,9 +7,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use libration_work::Work;
 
 /// Steps of a filter that a search may take by default: some seconds.
-const DEFAULT_STEPS: u64 = 20_000_000;
+const DEFAULT_STEPS: u64 = 5_000_000;
 /// Fewest and most evaluations of the likelihood by default.
-const DEFAULT_EVALUATIONS: (u64, u64) = (2000, 20_000);
+const DEFAULT_EVALUATIONS: (u64, u64) = (1000, 20_000);
 
 /// The work that a search may spend: steps of a filter, of which each response takes one, so that results do not depend on the speed of a
 /// machine.
@@ -94,6 +94,6 @@ mod tests {
     #[test]
     fn long_recordings_have_fewer_evaluations_and_none_has_none() {
         let counts = [30, 1000, 6461, 10_000, 1_000_000].map(default_evaluations);
-        assert_eq!(counts, [20_000, 20_000, 3095, 2000, 2000]);
+        assert_eq!(counts, [20_000, 5000, 1000, 1000, 1000]);
     }
 }

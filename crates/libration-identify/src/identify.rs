@@ -19,8 +19,9 @@ use crate::parameters::{Estimated, certain_parameters};
 use crate::recording::Recording;
 use crate::request::{IdentifyError, Request};
 use crate::residuals::ResidualTests;
-use crate::selection::{Selection, Task, select};
+use crate::selection::{Selection, select};
 use crate::start::{Start, likely_start};
+use crate::task::Task;
 use crate::verdict::verdict;
 use crate::{summary, warnings};
 

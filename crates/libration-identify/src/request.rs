@@ -32,7 +32,7 @@ pub struct Request {
     /// nearly all of a few changes would be lost with the responses up to the largest dead time, unless the responses contradict it; else
     /// [`Start::Unknown`].
     pub start: Option<Start>,
-    /// The number of evaluations of the likelihood that the search of a model may take. Default: 2000 to 20,000, fewer for long recordings.
+    /// The number of evaluations of the likelihood that the search of a model may take. Default: 1000 to 20,000, fewer for long recordings.
     pub budget: Option<usize>,
     /// Whether losses, two delays and jitter of arrivals are looked for.
     pub arrivals: bool,

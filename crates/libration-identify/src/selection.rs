@@ -1,20 +1,17 @@
 //! The choice of a model.
 
-use libration_work::Work;
-
-use crate::arrivals::{ArrivalFit, ArrivalLaw, ArrivalSearch};
+use crate::arrival_selection::with_arrivals;
+use crate::arrivals::ArrivalFit;
 use crate::candidate::CandidateRow;
 use crate::dependence::Dependence;
-use crate::effort::Effort;
 use crate::estimate::Estimate;
 use crate::hold::Hold;
 use crate::model::Model;
 use crate::noise::NoiseKind;
-use crate::recording::Recording;
-use crate::request::{IdentifyError, Request};
+use crate::request::IdentifyError;
 use crate::residuals::ResidualTests;
-use crate::response::ResponseKind;
 use crate::start::Start;
+use crate::task::Task;
 
 /// The chosen model, and what was tried.
 pub(crate) struct Selection<'w> {
@@ -35,78 +32,11 @@ pub(crate) struct Selection<'w> {
 /// Forms of response whose noise and arrivals are searched.
 const PURSUED: usize = 3;
 
-/// Models whose criterion is larger by more than this before they are fitted to all responses are not fitted to them.
-const MAY_WIN: f64 = 60.0;
-
 /// Forms of response with held commands whose arrivals are searched.
 const HELD: usize = 2;
 
 /// Fewest changes of a command of which some may be lost or late: of fewer, a law of arrivals is a guess.
 const FEWEST_CHANGES: usize = 20;
-
-/// A recording with what is to be identified of it.
-#[derive(Clone, Copy)]
-pub(crate) struct Task<'a, 'w> {
-    pub(crate) recording: &'a Recording,
-    pub(crate) request: &'a Request,
-    /// The largest dead time, in s.
-    pub(crate) largest: f64,
-    /// Evaluations of the likelihood that the search of a model may take.
-    pub(crate) evaluations: u64,
-    pub(crate) work: Work<'w>,
-}
-
-impl<'w> Task<'_, 'w> {
-    /// The effort of the search of a model.
-    pub(crate) fn effort(&self) -> Effort<'w> {
-        Effort::limited(self.work, self.evaluations, self.recording.responses.len())
-    }
-
-    fn model(&self, response: ResponseKind, hold: Hold, start: Start) -> Model<'w> {
-        let Task { recording, request, .. } = self;
-        let known = |key: &str| match key {
-            "dead_time" => request.dead_time,
-            "lag" => request.lag,
-            _ => None,
-        };
-        Model {
-            known: response.parameters().iter().map(|parameter| known(parameter.key)).collect(),
-            // Without a disturbance, errors of an unstable plant would have grown beyond all bounds, and nothing would follow from its responses.
-            noise: match request.noises.contains(&NoiseKind::Disturbance)
-                && response.is_unstable(recording.span())
-            {
-                true => NoiseKind::Disturbance,
-                false => NoiseKind::White,
-            },
-            response,
-            hold,
-            gain: request.gain,
-            longest: self.largest,
-            interval: recording.interval(),
-            start,
-            effort: self.effort(),
-        }
-    }
-
-    /// A fit, or the name of the model whose search did not end.
-    fn fit(
-        &self,
-        model: &Model<'w>,
-        search: impl FnOnce(&Model<'w>) -> Option<Estimate<'w>>,
-    ) -> Result<Option<Estimate<'w>>, String> {
-        let found = search(model);
-        match model.effort.is_exhausted() {
-            true => Err(format!(
-                "{} response with {} noise{} (budget of {} evaluations)",
-                model.response.name(),
-                model.noise.name(),
-                if model.hold == Hold::Linear { " and lines between commands" } else { "" },
-                self.evaluations
-            )),
-            false => Ok(found),
-        }
-    }
-}
 
 /// Fits in which all commands arrive.
 struct Fits<'w> {
@@ -147,13 +77,8 @@ pub(crate) fn select<'w>(task: Task<'_, 'w>, start: Start) -> Result<Selection<'
         && dependence == Dependence::Shown
         && recording.missing_commands() == 0;
     if is_wanted && changes >= FEWEST_CHANGES {
-        let held: Vec<Estimate<'w>> = searched
-            .iter()
-            .filter(|fit| fit.model.hold == Hold::Zero)
-            .take(HELD)
-            .map(|fit| fit.with_effort(Effort::unlimited(work)))
-            .collect();
-        random = with_arrivals(&held, recording, &work)?;
+        let held = searched.iter().filter(|fit| fit.model.hold == Hold::Zero).take(HELD);
+        random = with_arrivals(held.collect(), task, &mut not_examined)?;
     } else if is_wanted {
         not_examined.push(format!(
             "lost and late commands ({changes} changes of the command, at least {FEWEST_CHANGES} needed)"
@@ -254,45 +179,4 @@ fn with_noises<'w>(
     }
     by_criterion(&mut fits);
     Ok(fits)
-}
-
-/// Jitter, losses and two delays, with white noise.
-fn with_arrivals<'w>(
-    held: &[Estimate<'w>],
-    recording: &Recording,
-    work: &Work<'_>,
-) -> Result<Vec<(Estimate<'w>, ArrivalFit, CandidateRow)>, IdentifyError> {
-    let laws = ArrivalLaw::ALL;
-    let jobs: Vec<(&Estimate<'w>, ArrivalLaw)> =
-        held.iter().flat_map(|base| laws.map(|law| (base, law))).collect();
-    let rough = work.sweep("arrivals", &jobs, |&(base, law)| {
-        let search = ArrivalSearch::new(law, base, recording);
-        Ok::<_, IdentifyError>(search.and_then(|search| search.rough()))
-    })?;
-    // Only what may win is fitted to all responses.
-    let count = |base: &Estimate<'_>| base.regression.residuals.len();
-    let criteria: Vec<f64> = jobs
-        .iter()
-        .zip(&rough)
-        .map(|((base, _), fit)| {
-            fit.as_ref().map_or(f64::INFINITY, |fit| fit.criterion(count(base)))
-        })
-        .collect();
-    let least = criteria.iter().copied().fold(f64::INFINITY, f64::min);
-    let jobs: Vec<_> = jobs.into_iter().zip(rough).zip(criteria).collect();
-    let found = work.sweep("arrivals", &jobs, |(((base, law), fit), criterion)| {
-        let Some(fit) = fit else { return Ok::<_, IdentifyError>(None) };
-        let is_near = *criterion < least + MAY_WIN || *law == ArrivalLaw::Certain;
-        let search = ArrivalSearch::new(*law, base, recording).filter(|_| is_near);
-        Ok(search.map_or(Some(fit.clone()), |search| search.fit_near(&fit.coordinates)))
-    })?;
-    let mut rows = Vec::new();
-    for (base, fits) in held.iter().zip(found.chunks(laws.len())) {
-        let [Some(certain), others @ ..] = fits else { continue };
-        for fit in others.iter().flatten() {
-            let row = CandidateRow::random(base, fit, certain);
-            rows.push((base.clone(), fit.clone(), row));
-        }
-    }
-    Ok(rows)
 }

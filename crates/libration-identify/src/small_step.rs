@@ -4,9 +4,9 @@ use crate::plant_step::PlantStep;
 use crate::response::UnitPlant;
 
 /// A step is halved until its norm is below this.
-const SMALL: f64 = 0.25;
-/// Terms of the series: of `½ᵏ/k!` the next is below 10⁻¹⁸.
-const TERMS: usize = 17;
+const SMALL: f64 = 1.0 / 16.0;
+/// Terms of the series: of `8⁻ᵏ/k!` the next is below 10⁻¹⁹.
+const TERMS: usize = 11;
 
 type Square<const N: usize> = [[f64; N]; N];
 type Vector<const N: usize> = [f64; N];

@@ -67,7 +67,7 @@ pub(crate) struct IdentifyArgs {
     /// Command before the log, if it was another than the first
     #[arg(long, value_name = "NUMBER", allow_hyphen_values = true, value_parser = finite)]
     pub(crate) command_before: Option<f64>,
-    /// Most evaluations of the likelihood in the search of a model [default: 2000 to 20000, fewer for long logs]
+    /// Most evaluations of the likelihood in the search of a model [default: 1000 to 20000, fewer for long logs]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) budget: Option<usize>,
     /// Number of simulated logs that check the intervals (0: none)

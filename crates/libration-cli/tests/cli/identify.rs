@@ -9,15 +9,20 @@ use serde_json::Value;
 
 use super::advise::libration;
 
-/// Writes a log of a lag of 60 ms behind a dead time of 25 ms, in steps of 10 ms, with a small error that repeats after 97 samples.
+/// Uniform numbers from −1 to 1. Of numbers that repeat themselves no model is right.
+fn draw(word: &mut u64) -> f64 {
+    *word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*word >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+}
+
+/// Writes a log of a lag of 60 ms behind a dead time of 25 ms, in steps of 10 ms, with a small error.
 fn log(folder: &std::path::Path) -> PathBuf {
-    let (mut word, mut command, mut state) = (7_u32, 0.0, 0.0_f64);
+    let (mut word, mut command, mut state) = (7, 0.0, 0.0_f64);
     let mut commands: Vec<f64> = Vec::new();
     let mut text = "t,cmd,q,still\n".to_owned();
     for i in 0..400 {
         if i % 5 == 0 {
-            word = word.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            command = f64::from(word >> 8) / f64::from(1_u32 << 24) - 0.5;
+            command = 0.5 * draw(&mut word);
         }
         let at = |back: usize| if i >= back { commands[i - back] } else { 0.0 };
         // The command of three periods ago acts up to the middle of the interval, that of two and a half after it.
@@ -25,7 +30,7 @@ fn log(folder: &std::path::Path) -> PathBuf {
             state = late + (state - late) * (-0.005_f64 / 0.06).exp();
         }
         commands.push(command);
-        let error = 0.004 * (f64::from((i as u32 * 7919) % 97) / 48.0 - 1.0);
+        let error = 0.004 * draw(&mut word);
         let _ = writeln!(text, "{},{command},{},1", f64::from(i as u32) * 0.01, state + error);
     }
     let path = folder.join("log.csv");
@@ -96,13 +101,14 @@ fn wrong_signals_and_numbers_are_errors_of_usage() {
     }
 }
 
-/// Writes a step test of a lag of 50 ms behind a dead time of 30 ms: 2 s at 100 Hz, with a small error that repeats after 97 samples.
+/// Writes a step test of a lag of 50 ms behind a dead time of 30 ms: 2 s at 100 Hz, with a small error.
 fn step_test(folder: &std::path::Path, step: f64) -> String {
     let mut text = "t,cmd,q\n".to_owned();
+    let mut word = 11;
     for i in 0..200_u32 {
         let time = 0.01 * f64::from(i);
         let since = (time - step - 0.03).max(0.0);
-        let error = 0.002 * (f64::from((i * 7919) % 97) / 48.0 - 1.0);
+        let error = 0.002 * draw(&mut word);
         let command = u8::from(time > step - 1e-9);
         let _ = writeln!(text, "{time},{command},{}", 1.0 - (-since / 0.05).exp() + error);
     }
