@@ -103,7 +103,14 @@ def rows_of_step(step: Callable[..., Any], n: int, batched: bool) -> Callable[[A
 
     def of_each(states: Array, actions: Array, dt: float) -> Array:
         # Copies, so that a step may change its arguments.
-        return np.stack([result(step(x.copy(), u.copy(), dt), (n,)) for x, u in zip(states, actions)])
+        return np.stack([alone(x.copy(), u.copy(), dt) for x, u in zip(states, actions)])
+
+    def alone(x: Array, u: Array, dt: float) -> Array:
+        try:
+            return result(step(x, u, dt), (n,))
+        except OverflowError:
+            # Of numbers of Python, in a run that diverges.
+            return np.full(n, np.inf)
 
     return of_batch if batched else of_each
 
@@ -119,10 +126,16 @@ def energies_of(energy: Callable[..., Any], batched: bool) -> Callable[[Array], 
         return found.reshape(count)
 
     def of_each(states: Array) -> Array:
-        found = [numbers_of("the result of energy", energy(x.copy())) for x in states]
+        found = [numbers_of("the result of energy", alone(x.copy())) for x in states]
         if any(one.size != 1 for one in found):
             raise ValueError(f"energy returned an array of shape {found[0].shape}; expected a number")
         return np.array([one.item() for one in found])
+
+    def alone(x: Array) -> Any:
+        try:
+            return energy(x)
+        except OverflowError:
+            return np.inf
 
     return of_batch if batched else of_each
 

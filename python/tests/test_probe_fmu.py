@@ -83,7 +83,8 @@ def growth(latency):
 
 
 def test_the_macro_step_is_a_latency_of_the_loop(report):
-    assert report.exchange_latency == MACRO_STEP and report.findings == []
+    # By the limit of small steps the rate of x0 is x1, a velocity, and x1 drives itself at rest, as van der Pol's oscillator does.
+    assert report.exchange_latency == MACRO_STEP and [finding["kind"] for finding in report.findings] == ["negative-damping"]
     controller = StateFeedback(GAIN)
     assert latencies(report.advise(controller)) == [MACRO_STEP]
     assert latencies(report.advise(controller, exchange=False)) == []

@@ -2,7 +2,7 @@
 
 use crate::findings::{of_bits, of_report};
 use crate::held_action::HeldAction;
-use crate::memory_finding::of_memory;
+use crate::memory_finding::{of_measured, of_memory};
 use crate::prober::Prober;
 use crate::{Bits, BlackBox, BlackBoxError, Finding, Memory, ProbeReport, Settling, Subject};
 
@@ -59,6 +59,7 @@ fn examine(
     if is_audited {
         report.audit(prober, &memory)?;
     }
+    of_measured(subject, &mut findings);
     if is_repeatable || memory.settling.is_some() {
         of_memory(&memory, &report.delays, subject, &mut findings);
     }

@@ -233,8 +233,7 @@ impl Trajectory {
     ) -> Result<Self, BlackBoxError> {
         let action = &prober.subject.action;
         let mut x = start.to_vec();
-        let mut found =
-            Trajectory { dt, energies: Vec::with_capacity(steps), is_finite: false };
+        let mut found = Trajectory { dt, energies: Vec::with_capacity(steps), is_finite: false };
         for _ in 0..steps {
             match prober.advance(&x, action, dt) {
                 Ok(next) => x = next,
@@ -255,7 +254,8 @@ impl Trajectory {
         let span = |part: core::ops::Range<usize>| {
             let middle = (part.start + part.end) / 2;
             let time = (part.end - part.start) as f64 / 2.0 * self.dt;
-            (average(&self.energies[middle..part.end]) - average(&self.energies[part.start..middle]))
+            (average(&self.energies[middle..part.end])
+                - average(&self.energies[part.start..middle]))
                 / time
         };
         let whole = span(0..steps);

@@ -196,6 +196,7 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
         && report.is_differentiable()
         && !subject.has_fixed_dt
         && !report.ignores_dt
+        && report.inner_step.is_none()
     {
         found.push(Finding::warning(
             UnstableStep,

@@ -80,7 +80,11 @@ pub(crate) fn defects(page: &mut Page, audit: &ProbeReport) {
         };
         if let Some(change) = energy.change {
             let steps = plural(energy.steps, "step");
-            row("relative change of the energy", Some(change), format!("over {steps}; conserved: 0"));
+            row(
+                "relative change of the energy",
+                Some(change),
+                format!("over {steps}; conserved: 0"),
+            );
         }
         row("relative rate of the energy (1/s)", Some(energy.rate), reason);
     }

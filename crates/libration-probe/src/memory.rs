@@ -100,6 +100,10 @@ impl Memory {
         let varies = self.observed == Some(Observed::Varying);
         let late = self.observation.as_ref().filter(|found| found.first.is_some() && !varies);
         let late = late.map_or(0.0, |observation| observation.mean - self.state.mean);
-        late + if self.observed == Some(Observed::Given) { 1.0 } else { self.observed_age.unwrap_or(0.0) }
+        late + if self.observed == Some(Observed::Given) {
+            1.0
+        } else {
+            self.observed_age.unwrap_or(0.0)
+        }
     }
 }

@@ -73,21 +73,6 @@ pub(crate) fn of_memory(
             ),
         ));
     }
-    for input in &subject.measured_inputs {
-        if input.late_steps.abs() < DELAY && !input.varies {
-            continue;
-        }
-        found.push(Finding::fault(
-            if input.varies { IrregularDelay } else { LateCommand },
-            format!(
-                "a command of `{}` acts {} late ({} s) on average{}",
-                input.name,
-                steps(input.late_steps),
-                number(input.late_steps * dt, 4),
-                if input.varies { ", and its delay changes from step to step" } else { "" }
-            ),
-        ));
-    }
     if memory.state.last.unwrap_or(0) > 0 {
         found.push(Finding::fault(
             LateState,
@@ -123,6 +108,28 @@ pub(crate) fn of_memory(
                 "observations are {} ({} s) older than the states",
                 steps(memory.staleness()),
                 number(memory.staleness() * dt, 4)
+            ),
+        ));
+    }
+}
+
+/// Findings about the lateness that the adapter of the simulator has measured.
+pub(crate) fn of_measured(subject: &Subject, found: &mut Vec<Finding>) {
+    for input in &subject.measured_inputs {
+        if input.late_steps.abs() < DELAY && !input.varies {
+            continue;
+        }
+        let (kind, how) = match input.varies {
+            true => (IrregularDelay, ", and its delay changes from step to step"),
+            false => (LateCommand, ""),
+        };
+        found.push(Finding::fault(
+            kind,
+            format!(
+                "a command of `{}` acts {} late ({} s) on average{how}",
+                input.name,
+                steps(input.late_steps),
+                number(input.late_steps * subject.dt, 4)
             ),
         ));
     }

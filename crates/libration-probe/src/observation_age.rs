@@ -56,8 +56,7 @@ fn at_once(prober: &mut Prober<'_>, x: &[f64]) -> Result<Option<Vec<f64>>, Black
     let subject = prober.subject;
     let mut found = Vec::new();
     for halvings in HALVINGS {
-        let (next, seen) =
-            after(prober, x, &subject.action, subject.dt * 2.0_f64.powi(-halvings))?;
+        let (next, seen) = after(prober, x, &subject.action, subject.dt * 2.0_f64.powi(-halvings))?;
         if next == x {
             return Ok(None);
         }

@@ -153,7 +153,10 @@ fn latency(page: &mut Page, audit: &ProbeReport) {
     }
     page.heading("Which latency is hidden in the step?");
     let is_late = !audit.delays.is_empty()
-        || audit.hidden_latency.iter().any(|latency| latency.late_steps.is_some_and(|late| late != 0.0));
+        || audit
+            .hidden_latency
+            .iter()
+            .any(|latency| latency.late_steps.is_some_and(|late| late != 0.0));
     let is_known = audit.hidden_latency.iter().any(|latency| latency.integrator_delay.is_some());
     page.paragraph(format!(
         "{} {}",

@@ -16,8 +16,8 @@ use crate::prober::Prober;
 use crate::reference_check::ReferenceCheck;
 use crate::rest::Rest;
 use crate::{
-    Bits, BlackBoxError, Confirmation, Convergence, Defects, DelayAudit, InnerStep, LargestStep, Match,
-    Memory, OperatingPoint, Recognition, Subject,
+    Bits, BlackBoxError, Confirmation, Convergence, Defects, DelayAudit, InnerStep, LargestStep,
+    Match, Memory, OperatingPoint, Recognition, Subject,
 };
 
 /// Largest relative error of a row at which the step counts as differentiable.

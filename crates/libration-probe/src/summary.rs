@@ -70,9 +70,9 @@ impl ProbeReport {
         let names = leading.names();
         let is_at_rest = self.equilibrium.holds;
         let mut text = match self.growth() {
-            Growth::OfSystem => format!(
-                "With dt = {dt} s a mode {growth}, as in the system itself ({names})"
-            ),
+            Growth::OfSystem => {
+                format!("With dt = {dt} s a mode {growth}, as in the system itself ({names})")
+            }
             Growth::OfStep if is_at_rest => {
                 format!("With dt = {dt} s the step is unstable: a mode {growth} ({names})")
             }

@@ -42,7 +42,9 @@ impl ProbeReport {
 
     fn without_fault(&self) -> Verdict {
         if self.step.is_none() {
-            return Verdict::unknown("the step was not linearised: its results near the state are not finite");
+            return Verdict::unknown(
+                "the step was not linearised: its results near the state are not finite",
+            );
         }
         if !self.is_differentiable() {
             return Verdict::unknown("the step has no derivative at this state");

@@ -30,14 +30,18 @@ fn a_fixed_inner_step_is_named_and_leaves_the_system_unknown() {
     for (count, text) in counts {
         // Also steps of 64 inner ones, whose halves are whole numbers of them down to a sixty-fourth.
         for dt in [0.01, 0.05, 0.64, 0.1] {
-            let report = Simulator::new(|x, _, dt| decay(x, count(dt / INNER), INNER))
-                .audit(&subject(dt));
+            let report =
+                Simulator::new(|x, _, dt| decay(x, count(dt / INNER), INNER)).audit(&subject(dt));
             assert_eq!(kinds(&report), ["fixed-inner-step"], "{dt} {}", report.answer);
             assert!(report.findings[0].text.contains(text), "{:?}", report.findings);
             assert!(report.flow.is_none() && report.largest_dt.is_none() && report.order.is_none());
             assert!(report.modes.iter().all(|mode| mode.flow.is_none()));
             assert_eq!(report.verdict.outcome, Outcome::NoFault);
-            assert!(report.answer.contains("Not examined: modes of the system"), "{}", report.answer);
+            assert!(
+                report.answer.contains("Not examined: modes of the system"),
+                "{}",
+                report.answer
+            );
             // The longest step that is no longer than an inner one, by halvings of dt.
             let longest = report.inner_step.unwrap().longest_dt;
             assert!((0.2 * INNER..2.0 * INNER).contains(&longest), "{longest}");

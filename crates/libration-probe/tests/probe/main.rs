@@ -18,6 +18,7 @@ mod measured_gains;
 mod memory;
 #[path = "../../src/noise_free_matrix.rs"]
 mod noise_free_matrix;
+mod observations;
 mod pages;
 #[path = "../../src/rate_ranges.rs"]
 mod rate_ranges;

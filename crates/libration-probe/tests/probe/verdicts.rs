@@ -55,7 +55,9 @@ fn an_energy_that_diverges_in_the_run_of_the_audit_is_a_fault() {
             .audit(&motion([1.0, 0.0], 0.05, is_conservative));
         assert_eq!(kinds(&report), ["energy-drift"], "{}", report.answer);
         assert_eq!(report.verdict.outcome, Outcome::Fault);
-        assert!(report.answer.contains("the energy diverges") && !report.answer.contains("No fault"));
+        assert!(
+            report.answer.contains("the energy diverges") && !report.answer.contains("No fault")
+        );
     }
     // The same motion by a symplectic method.
     let report = Simulator::new(|x, _, dt| verlet(hardening, x, dt))
