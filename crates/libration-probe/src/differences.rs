@@ -232,14 +232,19 @@ fn entry(i: usize, centre: f64, noise: f64, pairs: &[Pair<'_>]) -> (f64, f64) {
     (value, error)
 }
 
-/// The estimates without those of long steps that two of shorter steps contradict, beyond the errors of both.
+/// The estimates without those of long steps that two of shorter steps contradict, beyond the errors of both and the scatter of the
+/// shorter ones: noise makes these differ, but not agree with each other.
 fn uncontradicted(estimates: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    let contradicts = |(a, a_error): (f64, f64), (b, b_error): (f64, f64)| {
-        (a - b).abs() > APART * (a_error + b_error)
+    let scatter = |j: usize| {
+        let other = if j + 1 < estimates.len() { j + 1 } else { j - 1 };
+        (estimates[j].0 - estimates[other].0).abs()
     };
-    let is_contradicted = |k: &usize| {
-        estimates[k + 1..].iter().filter(|later| contradicts(estimates[*k], **later)).count() >= 2
+    let contradicts = |k: usize, j: usize| {
+        let ((a, a_error), (b, b_error)) = (estimates[k], estimates[j]);
+        (a - b).abs() > APART * (a_error + b_error + scatter(j))
     };
+    let is_contradicted =
+        |k: &usize| (k + 1..estimates.len()).filter(|j| contradicts(*k, *j)).count() >= 2;
     let first = (0..estimates.len()).rev().find(is_contradicted).map_or(0, |k| k + 1);
     // Fewer are left by noise alone, whose errors are all too small.
     let first = first.min(estimates.len() - LEAST_STEPS);

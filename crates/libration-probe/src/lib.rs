@@ -43,6 +43,7 @@ mod neutral_modes;
 mod noise_free_matrix;
 mod observed;
 mod operating_point;
+mod operating_point_finding;
 mod page;
 mod prober;
 mod process_group;

@@ -16,7 +16,8 @@ impl ProbeReport {
             .collect();
         let mut sentences = Vec::new();
         let is_fault = self.findings.iter().any(|f| f.kind == FindingKind::OperatingPoint);
-        sentences.extend(self.operating_point.as_ref().filter(|_| !is_fault).and_then(|p| p.sentence()));
+        sentences
+            .extend(self.operating_point.as_ref().filter(|_| !is_fault).and_then(|p| p.sentence()));
         match faults[..] {
             [] => {}
             [first] => sentences.push(format!("One fault: {first}.")),
