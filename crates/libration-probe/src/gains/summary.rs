@@ -121,8 +121,7 @@ impl GainReport {
     fn summary(&self) -> String {
         let integrator = ServoIntegrator::label(self.integrator);
         let of = self.steps();
-        let limits =
-            format!("This servo model has no {NOT_MODELLED}.");
+        let limits = format!("This servo model has no {NOT_MODELLED}.");
         let limits =
             format!("{limits} A gain that holds in free motion may be unstable in contact.");
         if let Some(growth) = self.growth_in_continuous_time {
