@@ -206,7 +206,8 @@ def test_a_leg_on_the_floor_keeps_its_contacts_and_falls_with_weak_servos():
         stiffer.actuator_biasprm[:, 1] *= part * point["run"]["least_factor"]
         data.qpos[:], data.ctrl[:] = start.qpos, start.ctrl
         mujoco.mj_step(stiffer, data, nstep=2500)
-        assert bool(np.all(np.abs(data.qpos[7:] - start.qpos[7:]) < 0.5)) == stands
+        # A leg that falls takes its foot with it.
+        assert (abs(data.qpos[0] - start.qpos[0]) < 0.1) == stands
 
 
 def test_a_spring_that_is_unstable_by_itself_is_not_blamed_on_the_servo():

@@ -96,3 +96,17 @@ fn noise_that_close_points_do_not_show_does_not_contradict_long_steps() {
         }
     }
 }
+
+#[test]
+fn the_dead_zone_of_a_solver_at_its_warm_start_is_no_derivative() {
+    // A solver that returns its warm start for changes below a part of the scale.
+    for (zone, slope) in [(2e-7, 0.3), (1e-8, -0.9), (3e-7, 5.0)] {
+        let dead = |x: f64| if x.abs() < zone { 0.5 * slope * x } else { slope * x };
+        let found = of(|z| vec![dead(z[0]), 3.0 * z[0]], &[0.0], &[1.0]);
+        assert!((found.values[(0, 0)] - slope).abs() < 1e-9, "{zone} {slope}: {found:?}");
+        // Also in a column that has another entry with a bend.
+        let bends = |z: &[f64]| vec![dead(z[0]), bent("compact", z[0], 3e-4)];
+        let found = of(bends, &[0.0], &[1.0]);
+        assert!((found.values[(0, 0)] - slope).abs() < 1e-9, "{zone} {slope}: {found:?}");
+    }
+}
