@@ -54,9 +54,9 @@ def radius(model, point, eps=LENGTHS[1]):
     return float(np.abs(np.linalg.eigvals(matrix)).max()) if np.isfinite(matrix).all() else np.inf
 
 
-def fast_radius(model, point):
+def fast_radius(model, point, eps):
     """Return the largest factor of a mode that is fast beside the step."""
-    factors = np.linalg.eigvals(derivative(model, point, LENGTHS[1]))
+    factors = np.linalg.eigvals(derivative(model, point, eps))
     fast = np.abs(factors[np.abs(factors - 1) > 0.5])
     return float(fast.max(initial=0.0))
 
@@ -148,7 +148,9 @@ def survey(path, words, settle):
             for part in (0.97, 1.03):
                 gains = {"kp": row["kp"], "kv": row["kv"], name: part * limit}
                 changed = with_gains(model, point, servos[row["name"]], **gains)
-                growth.append(radius(changed, point) if at_rest else fast_radius(changed, point))
+                # Shorter for stiff servos, whose forces would reach their limits.
+                length = LENGTHS[1] * min(1.0, 1e4 / max(gains["kp"], 1e-300))
+                growth.append(radius(changed, point, length) if at_rest else fast_radius(changed, point, length))
             limits += 1
             bound = 1 + GROWTH if at_rest else 1.01
             if not growth[0] <= bound < growth[1]:

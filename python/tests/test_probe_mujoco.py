@@ -119,8 +119,9 @@ def test_gravity_is_no_stiffness_of_a_base_that_falls():
     with_gravity, without = (
         gains.mujoco(mujoco.MjModel.from_xml_string(FLOATING.format(gravity=gravity))) for gravity in (-9.81, 0)
     )
-    # Differences of forces of size 1 with a step of 1e-5.
-    assert with_gravity.largest_factor == pytest.approx(without.largest_factor, rel=1e-6) and with_gravity.holds
+    # Off an equilibrium a growth of 1 % per step counts, which is about the root of the relative distance from the limit.
+    assert with_gravity.largest_factor == pytest.approx(without.largest_factor, rel=1e-4) and without.holds
+    assert with_gravity.verdict["outcome"] == "unknown" and "no equilibrium" in with_gravity.answer
 
 
 def test_a_derivative_below_its_error_is_zero():
@@ -139,14 +140,14 @@ def test_the_report_has_the_version_of_mujoco():
     assert report.results["version"] == f"MuJoCo {mujoco.__version__}" and report.results["libration_version"]
 
 
-def test_contacts_are_stated_by_an_audit_and_excluded_by_gains():
+def test_contacts_are_stated_by_an_audit_and_have_a_part_in_gains():
     model = str(EXAMPLES / "foot_contact.xml")
     report = audit(model, keyframe="home")
     assert kinds(report) == ["limited-validity"] and report.holds
     assert "4 contacts are active" in report.answer and "valid only while these contacts stay" in report.answer
     servos = gains.mujoco(model, keyframe="home")
-    assert "4 contacts are active between foot/sole and world/floor (4); gains are those of motion without them" in servos.results["notes"]
-    assert "contact" in servos.answer
+    assert any("4 contacts are active between foot/sole and world/floor (4)" in note for note in servos.results["notes"])
+    assert servos.holds and servos.measured["spectral_radius"] == pytest.approx(report.results["spectral_radius"], abs=1e-8)
 
 
 @pytest.mark.parametrize("samples", [3, 4])

@@ -3,6 +3,7 @@
 use crate::findings::{of_bits, of_report};
 use crate::held_action::HeldAction;
 use crate::memory_finding::{of_measured, of_memory};
+use crate::operating_point_finding::of_operating_point;
 use crate::prober::Prober;
 use crate::{Bits, BlackBox, BlackBoxError, Finding, Memory, ProbeReport, Settling, Subject};
 
@@ -68,7 +69,8 @@ fn examine(
     }
     report.memory = Some(memory);
     // Before all others: they are about this state.
-    let of_point = report.operating_point.as_ref().and_then(|point| point.finding(&report.modes));
+    let of_point =
+        report.operating_point.as_ref().and_then(|p| of_operating_point(p, &report.modes));
     if let Some(finding) = of_point {
         findings.insert(0, finding);
     }

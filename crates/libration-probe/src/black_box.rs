@@ -63,7 +63,9 @@ pub enum BlackBoxError {
         program: String,
     },
     /// An answer took too long.
-    #[error("`{program}` gave no answer within {seconds} s; expected a line for each line, flushed at once")]
+    #[error(
+        "`{program}` gave no answer within {seconds} s; expected a line for each line, flushed at once"
+    )]
     NoAnswer {
         /// The program.
         program: String,

@@ -19,6 +19,8 @@ const QUICK: core::ops::Range<usize> = 5..9;
 /// Further steps of variables whose derivatives have not settled, and the error relative to a row from which they have not.
 const MORE_STEPS: usize = 5;
 const SETTLED: f64 = 1e-5;
+/// Steps that are longer than the dead zone of a solver of constraints, some 10⁻⁷ of the scale in MuJoCo.
+const TRUSTED: usize = 9;
 /// Errors by which estimates of longer and shorter steps may be apart.
 const APART: f64 = 3.0;
 /// Steps at which the slopes on both sides are compared.
@@ -213,7 +215,8 @@ fn entry(i: usize, centre: f64, noise: f64, pairs: &[Pair<'_>]) -> (f64, f64) {
             bends.push(bend);
         }
     }
-    let mut estimates = uncontradicted(&estimates);
+    let trusted = pairs.iter().filter(|pair| pair.step < TRUSTED).count();
+    let mut estimates = consistent(&estimates, trusted);
     estimates.sort_by(|a, b| a.1.total_cmp(&b.1));
     estimates.truncate(LEAST_STEPS);
     let (value, mut error) = estimates[0];
@@ -232,16 +235,26 @@ fn entry(i: usize, centre: f64, noise: f64, pairs: &[Pair<'_>]) -> (f64, f64) {
     (value, error)
 }
 
-/// The estimates without those of long steps that two of shorter steps contradict, beyond the errors of both.
-fn uncontradicted(estimates: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    let contradicts = |(a, a_error): (f64, f64), (b, b_error): (f64, f64)| {
-        (a - b).abs() > APART * (a_error + b_error)
+/// The estimates without those of long steps that two of shorter steps contradict, beyond the errors of both and the scatter of the
+/// shorter ones: noise makes these differ, but not agree with each other. The first `trusted` ones are of steps that are long beside the
+/// dead zone of a solver, which returns its warm start there; the others must agree with them.
+fn consistent(estimates: &[(f64, f64)], trusted: usize) -> Vec<(f64, f64)> {
+    if trusted < LEAST_STEPS {
+        return estimates.to_vec();
+    }
+    let scatter = |j: usize| {
+        let other = if j + 1 < trusted { j + 1 } else { j - 1 };
+        (estimates[j].0 - estimates[other].0).abs()
     };
-    let is_contradicted = |k: &usize| {
-        estimates[k + 1..].iter().filter(|later| contradicts(estimates[*k], **later)).count() >= 2
+    let contradicts = |k: usize, j: usize| {
+        let ((a, a_error), (b, b_error)) = (estimates[k], estimates[j]);
+        (a - b).abs() > APART * (a_error + b_error + scatter(j))
     };
-    let first = (0..estimates.len()).rev().find(is_contradicted).map_or(0, |k| k + 1);
+    let is_contradicted =
+        |k: &usize| (k + 1..trusted).filter(|j| contradicts(*k, *j)).count() >= 2;
+    let first = (0..trusted).rev().find(is_contradicted).map_or(0, |k| k + 1);
     // Fewer are left by noise alone, whose errors are all too small.
-    let first = first.min(estimates.len() - LEAST_STEPS);
-    estimates[first..].to_vec()
+    let first = first.min(trusted - LEAST_STEPS);
+    let agrees = |k: &usize| *k < trusted || !contradicts(*k, trusted - 1);
+    (first..estimates.len()).filter(agrees).map(|k| estimates[k]).collect()
 }

@@ -45,6 +45,7 @@ mod noise_free_matrix;
 mod observation_age;
 mod observed;
 mod operating_point;
+mod operating_point_finding;
 mod page;
 mod prober;
 mod process_group;

@@ -46,9 +46,8 @@ fn without_neutral(plant: &Matrices) -> WithoutNeutral {
             own - of_pivots.sum::<f64>()
         })
     };
-    let columns = |matrix: &Matrix| {
-        Matrix::from_fn(matrix.rows(), kept.len(), |i, j| matrix[(i, kept[j])])
-    };
+    let columns =
+        |matrix: &Matrix| Matrix::from_fn(matrix.rows(), kept.len(), |i, j| matrix[(i, kept[j])]);
     let a = columns(&projected(&plant.a));
     let errors = columns(&plant.a_errors);
     let a_errors = Matrix::from_fn(kept.len(), kept.len(), |i, j| errors[(kept[i], j)]);
@@ -66,9 +65,7 @@ fn null_space(a: &Matrix) -> Vec<(usize, Vec<f64>)> {
     while done < n {
         let free = (0..n).filter(|j| !pivots.contains(j));
         let places = free.flat_map(|j| (done..n).map(move |i| (i, j)));
-        let largest = places.max_by(|a, b| {
-            rows[a.0][a.1].abs().total_cmp(&rows[b.0][b.1].abs())
-        });
+        let largest = places.max_by(|a, b| rows[a.0][a.1].abs().total_cmp(&rows[b.0][b.1].abs()));
         let Some((i, j)) = largest.filter(|(i, j)| rows[*i][*j].abs() > least) else { break };
         rows.swap(i, done);
         let pivot: Vec<f64> = rows[done].iter().map(|x| x / rows[done][j]).collect();

@@ -3,9 +3,6 @@
 use libration_report::notation::number;
 use serde::{Deserialize, Serialize};
 
-use crate::modes::ProbedMode;
-use crate::{Finding, FindingKind};
-
 /// Part of the largest change of a near equilibrium up to which the first sentence does not mention it.
 const SMALL: f64 = 0.02;
 
@@ -88,9 +85,8 @@ impl OperatingPoint {
     /// The first sentence about an equilibrium that is not quite the request; none if it is.
     pub fn sentence(&self) -> Option<String> {
         let residual = number(self.residual, 1);
-        (!self.is_small()).then(|| {
-            format!("The equilibrium is {} (residual force {residual}).", self.distance())
-        })
+        (!self.is_small())
+            .then(|| format!("The equilibrium is {} (residual force {residual}).", self.distance()))
     }
 
     /// What stands, in a part of a sentence; empty if the run stands.
@@ -112,37 +108,6 @@ impl OperatingPoint {
             ),
             None => ", and no servo holds a position".into(),
         }
-    }
-
-    /// The fault of an equilibrium that is not what was requested, or that does not hold.
-    pub(crate) fn finding(&self, modes: &[ProbedMode]) -> Option<Finding> {
-        let fault = |text| Some(Finding::fault(FindingKind::OperatingPoint, text));
-        let remedy = self.remedy();
-        if self.is_far() {
-            return fault(format!(
-                "the audited state is not the requested one: the only equilibrium that was found is {}{remedy}",
-                self.distance()
-            ));
-        }
-        if !self.run.stands {
-            return fault(format!(
-                "the model does not hold the requested state: the equilibrium is {}{remedy}",
-                self.distance()
-            ));
-        }
-        let leading = modes.first()?;
-        let grows = |rate: f64| rate > 10.0 * leading.error;
-        let of_system = leading.flow.filter(|flow| grows(flow.growth_rate))?;
-        (grows(leading.step.growth_rate) && self.run.tried_up_to >= 1.0).then(|| {
-            Finding::fault(
-                FindingKind::OperatingPoint,
-                format!(
-                    "the equilibrium near the request is unstable in the system itself: a mode grows at {} 1/s ({}), whatever the step",
-                    number(of_system.growth_rate, 3),
-                    leading.names()
-                ),
-            )
-        })
     }
 }
 

@@ -66,11 +66,7 @@ pub(crate) fn step_equilibrium(
 }
 
 /// The change of a state in a step, and its norm in units of the scales.
-fn change(
-    prober: &mut Prober<'_>,
-    x: &[f64],
-    dt: f64,
-) -> Result<(Vec<f64>, f64), BlackBoxError> {
+fn change(prober: &mut Prober<'_>, x: &[f64], dt: f64) -> Result<(Vec<f64>, f64), BlackBoxError> {
     let subject = prober.subject;
     let next = prober.step(&row(x), &row(&subject.action), dt)?;
     let change: Vec<f64> = (0..x.len()).map(|i| next[(0, i)] - x[i]).collect();

@@ -110,8 +110,16 @@ pub(crate) fn _probe(
     let wrong = |error: &dyn core::fmt::Display| value_error(error.to_string());
     let subject = Description::parse(description).and_then(Description::subject);
     let subject = subject.map_err(|error| wrong(&error))?;
-    let mut black_box =
-        PythonStep { py, step, observe, energy, restart, set_gains: None, is_batched: batched, raised: None };
+    let mut black_box = PythonStep {
+        py,
+        step,
+        observe,
+        energy,
+        restart,
+        set_gains: None,
+        is_batched: batched,
+        raised: None,
+    };
     match probe(&mut black_box, &subject) {
         Ok(report) => {
             let json = serde_json::to_string(&report).map_err(|error| wrong(&error))?;

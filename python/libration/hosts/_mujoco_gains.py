@@ -14,7 +14,7 @@ from .._settings import count, positive
 from ._mujoco_names import name_of, number_of_actuators, state_names
 from ._mujoco_operating_point import servos_of
 from ._mujoco_point import copy_of, model_of
-from ._mujoco_servos import mujoco_servos
+from ._mujoco_servos import NO_GAINS, mujoco_servos
 from .host import Host
 from .mujoco import host_at_point
 
@@ -129,6 +129,8 @@ def mujoco_gains(
     described = mujoco_servos(own, point)
     described["dt"] = whole
     if is_own:
-        described.update(notes=[*host.notes, *host.validity], step=description_of(host), servos=gains.described())
+        # Notes on contacts are those of the step, in which they act.
+        of_model = [note for note in described["notes"] if note == NO_GAINS]
+        described.update(notes=[*host.notes, *host.validity, *of_model], step=description_of(host), servos=gains.described())
         described["other_servos"] = [name_of(own, "actuator", k) for k in gains.others]
     return described, host, gains

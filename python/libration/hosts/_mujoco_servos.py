@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 _STEP = 1e-5
 # The error of such a derivative by rounding, for forces of one unit.
 _ROUNDING = 2 * float(np.finfo(np.float64).eps) / _STEP
+NO_GAINS = "no force of an actuator depends on a position: there are no gains of position"
+"""The note on a model without servos."""
 # What notes say of contacts and other constraints.
 _VALID_WHILE = "; the result is valid only while "
 
@@ -57,7 +59,7 @@ def mujoco_servos(
     kp, stiffness = (_without(error, found) for found in _derivatives(own, point, acceleration, positions=True))
     kv, passive = _derivatives(own, point, acceleration, positions=False)
     if not kp.any():
-        notes.append("no force of an actuator depends on a position: there are no gains of position")
+        notes.append(NO_GAINS)
     damping = np.diag(np.array(own.dof_damping, dtype=np.float64))
     integrator = mujoco.mjtIntegrator(own.opt.integrator).name.removeprefix("mjINT_").lower()
     if integrator == "euler" and own.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_EULERDAMP):

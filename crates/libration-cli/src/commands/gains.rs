@@ -45,9 +45,8 @@ pub(crate) fn run(args: &GainsArgs) -> Result<(), Failure> {
     let step = description.step.filter(|_| !args.held_torque);
     if let (Some(child), Some(step)) = (&mut child, step) {
         let subject = step.subject().map_err(Failure::run)?;
-        let measured =
-            MeasuredGains::measure(child, &subject, &description.servos, args.substeps)
-                .map_err(Failure::run)?;
+        let measured = MeasuredGains::measure(child, &subject, &description.servos, args.substeps)
+            .map_err(Failure::run)?;
         report = report.with_measured(measured, &description.other_servos);
     } else if args.mujoco.is_some() {
         report.answer = format!("By a servo model, not by a measured step: {}", report.answer);
@@ -132,15 +131,7 @@ fn describe(report: &GainReport) -> String {
     let _ = writeln!(
         text,
         "\n{:<24} {:>12} {:>12} {:>12} {:>10} {:>12} {:>10} {:>12} {:>12}",
-        "joint",
-        "inertia",
-        "kp",
-        "kv",
-        "wh",
-        "largest wh",
-        "damping",
-        "largest kp",
-        "largest kv"
+        "joint", "inertia", "kp", "kv", "wh", "largest wh", "damping", "largest kp", "largest kv"
     );
     for joint in &report.joints {
         let _ = writeln!(

@@ -64,9 +64,9 @@ pub(super) fn start(
         child.set_deadline(deadline);
     }
     let line = child.description(LOADING).map_err(|error| match error {
-        BlackBoxError::NoAnswer { .. } => {
-            Failure::run(format!("{error} (--timeout); expected a description of the model; help: a longer --timeout"))
-        }
+        BlackBoxError::NoAnswer { .. } => Failure::run(format!(
+            "{error} (--timeout); expected a description of the model; help: a longer --timeout"
+        )),
         BlackBoxError::TimeLimit { .. } => {
             Failure::run(format!("{error} (--time-limit); expected a longer limit"))
         }

@@ -58,11 +58,8 @@ pub(super) fn numbers(report: &GainReport) -> Vec<Highlight> {
 fn exact_radius(report: &GainReport) -> Option<f64> {
     if let Some(measured) = &report.measured {
         let h = report.dt / f64::from(report.substeps);
-        let all: Option<Vec<f64>> = measured
-            .modes
-            .iter()
-            .map(|mode| Some((mode.flow?.growth_rate * h).exp()))
-            .collect();
+        let all: Option<Vec<f64>> =
+            measured.modes.iter().map(|mode| Some((mode.flow?.growth_rate * h).exp())).collect();
         return all?.into_iter().reduce(f64::max);
     }
     let of_mode = |turn: f64, ratio: Option<f64>| {

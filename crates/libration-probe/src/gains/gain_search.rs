@@ -80,7 +80,9 @@ impl Search<'_, '_> {
         let growth = |z: &Complex64| z.norm().ln();
         match self.is_at_rest {
             true => factors.iter().any(|z| growth(z) > self.outside),
-            false => factors.iter().any(|z| growth(z) > GROWTH_ON_A_MOTION && (z - 1.0).norm() > FAST),
+            false => {
+                factors.iter().any(|z| growth(z) > GROWTH_ON_A_MOTION && (z - 1.0).norm() > FAST)
+            }
         }
     }
 

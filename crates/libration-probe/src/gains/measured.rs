@@ -3,10 +3,11 @@
 use core::time::Duration;
 use std::time::Instant;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
+use super::ServoGain;
 use super::gain_search::{ERRORS, Gains, OUTSIDE, Search, by_step_alone};
-use super::report::limit;
+use super::limit_in_json::limit;
 use crate::flow::Flow;
 use crate::linearised_step::LinearisedStep;
 use crate::modes::{ProbedMode, modes};
@@ -18,22 +19,6 @@ use crate::{BlackBox, BlackBoxError, OperatingPoint, Subject};
 const DIFFERENTIABLE: f64 = 0.01;
 /// Time after which no search for the limit of another servo begins.
 const PATIENCE: Duration = Duration::from_secs(90);
-
-/// A servo of a simulator whose gains can be changed.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ServoGain {
-    /// Its name.
-    pub name: String,
-    /// Its gain of position.
-    pub kp: f64,
-    /// Its gain of velocity.
-    pub kv: f64,
-    /// The inertia that it moves with all others free.
-    pub inertia: f64,
-    /// The joint on which it acts; none if there are several.
-    pub joint: Option<String>,
-}
 
 /// A servo with its limits in the measured step, all others as they are.
 #[derive(Clone, Debug, Serialize)]
@@ -138,8 +123,15 @@ impl MeasuredGains {
             servos.iter().map(|servo| servo.kp).collect(),
             servos.iter().map(|servo| servo.kv).collect(),
         );
-        let mut search =
-            Search { prober: &mut prober, kp, kv, dt: subject.dt, is_at_rest, outside: OUTSIDE, is_quick: true };
+        let mut search = Search {
+            prober: &mut prober,
+            kp,
+            kv,
+            dt: subject.dt,
+            is_at_rest,
+            outside: OUTSIDE,
+            is_quick: true,
+        };
         let (outside, neutral_modes) = search.errors(&step.a)?;
         search.outside = outside;
         (report.neutral_modes, report.hidden_growth) = (neutral_modes, outside);
@@ -171,9 +163,8 @@ impl MeasuredGains {
     ) -> Result<(), BlackBoxError> {
         let (kp, kv) = (search.kp.clone(), search.kv.clone());
         if kp.iter().any(|kp| *kp != 0.0) {
-            let scaled = |factor: f64| -> Gains {
-                (kp.iter().map(|kp| kp * factor).collect(), kv.clone())
-            };
+            let scaled =
+                |factor: f64| -> Gains { (kp.iter().map(|kp| kp * factor).collect(), kv.clone()) };
             let all = search.limits(1.0, 1.0, &scaled)?;
             (self.largest_factor, self.least_factor) = (all.most, all.least);
         } else {
@@ -205,4 +196,3 @@ impl MeasuredGains {
         Ok(())
     }
 }
-

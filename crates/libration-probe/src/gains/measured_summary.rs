@@ -23,7 +23,10 @@ impl MeasuredGains {
         } else if let Some(point) = point.filter(|point| point.is_far()) {
             Verdict::unknown(format!("the equilibrium that was found is {}", point.distance()))
         } else if self.grows && (self.equilibrium.holds || self.unstable_without_servos.is_some()) {
-            Verdict::new(Outcome::Unstable, format!("spectral radius {radius} of the measured step"))
+            Verdict::new(
+                Outcome::Unstable,
+                format!("spectral radius {radius} of the measured step"),
+            )
         } else if let Some(point) = point.filter(|point| !point.run.stands) {
             Verdict::unknown(format!("the equilibrium is {}{}", point.distance(), point.remedy()))
         } else if self.grows {
@@ -149,7 +152,8 @@ impl MeasuredGains {
                     number(cut_off(largest, 5), 5),
                     number(given, 5)
                 ));
-            } else if name == "kp" && self.servos.iter().any(|servo| servo.kp > 0.0) && !self.grows {
+            } else if name == "kp" && self.servos.iter().any(|servo| servo.kp > 0.0) && !self.grows
+            {
                 found.push(format!(
                     "No limit of {name} was found up to {} times the given ones.",
                     number(FAR, 4)

@@ -2,9 +2,10 @@
 
 use libration::linear::{Matrix, eigenvalues};
 use libration_report::verdict::Verdict;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use super::gain_limits::GainLimits;
+use super::limit_in_json::limit;
 use super::measured::MeasuredGains;
 use super::servo_mode::{ServoMode, modes};
 use super::stable_factors::{StableFactors, growth, is_stable};
@@ -108,13 +109,6 @@ pub struct IntegratorRow {
     pub spectral_radius: f64,
 }
 
-pub(super) fn limit<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-    match value.is_finite() {
-        true => serializer.serialize_some(value),
-        false => serializer.serialize_none(),
-    }
-}
-
 /// Whether the gains of servos hold at steps of `dt` seconds in `substeps` parts, by the servo model.
 pub fn gains(
     servos: &Servos,
@@ -216,8 +210,7 @@ fn joint_row(
     let damping = kv + alone.damping[(0, 0)];
     let damping_ratio = (omega > 0.0).then(|| damping / inertia / (2.0 * omega));
     // Longer steps change ωh at the same damping ratio.
-    let longest =
-        StableFactors::search(|factor| alone.period(integrator, length * factor, parts));
+    let longest = StableFactors::search(|factor| alone.period(integrator, length * factor, parts));
     let step = |servos: &Servos| servos.period(integrator, length, parts);
     // The whole row of a gain that is there; the entry of the joint of one that is not.
     let largest_kp = match kp {

@@ -31,7 +31,11 @@ pub struct ServoMode {
 }
 
 /// The modes, the fastest first. `step` is the matrix of a step of a length, and `h` the length.
-pub(super) fn modes(servos: &Servos, step: impl Fn(f64) -> Option<Matrix>, h: f64) -> Vec<ServoMode> {
+pub(super) fn modes(
+    servos: &Servos,
+    step: impl Fn(f64) -> Option<Matrix>,
+    h: f64,
+) -> Vec<ServoMode> {
     let Ok(plant) = servos.plant() else { return Vec::new() };
     let details = plant.mode_details();
     // Each mode with its place among all eigenvalues; of a pair both.

@@ -59,9 +59,10 @@ impl GainReport {
                 Outcome::Unstable,
                 format!("the motion grows at {} 1/s in continuous time", number(growth, 5)),
             ),
-            None if self.holds => {
-                Verdict::new(Outcome::Stable, format!("spectral radius {radius} of the servo model"))
-            }
+            None if self.holds => Verdict::new(
+                Outcome::Stable,
+                format!("spectral radius {radius} of the servo model"),
+            ),
             None => Verdict::new(
                 Outcome::Unstable,
                 format!("spectral radius {radius} of the servo model"),
@@ -89,7 +90,9 @@ impl GainReport {
         match (self.least_factor, self.largest_factor) {
             (0.0, _) => String::new(),
             (_, f64::INFINITY) => {
-                format!(" With this step gains of position hold from {least} times the given ones on.")
+                format!(
+                    " With this step gains of position hold from {least} times the given ones on."
+                )
             }
             (_, most) => format!(
                 " With {} and this step gains of position hold from {least} to {} times the given ones.",
@@ -103,7 +106,9 @@ impl GainReport {
     pub(super) fn factor(&self) -> String {
         match self.largest_factor {
             x if x.is_nan() => ".".to_owned(),
-            f64::INFINITY if self.holds => "; no larger gain of position was found that does not.".to_owned(),
+            f64::INFINITY if self.holds => {
+                "; no larger gain of position was found that does not.".to_owned()
+            }
             f64::INFINITY => ".".to_owned(),
             0.0 => "; no gain of position does.".to_owned(),
             factor => {
@@ -116,7 +121,7 @@ impl GainReport {
     fn summary(&self) -> String {
         let integrator = ServoIntegrator::label(self.integrator);
         let of = self.steps();
-        let limits = format!("{}.", capitalised(&format!("{NOT_MODELLED} are not in this servo model")));
+        let limits = format!("This servo model has no {NOT_MODELLED}.");
         let limits =
             format!("{limits} A gain that holds in free motion may be unstable in contact.");
         if let Some(growth) = self.growth_in_continuous_time {
@@ -199,8 +204,4 @@ impl GainReport {
             None => format!(" No number of substeps up to {MOST_SUBSTEPS} holds them."),
         }
     }
-}
-
-fn capitalised(text: &str) -> String {
-    crate::summary::capitalised(text)
 }

@@ -220,7 +220,9 @@ fn the_largest_kv_is_that_of_its_characteristic_polynomial() {
 
 #[test]
 fn a_step_that_a_spring_of_a_joint_makes_unstable_is_not_blamed_on_a_servo() {
-    for (stiffness, damping) in [("1e6", "0"), ("5e4", "30"), ("0", "500"), ("4.1e4", "0"), ("1e9", "1")] {
+    for (stiffness, damping) in
+        [("1e6", "0"), ("5e4", "30"), ("0", "500"), ("4.1e4", "0"), ("1e9", "1")]
+    {
         let text = format!(
             r#"{{"mass": [1, 1], "kp": [10, 10], "stiffness": [0, {stiffness}], "damping": [0, {damping}]}}"#
         );
@@ -247,7 +249,11 @@ fn held_torques_have_the_limits_of_a_constant_force_over_all_substeps() {
         let of_trace = if c > 0.5 { (4.0 - 2.0 * d) / (2.0 * c - 1.0) } else { f64::INFINITY };
         let wanted = of_determinant.min(of_trace) * m / (dt * dt);
         close(found.joints[0].largest_kp, wanted, 1e-6);
-        assert!(found.answer.contains("torques computed once per step and held"), "{}", found.answer);
+        assert!(
+            found.answer.contains("torques computed once per step and held"),
+            "{}",
+            found.answer
+        );
         let anew = report(&text.replace("held", "each-substep"), dt, n, "symplectic-euler");
         let h = dt / f64::from(n);
         close(anew.joints[0].largest_kp, (4.0 - 2.0 * h * kv / m) * m / (h * h), 1e-6);
@@ -263,6 +269,9 @@ fn a_verdict_of_a_servo_model_says_what_it_does_not_have() {
         let found = report(text, 0.01, 1, "symplectic-euler");
         assert_eq!(found.verdict.is_good(), found.holds);
         assert!(found.verdict.not_examined[0].contains("contacts"));
-        assert_eq!(serde_json::to_value(&found).unwrap()["verdict"]["not_examined"][0], found.verdict.not_examined[0]);
+        assert_eq!(
+            serde_json::to_value(&found).unwrap()["verdict"]["not_examined"][0],
+            found.verdict.not_examined[0]
+        );
     }
 }

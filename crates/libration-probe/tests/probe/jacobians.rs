@@ -78,3 +78,35 @@ fn a_bend_is_resolved_beside_noise_as_that_of_a_solver() {
         assert!(found.errors[(0, 0)] < 9e-3, "{name}: {found:?}");
     }
 }
+
+#[test]
+fn noise_that_close_points_do_not_show_does_not_contradict_long_steps() {
+    let hash = |x: f64| {
+        let bits = (x * 2.0_f64.powi(30)).round().to_bits().wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        (bits.rotate_left(31).wrapping_mul(0xD6E8_FEB8_6659_FD93) >> 11) as f64
+            / (1_u64 << 53) as f64
+            - 0.5
+    };
+    for size in [1e-10, 1e-9, 1e-8] {
+        for slope in [-0.9, 0.3, 7.0] {
+            let found = of(|z| vec![slope * z[0] + size * hash(z[0])], &[0.1], &[1.0]);
+            // Some differences of the noise over steps of 1/16 to 1/1024.
+            let error = (found.values[(0, 0)] - slope).abs();
+            assert!(error < 1e4 * size, "{size} {slope}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn the_dead_zone_of_a_solver_at_its_warm_start_is_no_derivative() {
+    // A solver that returns its warm start for changes below a part of the scale.
+    for (zone, slope) in [(2e-7, 0.3), (1e-8, -0.9), (3e-7, 5.0)] {
+        let dead = |x: f64| if x.abs() < zone { 0.5 * slope * x } else { slope * x };
+        let found = of(|z| vec![dead(z[0]), 3.0 * z[0]], &[0.0], &[1.0]);
+        assert!((found.values[(0, 0)] - slope).abs() < 1e-9, "{zone} {slope}: {found:?}");
+        // Also in a column that has another entry with a bend.
+        let bends = |z: &[f64]| vec![dead(z[0]), bent("compact", z[0], 3e-4)];
+        let found = of(bends, &[0.0], &[1.0]);
+        assert!((found.values[(0, 0)] - slope).abs() < 1e-9, "{zone} {slope}: {found:?}");
+    }
+}

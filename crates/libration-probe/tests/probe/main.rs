@@ -4,6 +4,7 @@
 
 use libration_probe::Rates;
 
+mod child_start;
 #[path = "../../src/gains/command_option.rs"]
 mod command_option;
 #[path = "../../src/decay.rs"]
@@ -16,6 +17,7 @@ mod inner_steps;
 mod jacobians;
 mod measured_gains;
 mod memory;
+mod neutral;
 #[path = "../../src/noise_free_matrix.rs"]
 mod noise_free_matrix;
 mod observations;

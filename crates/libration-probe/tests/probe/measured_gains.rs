@@ -102,7 +102,8 @@ fn close(found: f64, wanted: f64) {
 
 #[test]
 fn limits_of_a_measured_step_are_those_of_its_characteristic_polynomial() {
-    for (spring, kp, kv) in [(0.0, 100.0, 3.0), (50.0, 1e4, 10.0), (0.0, 2e4, 0.0), (7.0, 0.0, 5.0)] {
+    for (spring, kp, kv) in [(0.0, 100.0, 3.0), (50.0, 1e4, 10.0), (0.0, 2e4, 0.0), (7.0, 0.0, 5.0)]
+    {
         let found = measured(Sliders::new(&[spring], &[kp], &[kv]), DT);
         assert!(found.holds, "{}", found.answer);
         let of_both = 4.0 * 2.0 / (DT * DT);

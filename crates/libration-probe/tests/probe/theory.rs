@@ -295,7 +295,6 @@ fn the_search_for_a_limit_ends_where_longer_steps_have_no_equilibrium() {
     let report = Simulator::new(slips).audit(&subject);
     let limit = report.largest_dt.as_ref().unwrap();
     assert_eq!(limit.dt, None);
-    // Trials grow by a quarter.
     assert!((0.047..=0.059).contains(&limit.tried_up_to), "{limit:?}");
     assert!(report.answer.contains("no equilibrium of a step of"), "{}", report.answer);
 }

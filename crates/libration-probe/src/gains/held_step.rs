@@ -1,0 +1,54 @@
+//! Steps of servos whose torques are held over substeps.
+
+use libration::linear::{Matrix, Signal};
+
+use super::{ServoIntegrator, Servos, Torque};
+
+impl Servos {
+    /// The matrix of a substep, or with held torques of all `substeps` of a time step; none if it is not finite.
+    pub(super) fn period(
+        &self,
+        integrator: ServoIntegrator,
+        dt: f64,
+        substeps: u32,
+    ) -> Option<Matrix> {
+        let h = dt / f64::from(substeps);
+        match self.torque {
+            Torque::EachSubstep => self.step(integrator, h),
+            Torque::Held => self.held_step(integrator, h, substeps),
+        }
+    }
+
+    /// Substeps under the torques `−K_p q − K_v v` of their beginning.
+    fn held_step(&self, integrator: ServoIntegrator, h: f64, substeps: u32) -> Option<Matrix> {
+        let n = self.joints.len();
+        // A constant torque moves as a joint without motion whose position it is.
+        let (mut stiffness, mut mass) = (Matrix::zeros(2 * n, 2 * n), Matrix::identity(2 * n));
+        let mut damping = Matrix::zeros(2 * n, 2 * n);
+        mass.set_block((0, 0), &self.mass);
+        stiffness.set_block((0, 0), &self.stiffness);
+        stiffness.set_block((0, n), &Matrix::identity(n).scaled(-1.0));
+        damping.set_block((0, 0), &self.damping);
+        let none = Matrix::zeros(2 * n, 2 * n);
+        let joints = Signal::numbered("q", 2 * n);
+        let torque = Torque::EachSubstep;
+        let whole = Servos { joints, mass, kp: none.clone(), kv: none, stiffness, damping, torque };
+        let substep = whole.step(integrator, h)?;
+        let mut all = Matrix::identity(4 * n);
+        for _ in 0..substeps {
+            all = &substep * &all;
+        }
+        // Positions and velocities of the joints, and the torques at the beginning.
+        let part = |columns: usize| {
+            let mut rows = Matrix::zeros(2 * n, n);
+            rows.set_block((0, 0), &all.block((0, columns), (n, n)));
+            rows.set_block((n, 0), &all.block((2 * n, columns), (n, n)));
+            rows
+        };
+        let (of_q, of_v, of_torque) = (part(0), part(2 * n), part(n));
+        let mut step = Matrix::zeros(2 * n, 2 * n);
+        step.set_block((0, 0), &of_q.plus(&(&of_torque * &self.kp).scaled(-1.0)));
+        step.set_block((0, n), &of_v.plus(&(&of_torque * &self.kv).scaled(-1.0)));
+        Some(step).filter(Matrix::is_finite)
+    }
+}
