@@ -3,9 +3,7 @@
 use std::collections::BTreeMap;
 
 use libration::Method;
-use libration::linear::{LoopStability, StabilityOutcome};
 use libration::live::Setting;
-use libration_analyze::linear_analysis::loop_verdict;
 use libration_report::notation::cut_off;
 use libration_report::verdict::{Outcome, Verdict};
 use serde::Serialize;
@@ -123,43 +121,6 @@ pub struct FloatChoice {
 }
 
 impl LoopAdvice {
-    /// The verdict on a loop; `is_kept` is whether an integrator keeps the tolerance.
-    pub(super) fn judged(&self, tolerance: &ToleranceAnswer, is_kept: bool) -> Verdict {
-        let combined = &self.combined;
-        let of_loop = loop_verdict(&LoopStability {
-            // Beside the edge the exact limits decide.
-            outcome: match combined.growth {
-                growth if growth < 0.0 => StabilityOutcome::Stable,
-                growth if growth > 0.0 => StabilityOutcome::Unstable,
-                _ => StabilityOutcome::Undecided,
-            },
-            growth: combined.growth,
-        });
-        match () {
-            () if !of_loop.is_good() => of_loop,
-            () if combined.is_contradicted() => {
-                Verdict::unknown("the simulation contradicts the theory of the loop")
-            }
-            () if self.exceeds_tolerated_cost(tolerance) => {
-                let rise =
-                    combined.cost_increase.map_or("infinite".into(), |rise| format!("{rise:.4e}"));
-                Verdict::new(
-                    Outcome::Exceeds,
-                    format!("rise of the cost {rise}, tolerance {:e}", tolerance.most),
-                )
-            }
-            () if !is_kept => Verdict::new(
-                Outcome::Exceeds,
-                format!(
-                    "no tried step keeps the {} error below {:e}",
-                    tolerance.of, tolerance.most
-                ),
-            ),
-            () if combined.simulated.is_none() => of_loop.without("a simulation of the loop"),
-            () => of_loop,
-        }
-    }
-
     /// Whether the cost of the loop exceeds a tolerance of the cost.
     pub(super) fn exceeds_tolerated_cost(&self, tolerance: &ToleranceAnswer) -> bool {
         let rise = self.combined.cost_increase;

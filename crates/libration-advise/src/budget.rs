@@ -1,12 +1,12 @@
 //! Budgets of the imperfections of a loop.
 
 use libration::linear::{LatencyWindow, LinearLoopError, LoopMode, LoopTiming};
-use libration_report::notation::{cut_off, cut_up};
 use libration_work::Work;
 use serde::Serialize;
 
 use super::AdviseError;
 use super::imperfection::Imperfection;
+use super::limit_text::{rounded_down, tried_size};
 use super::limits::Limit;
 use super::loops::LoopError;
 use super::motion::describe_motion;
@@ -64,8 +64,7 @@ impl Budget {
         match limit {
             Some(limit) => rounded_down(limit),
             None if self.tried_up_to == 0.0 => "too many states".to_owned(),
-            None if self.tried_up_to < 1e-2 => format!("above {}", rounded_down(self.tried_up_to)),
-            None => format!("above {:.3}", cut_to(self.tried_up_to, 3, cut_off)),
+            None => format!("above {}", tried_size(self.tried_up_to)),
         }
     }
 
@@ -88,32 +87,6 @@ fn later_windows(windows: Option<&[LatencyWindow]>, scale: f64) -> Vec<Stability
 /// A number with six decimals, or with four digits where six decimals show fewer than three.
 pub fn rounded(x: f64) -> String {
     if x == 0.0 || x.abs() >= 1e-4 { format!("{x:.6}") } else { format!("{x:.3e}") }
-}
-
-/// An upper limit as [`rounded`] shows it, but not beyond itself.
-pub fn rounded_down(limit: f64) -> String {
-    in_digits(limit, cut_off)
-}
-
-/// A lower limit as [`rounded`] shows it, but not beyond itself.
-pub(super) fn rounded_up(limit: f64) -> String {
-    in_digits(limit, cut_up)
-}
-
-fn in_digits(limit: f64, cut: fn(f64, usize) -> f64) -> String {
-    match limit == 0.0 || limit.abs() >= 1e-4 {
-        true => format!("{:.6}", cut_to(limit, 6, cut)),
-        false => format!("{:.3e}", cut(limit, 4)),
-    }
-}
-
-/// A limit cut to so many decimals.
-fn cut_to(limit: f64, decimals: usize, cut: fn(f64, usize) -> f64) -> f64 {
-    let before = limit.abs().log10().floor();
-    match before.is_finite() {
-        true => cut(limit, (before as i32 + 1 + decimals as i32).max(1) as usize),
-        false => limit,
-    }
 }
 
 /// An imperfection with its channel, in words.
@@ -146,7 +119,6 @@ impl TimedLoop {
     /// The motions that do not decay without imperfections, in words; none if the loop is stable.
     pub(super) fn unstable_modes(&self) -> Result<Option<Vec<String>>, LinearLoopError> {
         let none = self.ideal();
-        // Of systems of the catalogue the exact limits decide beside the edge.
         let is_stable = match self.names_states {
             true => self.stability(&none)?.is_stable(),
             false => self.linear.is_stable(&none)?,

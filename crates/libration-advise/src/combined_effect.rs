@@ -181,25 +181,6 @@ impl TimedLoop {
 }
 
 impl<M: PlantModel> Loop<M> {
-    /// The growth of a loop that is unstable without imperfections; it has no cost and no margin.
-    pub(super) fn combined_effect_unstable(
-        &self,
-        request: &Request,
-    ) -> Result<CombinedEffect, AdviseError> {
-        let timing = self.timed.ideal();
-        Ok(CombinedEffect {
-            growth: self.timed.growth(&timing).map_err(LoopError::from)?,
-            margin: None,
-            margin_tried_up_to: None,
-            ideal_cost: f64::INFINITY,
-            cost: None,
-            cost_increase: None,
-            simulated: None,
-            region_of_attraction: None,
-            command: self.command(&timing, request),
-        })
-    }
-
     /// The effect of all stated imperfections.
     pub(super) fn combined_effect(
         &self,

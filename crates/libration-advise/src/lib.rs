@@ -1,6 +1,7 @@
 //! Advice for simulations and control loops: the largest step of each integrator, and the budget of each timing imperfection.
 
 mod advice;
+mod advice_verdict;
 mod advised_system;
 mod advisor;
 #[cfg(test)]
@@ -16,6 +17,7 @@ mod free_motion;
 mod imperfection;
 mod integrator_choice;
 pub mod jitter_measurement;
+mod limit_text;
 mod limits;
 pub mod linear;
 mod live_setting;
@@ -48,12 +50,13 @@ use thiserror::Error;
 
 pub use advice::{Advice, FloatChoice, LoopAdvice, ToleranceAnswer};
 pub use advised_system::AdvisedSystem;
-pub use budget::{Budget, FirstFailure, rounded, rounded_down};
+pub use budget::{Budget, FirstFailure, rounded};
 pub use combined_effect::{CombinedEffect, SimulatedCost};
 pub use control::{Control, Correction, Law, Regulator};
 pub use file::{DEFAULT, parse};
 pub use imperfection::Imperfection;
 pub use integrator_choice::{IntegratorChoice, SearchExtent};
+pub use limit_text::rounded_down;
 pub use loops::LoopError;
 pub use page::page;
 pub use region_of_attraction::RegionOfAttraction;

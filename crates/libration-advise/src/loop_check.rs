@@ -5,6 +5,7 @@ use libration::linear::{LinearLoopError, LoopTiming};
 use libration_work::Work;
 
 use super::budget::Budget;
+use super::combined_effect::CombinedEffect;
 use super::loops::{Loop, LoopError, PlantModel};
 use super::request::Request;
 use super::stabilising_changes::{StabilisingChanges, rounded_down};
@@ -65,6 +66,25 @@ impl<M: PlantModel> Loop<M> {
         });
         let help = format!("{}{shorter}", remedies.sentence(gains));
         Ok(Some(UnstableLoop { motions, remedies, help }))
+    }
+
+    /// The growth of a loop that is unstable without imperfections; it has no cost and no margin.
+    pub(super) fn combined_effect_unstable(
+        &self,
+        request: &Request,
+    ) -> Result<CombinedEffect, AdviseError> {
+        let timing = self.timed.ideal();
+        Ok(CombinedEffect {
+            growth: self.timed.growth(&timing).map_err(LoopError::from)?,
+            margin: None,
+            margin_tried_up_to: None,
+            ideal_cost: f64::INFINITY,
+            cost: None,
+            cost_increase: None,
+            simulated: None,
+            region_of_attraction: None,
+            command: self.command(&timing, request),
+        })
     }
 
     /// Fails if the period is too short or too long for the motions of the loop.

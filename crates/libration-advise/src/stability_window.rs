@@ -3,7 +3,7 @@
 use libration::linear::{LatencyWindow, LinearLoopError};
 use serde::Serialize;
 
-use super::budget::{rounded_down, rounded_up};
+use super::limit_text::{rounded_down, rounded_up};
 use super::request::{Measure, Tolerance};
 use super::subject::Subject;
 use super::timed_loop::TimedLoop;

@@ -3,10 +3,11 @@
 use libration_report::notation::{cut_off, plural};
 
 use super::advice::{Advice, LoopAdvice, ToleranceAnswer};
-use super::budget::{Budget, rounded_up};
+use super::budget::Budget;
 use super::combined_effect::CombinedEffect;
 use super::control::Control;
 use super::imperfection::Imperfection;
+use super::limit_text::rounded_up;
 use super::loop_simulation::MOST_PERIODS;
 use super::loops::{Loop, PlantModel};
 use super::motion::four_digits;

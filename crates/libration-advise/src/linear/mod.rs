@@ -22,6 +22,7 @@ mod simulated_cost;
 mod stated_deadlines;
 mod stiffness;
 mod summary;
+mod timing_fault;
 
 pub use advice::{ControllerMatrices, Deviation, LinearAdvice, SignalName};
 pub use advisor::advise;

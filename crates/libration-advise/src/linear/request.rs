@@ -11,14 +11,13 @@ use libration::linear::{
 use libration::live::Setting;
 use libration_logs::{StampOptions, read_time_stamps};
 use libration_settings::linear_loop::{Design, LinearLoopTable, OperatingPoint, Part};
-use libration_settings::{
-    Document, Fault, Number, SettingsError, duration, live_settings, suggestions,
-};
+use libration_settings::{Document, Fault, Number, SettingsError, live_settings, suggestions};
 
 use super::clock::clocked;
 use super::redesign_toml::RedesignToml;
 use super::request_file::RequestFile;
 use super::stated_deadlines::StatedDeadlines;
+use super::timing_fault::fault_of_timing;
 use crate::control::{skew_of, uneven};
 use crate::timed_loop::{StatedTiming, TimedLoop};
 
@@ -79,9 +78,6 @@ pub fn parse_changed(
     Ok(LinearRequest { invocation: format!("libration advise --config {file_name}"), ..request })
 }
 
-/// Latency in periods above which one that is refused has the wrong unit. Loops of shorter ones are too large for other reasons.
-const MOST_PERIODS: f64 = 60.0;
-
 /// Periods in s that a request may have.
 const PERIODS: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
@@ -138,26 +134,7 @@ impl LinearRequest {
             is_near_neutral: false,
         };
         let stated = timed.stated().and_then(|stated| timed.linear.size(&stated));
-        stated.map_err(|error| {
-            let StatedTiming { input_latency, output_latency, .. } = &timed.timing;
-            let longest = |all: &[f64]| all.iter().copied().fold(0.0, f64::max);
-            let [of_inputs, of_outputs] = [longest(input_latency), longest(output_latency)];
-            let (key, seconds) = match of_inputs >= of_outputs {
-                true => ("loop.latency", of_inputs),
-                false => ("loop.output-latency", of_outputs),
-            };
-            match error {
-                LinearLoopError::Latency { .. } | LinearLoopError::Size { .. }
-                    if seconds > MOST_PERIODS * period =>
-                {
-                    Fault::new(key, duration::excessive_latency(seconds, period))
-                }
-                LinearLoopError::Latency { .. } | LinearLoopError::Size { .. } => {
-                    Fault::new(key, error.to_string())
-                }
-                _ => Fault::new("loop", error.to_string()),
-            }
-        })?;
+        stated.map_err(|error| fault_of_timing(&error, &timed.timing, period))?;
         let ideal = timed.linear.stability(&timed.ideal());
         timed.is_near_neutral = ideal.is_ok_and(|found| found.is_near_neutral());
         let cost_tolerance = tolerance(file.tolerance)?;

@@ -5,6 +5,7 @@
 
 mod chunk_files;
 mod chunk_order;
+mod delay_check;
 mod episodes;
 mod equation_tables;
 mod error;

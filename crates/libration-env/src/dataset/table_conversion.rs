@@ -11,6 +11,7 @@ use libration_settings::{
     Coordinates, Count, Fault, Number, StartTable, SystemTables, suggestions,
 };
 
+use super::delay_check::check_delays;
 use super::equation_tables::equation_environment;
 use super::settings::{Chunk, Dataset, STEPS};
 use super::system_tables::{EquationsTable, Numbers};
@@ -38,25 +39,6 @@ fn finite(key: &'static str, Number(number): Number) -> Result<f64, Fault> {
         return Ok(number);
     }
     Err(Fault::new(key, format!("`{key}` is {number:?}, but it must be finite")))
-}
-
-/// Checks that a delay of so many steps of `dt` seconds, the least of its kind, ends within an episode of so many.
-fn within_episode(
-    key: &'static str,
-    steps: u32,
-    episode: Option<u64>,
-    dt: f64,
-) -> Result<(), Fault> {
-    match episode {
-        Some(episode) if steps > 0 && u64::from(steps) >= episode => {
-            let [late, lasts] = [f64::from(steps) * dt, episode as f64 * dt];
-            let message = format!(
-                "`{key}` is {steps} steps, {late} s, but an episode lasts {episode} steps, {lasts} s; expected less"
-            );
-            Err(Fault::new(key, message))
-        }
-        _ => Ok(()),
-    }
 }
 
 /// Checks that `number` is finite and not negative.
@@ -131,16 +113,7 @@ impl TryFrom<File> for Dataset {
         let delays = Delays { observation: observation?, action: action? };
         let substeps = count("substeps", file.substeps, 1..=1_000_000)? as u32;
         let limit = Some(limit).filter(|&limit| limit > 0);
-        for (key, [least, _]) in
-            [("delays.observation", delays.observation), ("delays.action", delays.action)]
-        {
-            within_episode(
-                key,
-                least,
-                limit.map(|limit| u64::from(limit) * u64::from(substeps)),
-                dt,
-            )?;
-        }
+        check_delays(&delays, limit, substeps, dt)?;
         let environment = match &file.system.equations {
             None => {
                 let (system, actuation) = system(&file.system)?;

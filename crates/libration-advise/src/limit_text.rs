@@ -1,0 +1,58 @@
+//! Limits as text, not beyond themselves.
+
+use libration_report::notation::{cut_off, cut_up};
+
+/// An upper limit as [`rounded`](super::rounded) shows it, but not beyond itself.
+pub fn rounded_down(limit: f64) -> String {
+    in_digits(limit, cut_off)
+}
+
+/// A lower limit as [`rounded`](super::rounded) shows it, but not beyond itself.
+pub(super) fn rounded_up(limit: f64) -> String {
+    in_digits(limit, cut_up)
+}
+
+/// The largest tried size.
+pub(super) fn tried_size(size: f64) -> String {
+    match size < 1e-2 {
+        true => rounded_down(size),
+        false => format!("{:.3}", cut_to(size, 3, cut_off)),
+    }
+}
+
+fn in_digits(limit: f64, cut: fn(f64, usize) -> f64) -> String {
+    match limit == 0.0 || limit.abs() >= 1e-4 {
+        true => format!("{:.6}", cut_to(limit, 6, cut)),
+        false => format!("{:.3e}", cut(limit, 4)),
+    }
+}
+
+/// A limit cut to so many decimals.
+fn cut_to(limit: f64, decimals: usize, cut: fn(f64, usize) -> f64) -> f64 {
+    let before = limit.abs().log10().floor();
+    match before.is_finite() {
+        true => cut(limit, (before as i32 + 1 + decimals as i32).max(1) as usize),
+        false => limit,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_in_decimals_are_not_beyond_themselves() {
+        for (limit, down, up) in [
+            (0.153_248_96, "0.153248", "0.153249"),
+            (3.135_904_99, "3.135904", "3.135905"),
+            (0.25, "0.250000", "0.250000"),
+            (12.345_678_9, "12.345678", "12.345679"),
+            (7.306_194_4e-5, "7.306e-5", "7.307e-5"),
+            (0.0, "0.000000", "0.000000"),
+        ] {
+            assert_eq!([rounded_down(limit), rounded_up(limit)], [down, up], "{limit}");
+        }
+        // The limit of a fast clock, toward zero.
+        assert_eq!(rounded_down(-0.123_456_78), "-0.123456");
+    }
+}
