@@ -16,8 +16,8 @@ const NEIGHBOUR: f64 = 1e-3;
 /// The part of the scale of a state up to which a coordinate may be the rounding of zero.
 const SMALL: f64 = 1e-6;
 
-/// The largest number of unknowns whose slopes are compared with those beside the equilibrium.
-const MOST_COMPARED: usize = 64;
+/// The largest number of unknowns of the damped search, and of equilibria whose neighbours are examined: both decompose matrices.
+const MOST_UNKNOWNS: usize = 64;
 
 /// A state at which the accelerations are zero.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +49,11 @@ impl Equilibrium {
         unknowns: &[usize],
     ) -> Result<Equilibrium, Equilibrium> {
         let search = EquilibriumSearch::new(dynamics, start, unknowns);
-        let [newton, damped] = [search.newton(start), search.damped(start)];
+        let newton = search.newton(start);
+        let damped = match unknowns.len() > MOST_UNKNOWNS {
+            true => newton.clone(),
+            false => search.damped(start),
+        };
         let distance = |state: &[f64]| search.distance(state);
         let rests = |state: &Vec<f64>| search.rests(state);
         // The same to rounding: that of Newton's method, which is polished.
@@ -59,8 +63,9 @@ impl Equilibrium {
             (true, _) => newton,
             (false, true) => damped,
             (false, false) => {
-                let flow = search.damped(&search.flow());
-                match rests(&flow) {
+                let flow = search.newton(&search.flow());
+                // Near a pole of the accelerations a small shift causes all of them.
+                match rests(&flow) && search.residual(&flow) <= search.residual(start) {
                     true => flow,
                     false => return Err(Equilibrium::at(&search, newton)),
                 }
@@ -93,12 +98,16 @@ impl Equilibrium {
         unknowns: &[usize],
         sums: &ConservedSums,
     ) -> Option<Equilibrium> {
+        if unknowns.len() > MOST_UNKNOWNS {
+            return None;
+        }
         let search = EquilibriumSearch::new(dynamics, start, unknowns).with_sums(sums)?;
         let mut found = search.damped(start);
         if !search.rests(&found) {
             found = search.damped(&search.flow());
         }
-        search.rests(&found).then(|| Equilibrium::polished(&search, found))
+        let rests = search.rests(&found) && search.residual(&found) <= search.residual(start);
+        rests.then(|| Equilibrium::polished(&search, found))
     }
 
     /// A state with its derivatives.
@@ -120,17 +129,16 @@ impl Equilibrium {
         }
         let search = search.from(&state);
         let mut found = Equilibrium::at(&search, state);
-        found.remove_rounding(&search);
-        found.examine_neighbours(&search);
+        if search.unknowns().len() <= MOST_UNKNOWNS {
+            found.remove_rounding(&search);
+            found.examine_neighbours(&search);
+        }
         found
     }
 
     /// Sets derivatives to zero that are not known: they change by their own size within the distance in which the equilibrium may lie.
     fn remove_rounding(&mut self, search: &EquilibriumSearch<'_>) {
         let unknowns = search.unknowns();
-        if unknowns.len() > MOST_COMPARED {
-            return;
-        }
         let distance = search.uncertainty(&self.state);
         let mut change = Matrix::zeros(self.jacobian.rows(), self.jacobian.columns());
         for &place in unknowns {

@@ -32,6 +32,9 @@ pub struct MotionSteps {
 const MOST_STATES: usize = 64;
 const MOST_WORK: usize = 20_000;
 
+/// The most states of a plant whose stable steps are searched at each state of the motion.
+const MOST_SEARCHED: usize = 24;
+
 /// Operations of the motion: less than a second.
 const MOST_OPERATIONS: usize = 1 << 27;
 
@@ -98,8 +101,10 @@ fn largest_stable_step(system: &EquationSystem, method: AnyMethod, state: &[f64]
             if values.iter().any(|value| value.re.abs() > 1e-9 * value.norm()) {
                 return None;
             }
-        } else if values.iter().any(|value| value.re == 0.0 && value.im != 0.0) {
-            // The search in exact arithmetic takes too long at each state.
+        } else if values.len() > MOST_SEARCHED
+            || values.iter().any(|value| value.re == 0.0 && value.im != 0.0)
+        {
+            // A search, in exact arithmetic for the latter, takes too long at each state.
             return None;
         }
     }

@@ -98,7 +98,7 @@ fn conserved_sums_of_the_start_hold_at_the_operating_point() {
     let found = analysis(epidemic, Method::Rk4, 0.01, 100);
     let point = found.operating_point.as_ref().unwrap();
     let [s, i, r] = [0, 1, 2].map(|k| point.states[k].value);
-    assert!(i == 0.0 && (s + r - 1.0).abs() < 1e-12 && point.continuum == 2, "{point:?}");
+    assert!(i == 0.0 && (s + r - 1.0).abs() < 1e-9 && point.continuum == 2, "{point:?}");
     assert!((growth(&found) - (0.5 * s - 0.1)).abs() < 1e-12);
     // A mass that moves freely has no equilibrium with its momentum, so the point is out of its reach.
     let moving = "coordinates = [\"x\"]\nacceleration.x = \"0*x\"\nstart = { x = 1, \"x'\" = 2 }";
@@ -126,7 +126,7 @@ fn stable_steps_along_the_motion_are_those_of_its_fastest_part() {
             Method::VelocityVerlet,
             10.0,
             2.0 / 9.81_f64.sqrt(),
-            0.02,
+            0.05,
         ),
     ] {
         let found = analysis(equations, method, horizon / 50.0, 50);
@@ -154,7 +154,8 @@ fn gyroscopic_plants_have_no_growth_of_their_own_and_known_steps() {
         acceleration.x = \"2*y' + x - (1-m)*(x+m)/((x+m)^2+y^2)^1.5 - m*(x-1+m)/((x-1+m)^2+y^2)^1.5\"\n\
         acceleration.y = \"-2*x' + y - (1-m)*y/((x+m)^2+y^2)^1.5 - m*y/((x-1+m)^2+y^2)^1.5\"\n\
         start = { x = 0.48, y = 0.86 }";
-    for equations in [&turning(10.0, 0.5), &turning(0.9, 5e-5), charge, lagrange] {
+    let (strong, weak) = (turning(10.0, 0.5), turning(0.9, 5e-5));
+    for equations in [strong.as_str(), weak.as_str(), charge, lagrange] {
         for method in [Method::SymplecticEuler, Method::VelocityVerlet, Method::TextbookVerlet] {
             let found = analysis(equations, method, 0.01, 10);
             assert_eq!(growth(&found), 0.0, "{equations}");
@@ -166,7 +167,7 @@ fn gyroscopic_plants_have_no_growth_of_their_own_and_known_steps() {
         let found = analysis(equations, ImplicitMethod::ImplicitMidpoint, 0.01, 10);
         assert_eq!(step(&found, "implicit-midpoint").stable_dt, Some(vec![[Some(0.0), None]]));
     }
-    let verlet = analysis(&turning(10.0, 0.5), Method::VelocityVerlet, 0.01, 10);
+    let verlet = analysis(&strong, Method::VelocityVerlet, 0.01, 10);
     let radius = step(&verlet, "velocity-verlet").spectral_radius.unwrap();
     assert!((radius - 1.0 - 5.350_134_479e-5).abs() < 1e-13, "{radius}");
 }
