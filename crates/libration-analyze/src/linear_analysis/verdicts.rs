@@ -37,9 +37,9 @@ impl LinearVerdicts {
 fn verdict_of_loop(own: &ClosedLoop) -> Verdict {
     let percent = significant(100.0 * own.mean_square_growth.exp_m1().abs(), 4);
     match own.mean_square_growth {
-        growth if growth.abs() <= ROUNDING => Verdict::unknown(
-            "at the limit of stability, second moments neither grow nor fall",
-        ),
+        growth if growth.abs() <= ROUNDING => {
+            Verdict::unknown("at the limit of stability, second moments neither grow nor fall")
+        }
         growth if growth < 0.0 => {
             Verdict::new(Outcome::Stable, format!("second moments fall by {percent} % per period"))
         }

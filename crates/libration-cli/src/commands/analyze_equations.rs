@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use libration_analyze::{AnalyzeError, DEFAULT_STEPS};
 use libration_analyze::equation_analysis::{EquationAnalysis, EquationMotion, analyze};
+use libration_analyze::{AnalyzeError, DEFAULT_STEPS};
 use libration_report::verdict::exit_code;
 use libration_settings::equations::EquationSystem;
 
@@ -13,10 +13,7 @@ use crate::error::Failure;
 use crate::interrupt;
 
 /// Returns the analysis as text or as JSON, and its exit code.
-pub(super) fn run(
-    args: &AnalyzeArgs,
-    system: &EquationSystem,
-) -> Result<(String, u8), Failure> {
+pub(super) fn run(args: &AnalyzeArgs, system: &EquationSystem) -> Result<(String, u8), Failure> {
     let (Some(stepping), Some(dt)) = (args.integrator, args.dt) else {
         return Err(Failure::usage("--integrator and --dt are required with --system"));
     };
