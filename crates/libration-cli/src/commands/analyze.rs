@@ -205,10 +205,12 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
         },
     );
     line("force evaluations", format!("{} a step", analysis.force_evaluations_per_step));
+    let energy = analysis.motion.as_ref().and_then(|motion| motion.energy.as_ref());
     line(
         "largest energy drift",
-        match &analysis.drift {
-            Some(drift) => {
+        match (energy, &analysis.drift) {
+            (Some(energy), _) => summary::energy_change(energy),
+            (None, Some(drift)) => {
                 let stopped = drift.stopped_at_step.map_or_else(String::new, |step| {
                     format!("; the state leaves the range of f64 at step {step}")
                 });
@@ -221,7 +223,7 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
                     drift.max_energy_drift_step, about.steps, drift.max_energy_drift_method
                 )
             }
-            None => "undefined: the energy at the start is zero".into(),
+            (None, None) => "undefined: the energy at the start is zero".into(),
         },
     );
     if let Some(timing) = &analysis.timing {

@@ -39,6 +39,9 @@ const ROUNDING: f64 = 1e-9;
 /// The change of the energy, by the steps and by the system.
 pub(in crate::commands) fn energy_change(energy: &EnergyChange) -> String {
     let EnergyChange { unit, steps, scale, .. } = energy;
+    if !energy.largest.is_finite() {
+        return format!("is not finite after step {}", energy.largest_at_step);
+    }
     let quantity = |x: f64| format!("{} {unit}", significant(x, 3)).trim_end().to_owned();
     let part = |x: f64| match scale {
         Some(scale) => {
