@@ -76,6 +76,8 @@ class Analysis(Answer):
     """Time step in s; of a linear plant None without one."""
     note: str
     """A restriction of the numbers."""
+    verdicts: dict[str, dict[str, Any]]
+    """What is stable or resolved: ``step``, ``motion`` and ``loop`` with ``outcome`` and ``evidence``, as far as they apply."""
 
     # Of one step.
     system: Any
@@ -174,7 +176,7 @@ class Analysis(Answer):
     loop: dict[str, Any] | Any
     """The closed loop; None without a controller."""
     motion: dict[str, Any]
-    """Of a system by equations: order, errors and energy of the integrator."""
+    """Of a system by equations: order, errors and energy of the integrator. Of a nonlinear one of the catalogue: its motion beside the exact one."""
     operating_point: dict[str, Any] | None
     """Of a system by equations: the equilibrium of its plant."""
     steps_along_motion: dict[str, Any]
@@ -194,7 +196,7 @@ class Analysis(Answer):
         ImportError
             Without matplotlib: ``pip install 'libration[plots]'``.
         """
-        if "motion" in self:
+        if "operating_point" in self:
             return plot_equations(self)
         return plot_plant(self) if "modes" in self else plot_step(self)
 

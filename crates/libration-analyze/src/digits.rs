@@ -11,7 +11,8 @@ pub(crate) fn significant(x: f64, digits: usize) -> String {
 /// A number by its difference from one: `1 + 0.05`.
 pub(crate) fn beside_one(difference: f64) -> String {
     match difference {
-        0.0 => "1".to_owned(),
+        // Rounding of eigenvalues.
+        x if x.abs() < 1e-15 => "1".to_owned(),
         x => format!("1 {} {}", if x < 0.0 { "−" } else { "+" }, significant(x.abs(), 5)),
     }
 }

@@ -77,8 +77,7 @@ pub(super) fn follow(
 /// The change of each position and velocity in the time of a step of the request, at the rates of the start.
 fn expected(subject: &MotionSubject<'_>, dt: f64) -> Vec<f64> {
     let degrees = subject.dynamics.degrees();
-    let rates: Vec<f64> =
-        subject.dynamics.accelerations().on::<f64>().run(subject.start).collect();
+    let rates: Vec<f64> = subject.dynamics.accelerations().on::<f64>().run(subject.start).collect();
     let velocities = &subject.start[degrees..2 * degrees];
     let changes = velocities.iter().chain(&rates).map(|rate| (rate * dt).abs());
     changes.map(|change| if change.is_finite() { change } else { 0.0 }).collect()

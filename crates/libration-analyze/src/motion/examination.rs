@@ -129,7 +129,8 @@ pub(crate) fn examine(
             found.states[j].add(number, error);
             found.reference_error = found.reference_error.max(doubt / scale);
             let is_small = error <= SMALL * scale;
-            if !is_small && excess.as_ref().is_none_or(|first| first.step == number && !first.is_known)
+            if !is_small
+                && excess.as_ref().is_none_or(|first| first.step == number && !first.is_known)
             {
                 excess = Some(Excess { step: number, state: j, is_known: doubt <= KNOWN * error });
             }
@@ -150,8 +151,7 @@ fn scales(states: &[MotionState], ranges: &[[f64; 2]]) -> Vec<f64> {
     let range = |state: &MotionState| ranges[state.place][1] - ranges[state.place][0];
     let scale = |state: &MotionState| {
         let group = states.iter().filter(|other| other.is_like(state)).map(range);
-        let part =
-            if state.unit.is_empty() { LEAST_RANGE_WITHOUT_UNIT } else { LEAST_RANGE };
+        let part = if state.unit.is_empty() { LEAST_RANGE_WITHOUT_UNIT } else { LEAST_RANGE };
         let own = range(state).max(part * group.fold(0.0, f64::max));
         let [low, high] = ranges[state.place];
         // Of what does not move at all: its size, or one unit.

@@ -11,8 +11,8 @@ mod step_run;
 use libration::equations::{Dynamics, StepProgram};
 
 pub use energy::EnergyChange;
-pub use examination::{MotionExamination, StateExamination};
 pub(crate) use examination::examine;
+pub use examination::{MotionExamination, StateExamination};
 pub(crate) use step_run::StepRun;
 
 /// Steps of a nonlinear motion without a number in the request: more are a choice of the user, since errors of most motions grow.

@@ -61,7 +61,6 @@ pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, A
     check_turn(request)?;
     check_sizes(request)?;
     let timing = loop_analysis::answer(request)?;
-    let motion = verdicts::motion(request, stop)?;
     let mut analysis = with_system!(
         request.system,
         dimension,
@@ -98,8 +97,8 @@ pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, A
         },
         Err(request.system.entry().wrong_dimension(dimension).into())
     )?;
-    analysis.verdicts = StepVerdicts::new(&analysis, request, motion.as_ref());
-    analysis.motion = motion;
+    analysis.motion = verdicts::motion(request, stop)?;
+    analysis.verdicts = StepVerdicts::new(&analysis, request);
     analysis.newton_residual = implicit_step::residual(request, stop);
     Ok(analysis)
 }

@@ -28,17 +28,13 @@ pub struct StepVerdicts {
 }
 
 impl StepVerdicts {
-    pub(super) fn new(
-        analysis: &Analysis,
-        request: &Request,
-        motion: Option<&MotionExamination>,
-    ) -> Self {
+    pub(super) fn new(analysis: &Analysis, request: &Request) -> Self {
         let closed_loop = analysis.timing.as_ref().and_then(of_loop);
         let is_loop = closed_loop.is_some();
         StepVerdicts {
             closed_loop,
             step: (!is_loop && request.system.is_linear()).then(|| of_step(analysis, request)),
-            motion: motion.map(|motion| motion.verdict.clone()),
+            motion: analysis.motion.as_ref().map(|motion| motion.verdict.clone()),
         }
     }
 
@@ -77,7 +73,8 @@ fn of_step(analysis: &Analysis, request: &Request) -> Verdict {
         Some(false) if exact > 0.0 => {
             let outcome =
                 if excess <= FASTER * exact { Outcome::Stable } else { Outcome::Unstable };
-            let evidence = format!("{motions}, and those of exact steps {}", change_per_step(exact));
+            let evidence =
+                format!("{motions}, and those of exact steps {}", change_per_step(exact));
             Verdict::new(outcome, evidence)
         }
         Some(false) => Verdict::new(Outcome::Unstable, motions),

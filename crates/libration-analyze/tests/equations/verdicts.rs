@@ -65,7 +65,7 @@ fn a_step_that_is_unstable_says_so_whatever_three_halved_steps_agree_on() {
         (force("-q0"), "explicit-euler", 1e-3, (1.0 + 1e-6_f64).sqrt()),
         (force("-sin(q0)"), "explicit-euler", 1e-3, (1.0 + 1e-6_f64).sqrt()),
     ] {
-        let found = examined(&system, method, dt, 1000);
+        let found = examined(&system, method, dt, 3000);
         let step = found.verdicts.step.as_ref().unwrap();
         assert_eq!(step.outcome, Outcome::Unstable, "{method} {dt}: {step}");
         let own = found.motion.spectral_radius.unwrap();
@@ -114,9 +114,14 @@ fn a_motion_with_errors_as_large_as_itself_is_not_resolved_over_all_steps() {
         (system(ball), "velocity-verlet", 0.01, 1000),
         // Siblings: phases drift by z³/24 a step; a pericentre; a motion that decays at once; a double well; a beat.
         (force("-sin(q0)"), "velocity-verlet", 0.3, 5000),
-        (plane(["-x/(x^2+y^2)^1.5", "-y/(x^2+y^2)^1.5"], "x = 0.1, \"y'\" = 4.36", ""), "rk4", 0.05, 200),
+        (
+            plane(["-x/(x^2+y^2)^1.5", "-y/(x^2+y^2)^1.5"], "x = 0.1, \"y'\" = 4.36", ""),
+            "rk4",
+            0.05,
+            200,
+        ),
         (rate("-20*x^3", 1.0), "backward-euler", 0.5, 1000),
-        (force("q0-q0^3+0.0*q0"), "symplectic-euler", 0.5, 2000),
+        (force("q0-2*q0^3"), "symplectic-euler", 0.5, 2000),
         (plane(["-x+0.1*y", "-y+0.1*x"], "x = 1.0", ""), "leapfrog", 0.4, 2000),
     ] {
         let found = examined(&system, method, dt, steps);
@@ -151,7 +156,12 @@ fn small_errors_are_resolved_whatever_ratio_they_have() {
         (van_der_pol(5.0), "rk4", 0.002, 5000),
     ] {
         let found = examined(&system, method, dt, steps);
-        assert_eq!(found.verdicts.motion.outcome, Outcome::Resolved, "{method}: {}", found.verdicts.motion);
+        assert_eq!(
+            found.verdicts.motion.outcome,
+            Outcome::Resolved,
+            "{method}: {}",
+            found.verdicts.motion
+        );
         assert_eq!(exit_code(found.verdicts.all()), 0, "{method}: {:?}", found.verdicts);
     }
 }
@@ -160,9 +170,10 @@ fn small_errors_are_resolved_whatever_ratio_they_have() {
 fn what_the_reference_cannot_reach_is_unknown_and_no_success() {
     // Of µ = 10⁶ the reference takes 10⁶ steps per second; a chaotic motion loses all digits after some 40 s.
     let lorenz = read("lorenz");
-    for (system, method, dt, steps) in
-        [(&van_der_pol(1e6), "gauss-legendre-6", 0.01, 100_000), (&lorenz, "dormand-prince-8", 0.002, 50_000)]
-    {
+    for (system, method, dt, steps) in [
+        (&van_der_pol(1e6), "gauss-legendre-6", 0.01, 100_000),
+        (&lorenz, "dormand-prince-8", 0.002, 50_000),
+    ] {
         let found = examined(system, method, dt, steps);
         let motion = &found.verdicts.motion;
         assert!(!motion.is_good(), "{method}: {motion}");

@@ -113,6 +113,11 @@ pub(crate) struct AnalyzeArgs {
     pub(crate) verbose: bool,
 }
 
+impl AnalyzeArgs {
+    /// Steps of a forecast, and of thermostats, without `--steps`.
+    pub(crate) const FORECAST_STEPS: u64 = 1_000_000;
+}
+
 const USAGE: &str = "\
 libration analyze --system <NAME> --integrator <NAME> --dt <SECONDS> [OPTIONS]
        libration analyze --system <NAME> --compare --tolerance <ERROR> --horizon <SECONDS>

@@ -5,7 +5,8 @@ use std::io;
 use std::io::Write as _;
 
 use libration_analyze::{
-    Analysis, Criteria, DEFAULT_STEPS, ModifiedHamiltonian, OrderOfWord, Request, Stepping, Timing, analyze,
+    Analysis, Criteria, DEFAULT_STEPS, ModifiedHamiltonian, OrderOfWord, Request, Stepping, Timing,
+    analyze,
 };
 use libration_report::notation::plural;
 use libration_report::verdict::{self, exit_code};
@@ -20,9 +21,6 @@ use super::{
 };
 use crate::args::{AnalyzeArgs, CostArgs};
 use crate::error::Failure;
-
-/// Steps of a forecast without `--steps`.
-pub(super) const FORECAST_STEPS: u64 = 1_000_000;
 
 /// Analyzes one step and prints the result.
 pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
@@ -55,7 +53,7 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     let CostArgs { loss, cost_weights: weights } = args.cost;
     let timing = Timing { loss, weights, ..args.timing.timing() };
     let steps = args.steps.unwrap_or(match system.is_linear() {
-        true => FORECAST_STEPS,
+        true => AnalyzeArgs::FORECAST_STEPS,
         false => DEFAULT_STEPS,
     });
     if !system.is_linear() {
@@ -67,8 +65,7 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
         max_amplitude: args.max_amplitude,
         max_error: args.max_error,
     };
-    let request =
-        Request { system, actuation, stepping, dt, q, v, steps, criteria, timing };
+    let request = Request { system, actuation, stepping, dt, q, v, steps, criteria, timing };
     let analysis = analyze(&request).map_err(Failure::usage)?;
     let text = match (args.json, args.verbose) {
         (true, _) => serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n",
@@ -210,10 +207,12 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
         },
     );
     line("force evaluations", format!("{} a step", analysis.force_evaluations_per_step));
+    let energy = analysis.motion.as_ref().and_then(|motion| motion.energy.as_ref());
     line(
         "largest energy drift",
-        match &analysis.drift {
-            Some(drift) => {
+        match (energy, &analysis.drift) {
+            (Some(energy), _) => summary::energy_change(energy),
+            (None, Some(drift)) => {
                 let stopped = drift.stopped_at_step.map_or_else(String::new, |step| {
                     format!("; the state leaves the range of f64 at step {step}")
                 });
@@ -226,7 +225,7 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
                     drift.max_energy_drift_step, about.steps, drift.max_energy_drift_method
                 )
             }
-            None => "undefined: the energy at the start is zero".into(),
+            (None, None) => "undefined: the energy at the start is zero".into(),
         },
     );
     if let Some(timing) = &analysis.timing {

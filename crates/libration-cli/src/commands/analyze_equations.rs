@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use libration_analyze::{AnalyzeError, DEFAULT_STEPS};
 use libration_analyze::equation_analysis::{EquationAnalysis, EquationMotion, analyze};
+use libration_analyze::{AnalyzeError, DEFAULT_STEPS};
 use libration_report::verdict::exit_code;
 use libration_settings::equations::EquationSystem;
 

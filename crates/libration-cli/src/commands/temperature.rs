@@ -30,7 +30,7 @@ pub(super) fn run(args: &AnalyzeArgs, temperature: f64) -> Result<String, Failur
         friction,
         dt: args.dt,
         thermostats,
-        steps: args.steps.unwrap_or(super::analyze::FORECAST_STEPS),
+        steps: args.steps.unwrap_or(AnalyzeArgs::FORECAST_STEPS),
         seed: args.seed.unwrap_or(0),
     };
     let reporter = Reporter::new(args.json);

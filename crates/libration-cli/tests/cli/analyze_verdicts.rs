@@ -30,9 +30,8 @@ fn check(words: &str, sentence: &str, code: i32) -> Value {
     assert_eq!(same, code, "{words:?}");
     let json: Value = serde_json::from_str(&json).unwrap();
     let verdicts = json["verdicts"].as_object().unwrap();
-    let is_good = |verdict: &Value| {
-        ["stable", "resolved"].contains(&verdict["outcome"].as_str().unwrap())
-    };
+    let is_good =
+        |verdict: &Value| ["stable", "resolved"].contains(&verdict["outcome"].as_str().unwrap());
     assert_eq!(i32::from(!verdicts.values().all(is_good)), code, "{json}");
     Value::Object(verdicts.clone())
 }
@@ -48,21 +47,41 @@ fn split(part: &str) -> Vec<&str> {
 #[test]
 fn an_unstable_step_is_the_first_sentence_and_exit_code_1_at_each_door() {
     let folder = tempfile::tempdir().unwrap();
-    let [mass, gyroscope] = [("mass.toml", MASS), ("gyroscope.toml", GYROSCOPE)].map(|(name, text)| {
-        let path = folder.path().join(name);
-        fs::write(&path, text).unwrap();
-        path.display().to_string()
-    });
+    let [mass, gyroscope] =
+        [("mass.toml", MASS), ("gyroscope.toml", GYROSCOPE)].map(|(name, text)| {
+            let path = folder.path().join(name);
+            fs::write(&path, text).unwrap();
+            path.display().to_string()
+        });
     let verlet = "velocity-verlet in steps of 2.05 s is unstable on";
     for (words, sentence) in [
-        ("analyze --system oscillator --set omega2=1 --integrator velocity-verlet --dt 2.05".to_owned(), verlet),
+        (
+            "analyze --system oscillator --set omega2=1 --integrator velocity-verlet --dt 2.05 --steps 100"
+                .to_owned(),
+            verlet,
+        ),
         ("analyze --force|'-q0|--q 1 --integrator velocity-verlet --dt 2.05".to_owned(), verlet),
-        ("analyze --force|'-q0|--integrator rk4 --dt 3".to_owned(), "rk4 in steps of 3 s is unstable on force: spectral radius 1 + 0.5"),
-        ("analyze --force|'-q0-10*v0|--integrator symplectic-euler --dt 0.21".to_owned(), "symplectic-euler in steps of 0.21 s is unstable"),
-        (format!("analyze --plant {mass} --integrator explicit-euler --dt 0.1"), "explicit-euler in steps of 0.1 s is unstable on the plant: spectral radius 1 + "),
-        (format!("analyze --plant {mass} --integrator velocity-verlet --dt 0.5"), "velocity-verlet in steps of 0.5 s is unstable"),
+        (
+            "analyze --force|'-q0|--integrator rk4 --dt 3".to_owned(),
+            "rk4 in steps of 3 s is unstable on force: spectral radius 1 + 0.5",
+        ),
+        (
+            "analyze --force|'-q0-10*v0|--integrator symplectic-euler --dt 0.21".to_owned(),
+            "symplectic-euler in steps of 0.21 s is unstable",
+        ),
+        (
+            format!("analyze --plant {mass} --integrator explicit-euler --dt 0.1"),
+            "explicit-euler in steps of 0.1 s is unstable on the plant: spectral radius 1 + ",
+        ),
+        (
+            format!("analyze --plant {mass} --integrator velocity-verlet --dt 0.5"),
+            "velocity-verlet in steps of 0.5 s is unstable",
+        ),
         // A kick takes gyroscopic forces as explicit Euler does: 5.35e-5 per step.
-        (format!("analyze --plant {gyroscope} --integrator velocity-verlet --dt 0.01"), "velocity-verlet in steps of 0.01 s is unstable on the plant: spectral radius 1 + 5.3"),
+        (
+            format!("analyze --plant {gyroscope} --integrator velocity-verlet --dt 0.01"),
+            "velocity-verlet in steps of 0.01 s is unstable on the plant: spectral radius 1 + 5.3",
+        ),
     ] {
         let verdicts = check(&words, sentence, 1);
         assert_eq!(verdicts["step"]["outcome"], "unstable", "{words}");
@@ -72,7 +91,11 @@ fn an_unstable_step_is_the_first_sentence_and_exit_code_1_at_each_door() {
         format!("analyze --plant {gyroscope} --integrator implicit-midpoint --dt 1"),
         "analyze --system oscillator --integrator velocity-verlet --dt 0.5".to_owned(),
     ] {
-        let verdicts = check(&words, words.split("--integrator ").nth(1).unwrap().split(' ').next().unwrap(), 0);
+        let verdicts = check(
+            &words,
+            words.split("--integrator ").nth(1).unwrap().split(' ').next().unwrap(),
+            0,
+        );
         assert_eq!(verdicts["step"]["outcome"], "stable", "{words}");
     }
     // A table of all integrators has no verdict of its own.
@@ -90,23 +113,60 @@ fn an_unstable_loop_has_exit_code_1() {
         (format!("{exact} --latency 0.05"), "The loop is stable:", 0),
         (format!("{exact} --latency 0.3"), "The loop is unstable:", 1),
         (format!("{exact} --latency 0.05 --loss 0.99"), "The loop is unstable:", 1),
-        (format!("analyze --plant {path} --gain|'30,8|--period 0.01"), "The loop is stable with a period of 0.01 s:", 0),
-        (format!("analyze --plant {path} --gain|'30,8|--period 0.01 --latency 0.5"), "The loop is unstable with a period", 1),
-        (format!("analyze --plant {path} --gain|'0,-1|--period 0.01"), "The loop is unstable with a period", 1),
+        (
+            format!("analyze --plant {path} --gain|'30,8|--period 0.01"),
+            "The loop is stable with a period of 0.01 s:",
+            0,
+        ),
+        (
+            format!("analyze --plant {path} --gain|'30,8|--period 0.01 --latency 0.5"),
+            "The loop is unstable with a period",
+            1,
+        ),
+        (
+            format!("analyze --plant {path} --gain|'0,-1|--period 0.01"),
+            "The loop is unstable with a period",
+            1,
+        ),
     ] {
-        let verdicts = check(&words, sentence, code);
-        assert!(verdicts["loop"]["evidence"].as_str().unwrap().contains("second moments") || code == 0);
+        check(&words, sentence, code);
     }
 }
 
 #[test]
 fn a_motion_that_is_not_resolved_or_not_known_has_exit_code_1() {
     for (words, sentence, code) in [
-        ("analyze --system pendulum --q 2.5 --integrator rk4 --dt 0.02 --steps 500", "rk4 in steps of 0.02 s on pendulum (omega2 = 9.81) resolves the motion over 500 steps (10 s): the largest error is", 0),
-        ("analyze --system pendulum --q 2.5 --integrator velocity-verlet --dt 0.3 --steps 5000", "velocity-verlet in steps of 0.3 s on pendulum (omega2 = 9.81) does not resolve the motion over 5000 steps", 1),
-        ("analyze --system kepler --q 1,0 --v 0,0.2 --integrator rk4 --dt 0.05 --steps 500", "rk4 in steps of 0.05 s on kepler (mu = 1) does not resolve the motion", 1),
-        ("analyze --force|'-9.81*sin(q0)|--q 1 --integrator dormand-prince-5 --dt 0.05 --steps 1000", "dormand-prince-5 in steps of 0.05 s on force resolves the motion over 1000 steps (50 s)", 0),
-        ("analyze --force|'1e6*(1-q0^2)*v0 - q0|--q 2 --integrator gauss-legendre-6 --dt 0.01 --steps 100000", "Whether gauss-legendre-6 in steps of 0.01 s on force resolves the motion is not known", 1),
+        (
+            "analyze --system pendulum --q 2.5 --integrator rk4 --dt 0.02 --steps 500",
+            "rk4 in steps of 0.02 s on pendulum (omega2 = 9.81) resolves the motion over 500 steps (10 s): the largest error is",
+            0,
+        ),
+        (
+            "analyze --system pendulum --q 2.5 --integrator velocity-verlet --dt 0.3 --steps 5000",
+            "velocity-verlet in steps of 0.3 s on pendulum (omega2 = 9.81) does not resolve the motion over 5000 steps",
+            1,
+        ),
+        (
+            "analyze --system kepler --q 1,0 --v 0,0.2 --integrator rk4 --dt 0.05 --steps 500",
+            "rk4 in steps of 0.05 s on kepler (mu = 1) does not resolve the motion",
+            1,
+        ),
+        (
+            "analyze --force|'-9.81*sin(q0)|--q 1 --integrator dormand-prince-5 --dt 0.05 --steps 1000",
+            "dormand-prince-5 in steps of 0.05 s on force resolves the motion over 1000 steps (50 s)",
+            0,
+        ),
+        // Chaos: beyond 21 s two references of different tolerance differ.
+        (
+            "analyze --system ../../examples/systems/lorenz.toml --integrator dormand-prince-8 --dt 0.002 --steps 15000",
+            "Whether dormand-prince-8 in steps of 0.002 s on Lorenz resolves the motion is not known",
+            1,
+        ),
+        (
+            "analyze --force|'1e6*(1-q0^2)*v0 - q0|--q 2 --integrator gauss-legendre-6 --dt 0.01 --steps 100000",
+            "gauss-legendre-6 in steps of 0.01 s on force does not resolve the motion over the first",
+            1,
+        ),
     ] {
         check(words, sentence, code);
     }

@@ -77,7 +77,8 @@ fn a_table_has_the_order_of_its_certificate_where_it_applies_and_a_derived_one_e
         let file = format!("../../examples/systems/{system}.toml");
         let words =
             ["analyze", "--system", &file, "--integrator", table, "--dt", "0.001", "--json"];
-        let done = super::advise::libration(&words).success();
+        // One that has lost its order does not resolve the motion.
+        let done = super::advise::libration(&words).code(i32::from(order == 1));
         let found: Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
         assert_eq!(found["motion"]["order"], order, "{table} on {system}");
         assert_eq!(found["motion"]["order_is_certified"], order > 1, "{table} on {system}");

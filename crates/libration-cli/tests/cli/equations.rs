@@ -171,7 +171,8 @@ fn an_analysis_of_equations_derives_the_order_and_measures_it() {
     let analysis = |file: &str, method: &str, dt: &str| -> serde_json::Value {
         let path = example(file);
         let words = ["analyze", "--system", &path, "--integrator", method, "--dt", dt, "--json"];
-        let done = libration(&words).success();
+        // An integrator that has lost its order does not resolve the motion: exit code 1.
+        let done = libration(&words);
         serde_json::from_slice(&done.get_output().stdout).unwrap()
     };
     // Its forces depend on positions alone.

@@ -187,8 +187,8 @@ fn check_whole_text(words: &[String], short: &str, code: Option<i32>) {
     assert!(names.len() > 3 && whole.lines().count() >= short.lines().count());
 }
 
-/// Requests whose proposed command runs with exit code 0.
-const PROPOSED: [usize; 6] = [1, 9, 10, 14, 15, 19];
+/// Requests whose proposed command runs with exit code 0. Steps of half the length do not resolve a chaotic motion.
+const PROPOSED: [usize; 5] = [1, 9, 10, 14, 19];
 /// Requests whose whole text has what the JSON has.
 const WHOLE: [usize; 4] = [1, 7, 13, 17];
 

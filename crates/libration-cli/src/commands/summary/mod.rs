@@ -15,9 +15,9 @@ mod temperature;
 pub(super) use advice::of_advice;
 pub(super) use comparison::of_comparison;
 pub(super) use equations::{along_motion, of_equations};
-pub(super) use motion::energy_change;
 pub(super) use linear_advice::of_linear_advice;
 pub(super) use linear_plant::of_plant;
+pub(super) use motion::energy_change;
 pub(super) use step::of_step;
 pub(super) use temperature::of_temperatures;
 

@@ -6,7 +6,12 @@ use libration_report::verdict::{Outcome, Verdict};
 use super::super::digits::significant;
 
 /// Whether steps resolve a motion, in a sentence about `step`, with the number of examined steps.
-pub(super) fn sentence(step: &str, verdict: &Verdict, motion: &MotionExamination, dt: f64) -> String {
+pub(super) fn sentence(
+    step: &str,
+    verdict: &Verdict,
+    motion: &MotionExamination,
+    dt: f64,
+) -> String {
     if let Some(step_number) = motion.diverged_at_step {
         return format!("{step} diverges: a state is not finite after step {step_number}.");
     }
@@ -34,9 +39,14 @@ const ROUNDING: f64 = 1e-9;
 /// The change of the energy, by the steps and by the system.
 pub(in crate::commands) fn energy_change(energy: &EnergyChange) -> String {
     let EnergyChange { unit, steps, scale, .. } = energy;
+    if !energy.largest.is_finite() {
+        return format!("is not finite after step {}", energy.largest_at_step);
+    }
     let quantity = |x: f64| format!("{} {unit}", significant(x, 3)).trim_end().to_owned();
     let part = |x: f64| match scale {
-        Some(scale) => format!(", {} of the energy that the motion exchanges", significant(x / scale, 3)),
+        Some(scale) => {
+            format!(", {} of the energy that the motion exchanges", significant(x / scale, 3))
+        }
         None => String::new(),
     };
     let own = energy.exact_change.filter(|own| *own > ROUNDING * scale.unwrap_or(f64::INFINITY));
