@@ -82,7 +82,7 @@ fn the_advised_step_keeps_the_energy_where_forces_depend_on_velocities() {
     let command = advice["command"].as_str().unwrap();
     let analysis = json(&command.split_whitespace().skip(1).collect::<Vec<_>>());
     let energy = |key: &str| analysis["motion"]["energy"][key].as_f64().unwrap();
-    let drift = energy("largest") / energy("start");
+    let drift = energy("largest") / advice["tolerance"]["scale"].as_f64().unwrap();
     let lost = advice["integrators"][0]["lost"].as_f64().unwrap();
     assert!((drift / lost - 1.0).abs() < 1e-9, "{drift} {lost}");
 }
@@ -114,10 +114,10 @@ fn what_moves_later_or_has_jumps_gets_its_steps_and_a_warning() {
     let friction = ["--force", "-10*q0 - 0.5*sign(v0)", "--horizon", "1"];
     let (dry, warnings) = largest(&friction);
     assert!(dry > 0.01 && warnings.contains("kinks or jumps"), "{dry} {warnings}");
-    // One that the longest tried step stops.
+    // One whose stiffest rate, 1000/s, is far above that of the motion: the search goes on beyond 4 rad of it.
     let (stiff, warnings) = largest(&["--force", "-q0 - tanh(1000*v0)", "--horizon", "3"]);
-    let is_capped = warnings.contains("were not tried");
-    assert!(is_capped && stiff < 0.0041, "{stiff} {warnings}");
+    let is_warned = warnings.contains("may not resolve the motion");
+    assert!(is_warned && (0.004..0.01).contains(&stiff), "{stiff} {warnings}");
     libration(&["advise", "--force", "-q0*q0", "--q", "0"])
         .code(2)
         .stderr(contains("nothing moves"));
