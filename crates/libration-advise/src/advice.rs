@@ -258,7 +258,7 @@ impl Advice {
     }
 
     /// Warns of integrators that meet the tolerance with the longest step that was tried.
-    pub(super) fn warn_of_limits(&mut self, horizon: f64) {
+    pub(super) fn warn_of_limits(&mut self, longest: f64) {
         let most = self.tolerance.most;
         let ended =
             |choice: &&IntegratorChoice| choice.lost_beyond.is_some_and(|lost| lost <= most);
@@ -266,7 +266,8 @@ impl Advice {
             self.integrators.iter().filter(ended).map(|c| c.integrator).collect();
         if !names.is_empty() {
             self.warnings.push(format!(
-                "longer steps of {} were not tried: they would be longer than the horizon of {horizon} s",
+                "steps of more than {longest:.4e} s were not tried: 4 rad of the motion, or the horizon; longer ones of {} may meet the \
+                 tolerance, too",
                 names.join(", ")
             ));
         }

@@ -11,7 +11,7 @@ use super::combined_effect::CombinedEffect;
 use super::control::Control;
 use super::free_motion::FreeMotion;
 use super::integrator_choice::{
-    IntegratorChoice, SearchExtent, best_possible, largest_step, offered_methods,
+    IntegratorChoice, SearchExtent, StepTrial, best_possible, largest_step, offered_methods,
 };
 use super::loop_check::UnstableLoop;
 use super::loop_simulation::{LoopSimulation, MOST_PERIODS};
@@ -70,7 +70,13 @@ pub(super) fn advise_simulation(
         not_tried,
     });
     advice.choose(request, choices);
-    advice.warn_of_limits(free.horizon);
+    advice.warn_of_limits(free.longest_step());
+    if let Some(scale) = free.energy_scale.filter(|_| free.is_relative_to_start) {
+        advice.warnings.push(format!(
+            "the motion has no kinetic energy: errors of the energy are relative to {scale:.4e}, the energy at the start, which depends on its \
+             constant"
+        ));
+    }
     if !system.is_smooth() {
         advice.warnings.push(
             "the equations have kinks or jumps: errors are those of the steps that were tried, a shorter step may have a larger one, and \

@@ -22,6 +22,8 @@ pub(super) struct FreeMotion<'a> {
     pub(super) rates: MotionRates,
     /// The energy that errors of the energy are relative to.
     pub(super) energy_scale: Option<f64>,
+    /// Whether that is the energy at the start, since the motion has no kinetic energy.
+    pub(super) is_relative_to_start: bool,
 }
 
 /// The angle of the fastest motion in a step below which errors fall with the step, in rad.
@@ -85,8 +87,10 @@ impl<'a> FreeMotion<'a> {
             );
         }
         let rates = MotionRates { mean: 1.0, fastest: 1.0, stiffest: 1.0 };
-        let energy_scale = None;
-        let free = FreeMotion { system, start, horizon: request.horizon, of, rates, energy_scale };
+        let (energy_scale, is_relative_to_start) = (None, false);
+        let horizon = request.horizon;
+        let free =
+            FreeMotion { system, start, horizon, of, rates, energy_scale, is_relative_to_start };
         let mut free = FreeMotion { rates: free.rates(work)?, ..free };
         if of == Measure::Energy {
             match free.energy_kind(&free.rates) {
@@ -99,8 +103,14 @@ impl<'a> FreeMotion<'a> {
             }
             free.energy_scale = free.energy_scale(work)?;
             if free.energy_scale.is_none() {
+                // Such as of states of first order alone.
+                let start = system.energy().map(|mut energy| energy(&free.start).abs());
+                free.energy_scale = start.filter(|start| start.is_finite() && *start > 0.0);
+                free.is_relative_to_start = true;
+            }
+            if free.energy_scale.is_none() {
                 return tolerance_error(
-                    "the motion has no kinetic energy, to which an error is relative; set a tolerance of trajectory",
+                    "the motion has no kinetic energy and the energy at the start is zero, so a relative error is undefined; set a tolerance of trajectory",
                 );
             }
         }
@@ -248,8 +258,8 @@ impl StepTrial for FreeMotion<'_> {
         RESOLVED / self.rates.fastest
     }
 
-    fn whole_motion(&self) -> f64 {
-        self.horizon
+    fn longest_step(&self) -> f64 {
+        (4.0 / self.rates.mean).min(self.horizon)
     }
 }
 

@@ -66,8 +66,8 @@ pub(super) trait StepTrial: Sync {
     /// The step below which errors fall with the step.
     fn resolving_step(&self) -> f64;
 
-    /// The step that is the whole motion, in s: none is longer.
-    fn whole_motion(&self) -> f64;
+    /// The longest step of a search, in s: 4 rad of the motion, whose stiffest rate may be far above that of its turns, or the horizon.
+    fn longest_step(&self) -> f64;
 }
 
 /// Runge–Kutta methods of high orders that are tried.
@@ -187,7 +187,7 @@ fn next_step(
     }
     // The error may decrease again beyond; not where a longer step has been left.
     let mut beyond = lost(BEYOND * low)?;
-    let is_possible = |low: f64| BEYOND * low <= trial.whole_motion();
+    let is_possible = |low: f64| BEYOND * low <= trial.longest_step();
     while longest == most && beyond <= tolerance && (BEYOND * low < most || is_possible(low)) {
         (low, at) = (BEYOND * low, beyond);
         beyond = lost(BEYOND * low)?;

@@ -44,7 +44,7 @@ pub(super) fn describe_integrator(advice: &Advice, request: &Request) -> String 
             let range = if steps.is_empty() { &range } else { "" };
             let range = range.trim_end_matches(',');
             format!(
-                "No integrator keeps the {} below {most:e}{over}{steps}, of {tried} that were tried{range}.{not_tried}",
+                "No integrator keeps the {} below {most:e}{over}{steps}; tried were {tried}{range}.{not_tried}",
                 of.title()
             )
         }

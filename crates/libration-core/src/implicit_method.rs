@@ -123,11 +123,16 @@ impl ImplicitMethod {
     /// The method with one more Newton step than [`NEWTON_STEPS`]: what it changes is the error that the iteration leaves. None for a
     /// method that solves linear equations, once.
     pub const fn refined(self) -> Option<Iterated> {
+        const COUNT: u32 = NEWTON_STEPS + 1;
         match self {
             ImplicitMethod::DampingImplicit
             | ImplicitMethod::DampingStiffnessImplicit
             | ImplicitMethod::StablePd => None,
-            method => Some(Iterated { method, newton_steps: NEWTON_STEPS + 1 }),
+            ImplicitMethod::BackwardEuler => Some(Iterated::BackwardEuler(COUNT)),
+            ImplicitMethod::ImplicitMidpoint => Some(Iterated::ImplicitMidpoint(COUNT)),
+            ImplicitMethod::Trapezoid => Some(Iterated::Trapezoid(COUNT)),
+            ImplicitMethod::GaussLegendre4 => Some(Iterated::GaussLegendre4(COUNT)),
+            ImplicitMethod::GaussLegendre6 => Some(Iterated::GaussLegendre6(COUNT)),
         }
     }
 

@@ -27,7 +27,7 @@ fn request(system: &str, parameters: &[(&str, f64)], method: Method, dt: f64) ->
 /// The reason that the trajectory ends; none if it does not.
 fn reason(request: &Request) -> Option<String> {
     match simulate(request).unwrap().outcome {
-        Outcome::Complete => None,
+        Outcome::Complete | Outcome::Iterated(_) => None,
         Outcome::Diverged(stopped) => Some(stopped.reason),
         Outcome::NotFinite { reason, .. } => Some(reason.unwrap_or_default()),
     }

@@ -245,7 +245,7 @@ fn one_that_overflows_is_named_and_the_others_go_on() {
     let request = Request { every: 20_000, ensemble, ..unstable };
     let trajectory = simulate(&request).unwrap();
     // The first starts at rest in the origin, where it stays.
-    let Outcome::NotFinite { count, first, reason } = &trajectory.outcome else { panic!() };
+    let Outcome::NotFinite { count, first, reason, .. } = &trajectory.outcome else { panic!() };
     assert_eq!((*count, &**first), (2, &[1, 2][..]));
     assert!(reason.as_ref().is_some_and(|why| why.contains("unstable with every time step")));
     assert_eq!(f64s(&trajectory, "q0")[3], 0.0);

@@ -82,7 +82,7 @@ fn the_advised_step_keeps_the_energy_where_forces_depend_on_velocities() {
     let command = advice["command"].as_str().unwrap();
     let analysis = json(&command.split_whitespace().skip(1).collect::<Vec<_>>());
     let energy = |key: &str| analysis["motion"]["energy"][key].as_f64().unwrap();
-    let drift = energy("largest") / energy("start");
+    let drift = energy("largest") / advice["tolerance"]["scale"].as_f64().unwrap();
     let lost = advice["integrators"][0]["lost"].as_f64().unwrap();
     assert!((drift / lost - 1.0).abs() < 1e-9, "{drift} {lost}");
 }
@@ -114,10 +114,10 @@ fn what_moves_later_or_has_jumps_gets_its_steps_and_a_warning() {
     let friction = ["--force", "-10*q0 - 0.5*sign(v0)", "--horizon", "1"];
     let (dry, warnings) = largest(&friction);
     assert!(dry > 0.01 && warnings.contains("kinks or jumps"), "{dry} {warnings}");
-    // One that the longest tried step stops.
+    // One whose stiffest rate, 1000/s, is far above that of the motion: the search goes on beyond 4 rad of it.
     let (stiff, warnings) = largest(&["--force", "-q0 - tanh(1000*v0)", "--horizon", "3"]);
-    let is_capped = warnings.contains("were not tried");
-    assert!(is_capped && stiff < 0.0041, "{stiff} {warnings}");
+    let is_warned = warnings.contains("may not resolve the motion");
+    assert!(is_warned && (0.004..0.01).contains(&stiff), "{stiff} {warnings}");
     libration(&["advise", "--force", "-q0*q0", "--q", "0"])
         .code(2)
         .stderr(contains("nothing moves"));
@@ -131,20 +131,20 @@ fn the_scale_of_an_energy_does_not_depend_on_its_constant() {
     let advised = |constant: &str| {
         let text = format!("{level}energy = \"q'^2/2 - omega2*cos(q) + {constant}\"\n");
         let file = written(&folder, "level.toml", &text);
-        let words = ["--tolerance", "energy=1e-6", "--horizon", "20"];
+        let words = ["--tolerance", "energy=1e-4", "--horizon", "3.708149"];
         json(&[&["advise", "-q", "--system", file.to_str().unwrap()], &words[..]].concat())
     };
     let zero = advised("0");
-    // The mean of q'²/2 = ω² cos q over whole swings of a right angle is ω²·(2E/K − 1) at the modulus k² = ½, with E = 1.350644 and
-    // K = 1.854075: 0.456947·ω². The horizon is 5.4 half swings: a remainder of less than a tenth.
+    // The mean of q'²/2 = ω² cos q over a period is ω²·(2E/K − 1) at the modulus k² = ½, with E = 1.350644 and K = 1.854075: 0.456947·ω².
+    // The period is 4K/ω, the horizon; seven digits of it and 0.05 rad of a step leave less than a thousandth.
     let scale = zero["tolerance"]["scale"].as_f64().unwrap();
-    assert!((scale / (4.0 * 0.456947) - 1.0).abs() < 0.1, "{scale}");
+    assert!((scale / (4.0 * 0.456947) - 1.0).abs() < 1e-3, "{scale}");
     assert_eq!(zero["verdict"]["outcome"], "within");
-    for constant in ["5", "-3", "1000"] {
+    for constant in ["5", "1000"] {
         let raised = advised(constant);
         for (name, wanted) in steps(&zero) {
             let found = steps(&raised)[&name];
-            // The constant costs digits of the energy: 1e-13 of 1e-6, which a search resolves to 0.2 %.
+            // The constant costs digits of the energy: 1e-13 of 1e-4, which a search resolves to 0.2 %.
             assert!(
                 (found[0] / wanted[0].max(1e-300) - 1.0).abs() < 5e-3 || wanted[0] == 0.0,
                 "{name} {constant}: {found:?} {wanted:?}"
@@ -158,9 +158,9 @@ fn the_scale_of_an_energy_does_not_depend_on_its_constant() {
         "--v",
         "0,1.4142135623730951",
         "--tolerance",
-        "energy=1e-6",
+        "energy=1e-4",
         "--horizon",
-        "20",
+        "5",
     ];
     let orbit = json(&[&["advise", "-q", "--system", "kepler"], &words[..]].concat());
     assert_eq!(orbit["verdict"]["outcome"], "within", "{orbit}");
