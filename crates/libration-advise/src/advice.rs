@@ -228,35 +228,6 @@ impl Advice {
         self.integrators = choices;
     }
 
-    /// Whether an integrator meets the tolerance, with what was not tried.
-    pub(super) fn judge_integrators(&self) -> Verdict {
-        let most = self.tolerance.most;
-        let verdict = match (self.chosen(), self.tried_down_to) {
-            (Some((choice, dt)), _) => Verdict::new(
-                Outcome::Within,
-                format!(
-                    "{} in steps of {:.4e} s: an error of {:.3e} of at most {most:e}",
-                    choice.integrator,
-                    cut_off(dt, 5),
-                    choice.lost
-                ),
-            ),
-            (None, Some(shortest)) => Verdict::unknown(format!(
-                "no tried step keeps {most:e}, and steps shorter than {shortest:.4e} s were not tried"
-            )),
-            (None, None) => {
-                let least =
-                    self.integrators.iter().map(|choice| choice.lost).fold(f64::INFINITY, f64::min);
-                Verdict::new(
-                    Outcome::Exceeds,
-                    format!("the least error of a tried step is {least:.3e}, above {most:e}"),
-                )
-            }
-        };
-        let not_tried = self.search.iter().flat_map(|search| &search.not_tried);
-        not_tried.fold(verdict, Verdict::without)
-    }
-
     /// Warns of integrators that meet the tolerance with the longest step that was tried.
     pub(super) fn warn_of_limits(&mut self, longest: f64) {
         let most = self.tolerance.most;

@@ -2,30 +2,39 @@
 
 use libration::linear::{LoopStability, StabilityOutcome};
 use libration_analyze::linear_analysis::loop_verdict;
+use libration_report::notation::cut_off;
 use libration_report::verdict::{Outcome, Verdict};
 
 use super::advice::{Advice, LoopAdvice, ToleranceAnswer};
 
 impl Advice {
-    /// The verdict on a motion without a controller: whether an integrator keeps the tolerance. Of steps that were not tried it is unknown.
-    pub(super) fn verdict_of_motion(&self) -> Verdict {
-        let ToleranceAnswer { of, most } = self.tolerance;
-        match (self.chosen(), self.tried_down_to) {
+    /// Whether an integrator meets the tolerance, with what was not tried.
+    pub(super) fn judge_integrators(&self) -> Verdict {
+        let most = self.tolerance.most;
+        let verdict = match (self.chosen(), self.tried_down_to) {
             (Some((choice, dt)), _) => Verdict::new(
                 Outcome::Within,
                 format!(
-                    "{of} error {:.3e} ≤ {most:e} with {} in steps of {dt:e} s",
-                    choice.lost, choice.integrator
+                    "{} in steps of {:.4e} s: an error of {:.3e} of at most {most:e}",
+                    choice.integrator,
+                    cut_off(dt, 5),
+                    choice.lost
                 ),
             ),
             (None, Some(shortest)) => Verdict::unknown(format!(
-                "no step from {shortest:.4e} s on keeps the {of} error below {most:e}, and shorter ones were not tried"
+                "no tried step keeps {most:e}, and steps shorter than {shortest:.4e} s were not tried"
             )),
-            (None, None) => Verdict::new(
-                Outcome::Exceeds,
-                format!("no tried step keeps the {of} error below {most:e}"),
-            ),
-        }
+            (None, None) => {
+                let least =
+                    self.integrators.iter().map(|choice| choice.lost).fold(f64::INFINITY, f64::min);
+                Verdict::new(
+                    Outcome::Exceeds,
+                    format!("the least error of a tried step is {least:.3e}, above {most:e}"),
+                )
+            }
+        };
+        let not_tried = self.search.iter().flat_map(|search| &search.not_tried);
+        not_tried.fold(verdict, Verdict::without)
     }
 }
 
