@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use libration::Method;
 use libration::live::Setting;
-use libration_report::notation::cut_off;
-use libration_report::verdict::{Outcome, Verdict};
+use libration_report::verdict::Verdict;
 use serde::Serialize;
 
 use super::budget::{Budget, FirstFailure};

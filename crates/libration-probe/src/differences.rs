@@ -250,8 +250,7 @@ fn consistent(estimates: &[(f64, f64)], trusted: usize) -> Vec<(f64, f64)> {
         let ((a, a_error), (b, b_error)) = (estimates[k], estimates[j]);
         (a - b).abs() > APART * (a_error + b_error + scatter(j))
     };
-    let is_contradicted =
-        |k: &usize| (k + 1..trusted).filter(|j| contradicts(*k, *j)).count() >= 2;
+    let is_contradicted = |k: &usize| (k + 1..trusted).filter(|j| contradicts(*k, *j)).count() >= 2;
     let first = (0..trusted).rev().find(is_contradicted).map_or(0, |k| k + 1);
     // Fewer are left by noise alone, whose errors are all too small.
     let first = first.min(trusted - LEAST_STEPS);

@@ -116,10 +116,7 @@ fn write(
             let more = if count > first.len() { ", …" } else { "" };
             let are = if count == 1 { "trajectory is" } else { "trajectories are" };
             let why = reason.map_or_else(String::new, |reason| format!(": {reason}"));
-            format!(
-                "warning: {count} {are} not finite in the end: {}{more}{why}",
-                named.join(", ")
-            )
+            format!("warning: {count} {are} not finite in the end: {}{more}{why}", named.join(", "))
         }
     };
     if !quiet {
