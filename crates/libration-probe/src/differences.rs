@@ -237,7 +237,7 @@ fn entry(i: usize, centre: f64, noise: f64, pairs: &[Pair<'_>]) -> (f64, f64) {
 
 /// The estimates without those of long steps that two of shorter steps contradict, beyond the errors of both and the scatter of the
 /// shorter ones: noise makes these differ, but not agree with each other. The first `trusted` ones are of steps that are long beside the
-/// dead zone of a solver, which returns its warm start there; the others must agree with them.
+/// dead zone of a solver, which returns its warm start there; the others must agree with the best of them.
 fn consistent(estimates: &[(f64, f64)], trusted: usize) -> Vec<(f64, f64)> {
     if trusted < LEAST_STEPS {
         return estimates.to_vec();
@@ -254,6 +254,8 @@ fn consistent(estimates: &[(f64, f64)], trusted: usize) -> Vec<(f64, f64)> {
     let first = (0..trusted).rev().find(is_contradicted).map_or(0, |k| k + 1);
     // Fewer are left by noise alone, whose errors are all too small.
     let first = first.min(trusted - LEAST_STEPS);
-    let agrees = |k: &usize| *k < trusted || !contradicts(*k, trusted - 1);
-    (first..estimates.len()).filter(agrees).map(|k| estimates[k]).collect()
+    let known = &estimates[first..trusted];
+    let best = known.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or(estimates[0]);
+    let agrees = |other: &&(f64, f64)| (other.0 - best.0).abs() <= APART * (other.1 + best.1);
+    known.iter().chain(estimates[trusted..].iter().filter(agrees)).copied().collect()
 }
