@@ -22,13 +22,15 @@ const WINDOWS: usize = 8;
 const BACK: f64 = 0.05;
 /// Change over a trajectory of a system that conserves its energy that is a fault: half a percent of an amplitude.
 const CLEAR: f64 = 0.01;
-/// Growth of the energy of any other system that needs a reason: it doubles.
-const GROWN: f64 = 1.0;
+/// The same of growth in any other system, whose shorter steps show that the step makes it.
+const GROWN: f64 = 0.1;
+/// A change from which its direction does not matter: the energy itself.
+const WHOLE: f64 = 1.0;
 /// Parts of a step whose trajectory shows what the system does by itself, and the most steps of it.
 const PARTS: usize = 8;
 const MOST_PARTS: usize = 200_000;
 /// By a method of order 1 the logarithm of a growth falls to an eighth, and a blow-up comes eight times as late; of the system, neither.
-const LESS: f64 = 3.0;
+const LESS: f64 = 2.0;
 const LATER: f64 = 1.8;
 
 /// The drift of the energy.
@@ -145,7 +147,7 @@ impl EnergyDrift {
         let (change, is_steady) = full.change();
         let (rate, wobble) = full.rate();
         let rounding = ROUNDING / subject.dt * (energy.abs() / size).max(1.0);
-        let is_clear = is_steady && change.abs() > CLEAR;
+        let is_clear = (is_steady && change.abs() > CLEAR) || change.abs() > WHOLE;
         found.resolution = if is_clear { rounding } else { wobble.max(rounding) };
         found.reason = match halved {
             _ if rate.abs() <= found.resolution => DriftReason::None,
@@ -164,7 +166,7 @@ impl EnergyDrift {
         (found.rate, found.rate_halved) = (rate, halved);
         (found.change, found.is_steady) = (Some(change), is_steady);
         let is_asked = !subject.is_conservative && !subject.has_fixed_dt;
-        if is_asked && is_steady && change > GROWN {
+        if is_asked && found.exceeds(change, GROWN) {
             let other = Trajectory::run(prober, &start, shorter, PARTS * steps, size)?;
             let by_system = match other.is_finite {
                 true => other.change().0.max(0.0).ln_1p(),
@@ -181,8 +183,8 @@ impl EnergyDrift {
             || (self.reason == DriftReason::Divergence && self.is_of_step != Some(true))
     }
 
-    /// Whether the energy changes too much in one direction: by [`CLEAR`] where it is conserved, by [`GROWN`] in any system that does not
-    /// do so itself.
+    /// Whether the energy changes too much: in one direction by [`CLEAR`] where it is conserved, by [`GROWN`] in any system that does not do
+    /// so itself; else by [`WHOLE`].
     pub(crate) fn is_fault(&self, is_conservative: bool) -> bool {
         if matches!(self.reason, DriftReason::System | DriftReason::Short) {
             return false;
@@ -190,9 +192,13 @@ impl EnergyDrift {
         let is_of_step = self.is_of_step == Some(true);
         match self.change {
             None => is_of_step,
-            Some(change) if is_conservative => self.is_steady && change.abs() > CLEAR,
-            Some(change) => self.is_steady && change > GROWN && is_of_step,
+            Some(change) if is_conservative => self.exceeds(change.abs(), CLEAR),
+            Some(change) => self.exceeds(change, GROWN) && is_of_step,
         }
+    }
+
+    fn exceeds(&self, change: f64, limit: f64) -> bool {
+        (self.is_steady && change > limit) || change > WHOLE
     }
 }
 

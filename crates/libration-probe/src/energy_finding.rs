@@ -28,9 +28,10 @@ pub(crate) fn energy_drift(drift: &EnergyDrift, is_conservative: bool, dt: f64) 
         _ => drift.reason.text(),
     };
     Some(format!(
-        "the energy {verb} by {} % over {} ({time} s), in one direction; {reason}",
+        "the energy {verb} by {} % over {} ({time} s){}; {reason}",
         number(100.0 * change.abs(), 3),
-        plural(drift.steps, "step")
+        plural(drift.steps, "step"),
+        if drift.is_steady { ", in one direction" } else { "" }
     ))
 }
 

@@ -114,6 +114,24 @@ fn growth_by_the_step_is_a_fault_with_and_without_a_word_on_conservation() {
 }
 
 #[test]
+fn an_energy_that_grows_without_a_direction_is_a_fault_where_it_exceeds_itself() {
+    // ωh = 2.4: beyond the limit of 2 at the bottom, the pendulum is thrown to rotations of any speed.
+    for is_conservative in [true, false] {
+        let report = Simulator::new(pendulum)
+            .with_energy(pendulum_energy)
+            .audit(&with_action(motion([1.0, 0.0], 0.8, is_conservative)));
+        assert!(kinds(&report).contains(&"energy-drift"), "{}", report.answer);
+    }
+}
+
+fn with_action(mut subject: Subject) -> Subject {
+    let other = pendulum_subject();
+    (subject.inputs, subject.action, subject.action_scale) =
+        (other.inputs, other.action, other.action_scale);
+    subject
+}
+
+#[test]
 fn growth_of_the_system_is_no_fault_of_its_step() {
     // Inverted oscillators leave the finite numbers at any step, also where their energy is conserved.
     let inverted: Rates = |x| [x[1], x[0]];
