@@ -1,8 +1,6 @@
 //! `libration analyze`.
 
 use std::fmt::Write as _;
-use std::io;
-use std::io::Write as _;
 
 use libration_analyze::{
     Analysis, Criteria, ModifiedHamiltonian, OrderOfWord, Request, Stepping, Timing, analyze,
@@ -19,6 +17,7 @@ use super::{
 };
 use crate::args::{AnalyzeArgs, CostArgs};
 use crate::error::Failure;
+use crate::terminal;
 
 /// Analyzes one step and prints the result.
 pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
@@ -85,11 +84,7 @@ fn certified(word: &OrderOfWord) -> String {
 
 /// Prints the result.
 fn print(text: &str) -> Result<(), Failure> {
-    match io::stdout().lock().write_all(text.as_bytes()) {
-        // A closed pipe is not an error.
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        outcome => Ok(outcome?),
-    }
+    Ok(terminal::print(text)?)
 }
 
 /// Returns the analysis as text.
