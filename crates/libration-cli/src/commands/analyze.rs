@@ -1,8 +1,6 @@
 //! `libration analyze`.
 
 use std::fmt::Write as _;
-use std::io;
-use std::io::Write as _;
 
 use libration_analyze::{
     Analysis, Criteria, DEFAULT_STEPS, ModifiedHamiltonian, OrderOfWord, Request, Stepping, Timing,
@@ -21,6 +19,7 @@ use super::{
 };
 use crate::args::{AnalyzeArgs, CostArgs};
 use crate::error::Failure;
+use crate::terminal;
 
 /// Analyzes one step and prints the result.
 pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
@@ -103,11 +102,7 @@ fn certified(word: &OrderOfWord) -> String {
 
 /// Prints the result.
 fn print(text: &str) -> Result<(), Failure> {
-    match io::stdout().lock().write_all(text.as_bytes()) {
-        // A closed pipe is not an error.
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        outcome => Ok(outcome?),
-    }
+    Ok(terminal::print(text)?)
 }
 
 /// Returns the analysis as text.

@@ -146,7 +146,7 @@ fn a_saved_plant_is_read_again_whatever_its_names() {
         ["\u{202e}back", "\u{1f916}'s\u{a0}\u{200b}"],
         ["\\u0041", "#"],
         ["a\nb = 1", "tab\there"],
-        ["\u{1b}[31mred", "\u{7f}\u{85}"],
+        ["\u{1b}[31mred", "\u{7f}\u{85}z"],
     ] {
         let words =
             ["probe", "--command", command, "--state", "0,0", "--action", "0", "--dt", "0.1"];
