@@ -184,7 +184,7 @@ fn an_analysis_of_equations_derives_the_order_and_measures_it() {
         assert!((reduction / 16.0 - 1.0).abs() < 1e-3, "{error}");
     }
     // A current and friction: integrators that kick and drift fall to order one.
-    let motor = analysis("dc_motor.toml", "velocity-verlet", "0.001");
+    let motor = analysis("dc_motor.toml", "velocity-verlet", "0.0002");
     assert_eq!(motor["motion"]["order"], 1);
     assert_eq!(motor["motion"]["classical_order"], 2);
     for error in motor["motion"]["errors"].as_array().unwrap() {
