@@ -3,7 +3,7 @@
 use libration_core::number::Wide;
 use libration_core::{AnyMethod, Scalar};
 use libration_equations::{Definitions, Equations, Evaluation, StepProgram};
-use libration_linear::Matrix;
+use libration_linear::{Matrix, eigenvalues};
 use num_complex::Complex64;
 
 use super::eigenvalues::{characteristic_polynomial, largest_root, roots};
@@ -19,7 +19,10 @@ const EXACT: f64 = 1e-50;
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 /// The first step of the search, times the size of the fastest mode.
-const FIRST: f64 = 1.0 / 65_536.0;
+const FIRST: f64 = 1.0 / 1024.0;
+
+/// Growth in `f64` that is no rounding: a double eigenvalue is parted by the root of one.
+const CLEAR: f64 = 1e-6;
 
 /// Steps of the search in each doubling.
 const POINTS: f64 = 3.0;
@@ -27,7 +30,7 @@ const POINTS: f64 = 3.0;
 /// Halvings of the interval in which a window ends.
 const HALVINGS: usize = 30;
 
-/// The windows of steps from a 65536th of the time `1/|λ|` of the fastest mode to `most` of them, by eigenvalues of the update matrix in
+/// The windows of steps from a 1024th of the time `1/|λ|` of the fastest mode to `most` of them, by eigenvalues of the update matrix in
 /// 1024-bit arithmetic: growth as small as that of the fifth power of a step is one.
 ///
 /// None of a plant with too many states. Windows narrower than a quarter of their end may be missed.
@@ -49,6 +52,11 @@ pub(crate) fn neutral_windows(
     let is_neutral = exact.abs() <= EXACT * fastest;
     let mut is_stable = |z: f64| {
         let dt = z / fastest;
+        let step = stepper.with_step::<f64>(method, dt).map(|step| step.update_matrix());
+        let known = step.and_then(|matrix| eigenvalues(&matrix)).unwrap_or_default();
+        if known.iter().any(|value| value.norm() > 1.0 + CLEAR) {
+            return false;
+        }
         let allowed = if is_neutral { EXACT } else { ROUNDINGS * z + exact.max(0.0) * dt };
         growth(&mut run, values.len(), dt) <= allowed
     };
