@@ -197,7 +197,7 @@ inputs = [1]
     );
     let text = OSCILLATOR.replace("[[10, 2]]", "[[10, -2]]");
     let path = written(&folder, "grows.toml", &text);
-    libration(&["advise", "--config", path.to_str().unwrap()]).code(1).stderr(
+    libration(&["advise", "--config", path.to_str().unwrap()]).code(1).stdout(
         predicate::str::contains("a motion grows by the factor")
             .and(predicate::str::contains("x2, x1")),
     );
