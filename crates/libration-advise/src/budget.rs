@@ -138,9 +138,9 @@ impl TimedLoop {
                 false => String::new(),
             };
             match mode.radius - 1.0 {
-                neutral if neutral < NEUTRAL && self.names_states => format!(
-                    "a motion changes by less than 10⁻¹¹ per period{shape}"
-                ),
+                neutral if neutral < NEUTRAL && self.names_states => {
+                    format!("a motion changes by less than 10⁻¹¹ per period{shape}")
+                }
                 neutral if neutral < NEUTRAL => format!("a motion neither grows nor decays{shape}"),
                 small if small < 1e-3 => {
                     format!(

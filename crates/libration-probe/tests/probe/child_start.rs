@@ -6,7 +6,7 @@ use libration_probe::{BlackBoxError, ChildProcess};
 
 fn started(script: &str) -> ChildProcess {
     let words = ["sh", "-c", script].map(str::to_owned);
-    ChildProcess::start(&words, Duration::from_millis(100)).unwrap()
+    ChildProcess::start(&words, Vec::new(), Duration::from_millis(100)).unwrap()
 }
 
 #[test]
