@@ -77,7 +77,7 @@ class Analysis(Answer):
     note: str
     """A restriction of the numbers."""
     verdicts: dict[str, dict[str, Any]]
-    """What is stable or resolved: ``step``, ``motion`` and ``loop`` with ``outcome`` and ``evidence``, as far as they apply."""
+    """What is stable or resolved: ``plant``, ``step``, ``motion`` and ``loop`` with ``outcome`` and ``evidence``, as far as they apply."""
 
     # Of one step.
     system: Any
@@ -241,8 +241,6 @@ class Advice(Answer):
     """A command that takes the advised steps."""
     search: dict[str, Any] | None
     """What the search covers: ``integrators``, the shortest and the longest of ``steps`` in s, ``not_tried``; None for a loop."""
-    verdict: dict[str, Any] | Any
-    """Whether an integrator meets the tolerance: ``outcome``, ``evidence`` and what was ``not_examined``; None for a loop."""
     tried_down_to: float | None
     runner_up: str | None
     floats: list[dict[str, Any]]

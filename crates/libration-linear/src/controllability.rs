@@ -2,8 +2,8 @@
 
 use num_complex::Complex64;
 
+use crate::eigenvector::size_of;
 use crate::hessenberg::balance;
-use crate::plant_modes::size_of;
 use crate::{Matrix, eigenvector};
 
 /// A pair of matrices `A` and `B` in balanced coordinates.

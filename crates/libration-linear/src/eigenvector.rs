@@ -2,8 +2,12 @@
 
 use num_complex::Complex64;
 
-use crate::plant_modes::size_of;
 use crate::{Matrix, solve};
+
+/// The size of a state matrix; 1 of zero, which has a size in no unit.
+pub(crate) fn size_of(a: &Matrix) -> f64 {
+    if a.largest() == 0.0 { 1.0 } else { a.row_sum_norm() }
+}
 
 /// The right eigenvector of a simple eigenvalue, of largest entry 1; none if the matrix has an entry that is infinite or NaN.
 ///

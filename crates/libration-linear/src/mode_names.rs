@@ -4,8 +4,8 @@ use core::ops::Range;
 
 use num_complex::Complex64;
 
+use crate::eigenvector::size_of;
 use crate::hessenberg::HessenbergForm;
-use crate::plant_modes::size_of;
 use crate::{LinearPlant, Matrix, PlantMode, solve};
 
 /// Sine of the angle between eigenvectors below which they are one, of a repeated eigenvalue. Rounding parts those by its root.

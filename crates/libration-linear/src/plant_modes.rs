@@ -5,6 +5,7 @@ use core::f64::consts::TAU;
 use num_complex::Complex64;
 
 use crate::controllability::BalancedPair;
+use crate::eigenvector::size_of;
 use crate::{LinearPlant, Matrix, Signal, eigenvalues, eigenvector, solve};
 
 /// A mode of a plant.
@@ -103,11 +104,6 @@ impl LinearPlant {
             Some(period) => value.ln() / period,
         }
     }
-}
-
-/// The size of a state matrix; 1 of zero, which has a size in no unit.
-pub(crate) fn size_of(a: &Matrix) -> f64 {
-    if a.largest() == 0.0 { 1.0 } else { a.row_sum_norm() }
 }
 
 /// The signals that move most in a mode of this shape.

@@ -1,25 +1,14 @@
 //! A simulator that is another program: numbers on its standard input and output.
 
-use std::ffi::OsString;
-use std::io::{BufReader, Write};
-use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel, sync_channel};
-use std::thread;
+use std::io::Write;
+use std::sync::mpsc::{RecvTimeoutError, TryRecvError};
 use std::time::{Duration, Instant};
 
 use libration::linear::Matrix;
 use libration_report::notation::plural;
 
-use crate::child_streams::{read_line, show_messages};
-use crate::process_group::ProcessGroup;
+use crate::running_program::{Environment, RunningProgram};
 use crate::{BlackBox, BlackBoxError};
-
-/// The time in which messages must have arrived after the end of a program, whose own children may hold the pipe.
-const LAST_MESSAGES: Duration = Duration::from_millis(200);
-/// The time in which a program that closes its output or input must have ended, to be reported with its status.
-const LAST_STATUS: Duration = Duration::from_millis(200);
-/// Lines that wait to be read.
-const MOST_LINES: usize = 4;
 
 /// A program that gets a line `x₁ … xₙ u₁ … uₘ dt` for each step, and answers each with a line `x₁ … xₙ`, without waiting for more.
 ///
@@ -31,98 +20,13 @@ pub struct ChildProcess {
     patience: Duration,
     /// The end of the audit.
     deadline: Option<Instant>,
-    running: Running,
+    running: RunningProgram,
     has_energy: bool,
     /// Lines that were answered.
     answered: u64,
     reads_description: bool,
     /// The least time for a description.
     loading: Duration,
-}
-
-/// Environment variables of a program that differ from those of this process; without a value, it does not have them.
-pub type Environment = Vec<(&'static str, Option<OsString>)>;
-
-#[derive(Debug)]
-struct Running {
-    child: Child,
-    group: ProcessGroup,
-    input: Option<ChildStdin>,
-    lines: Receiver<Result<String, String>>,
-    /// Disconnected when all messages are shown.
-    messages: Receiver<()>,
-}
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        // A program that reads to the end of its input ends now; any other is killed.
-        drop(self.input.take());
-        // Before its identifier is free for another group.
-        self.group.end();
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-        let _ = self.messages.recv_timeout(LAST_MESSAGES);
-    }
-}
-
-impl Running {
-    fn start(words: &[String], environment: &Environment) -> Result<Self, BlackBoxError> {
-        let failed = |why: &dyn core::fmt::Display| {
-            let program = words.first().map_or("", String::as_str);
-            BlackBoxError::Failed(format!("cannot start `{program}`: {why}"))
-        };
-        let (program, arguments) = words.split_first().ok_or_else(|| failed(&"no program"))?;
-        let mut command = Command::new(program);
-        command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        for (name, value) in environment {
-            match value {
-                Some(value) => command.env(name, value),
-                None => command.env_remove(name),
-            };
-        }
-        let (mut child, group) =
-            ProcessGroup::start(&mut command).map_err(|error| failed(&error))?;
-        let (input, output) = (child.stdin.take(), child.stdout.take());
-        let output = output.ok_or_else(|| failed(&"it has no standard output"))?;
-        let (send, lines) = sync_channel(MOST_LINES);
-        thread::Builder::new()
-            .spawn(move || {
-                let mut output = BufReader::new(output);
-                loop {
-                    let line = read_line(&mut output);
-                    let is_last = line.is_err();
-                    // Nobody listens after the end of an audit.
-                    if send.send(line).is_err() || is_last {
-                        return;
-                    }
-                }
-            })
-            .map_err(|error| failed(&error))?;
-        let (done, messages) = channel();
-        let errors = child.stderr.take();
-        thread::Builder::new()
-            .spawn(move || {
-                let _open = done;
-                errors.map(show_messages)
-            })
-            .map_err(|error| failed(&error))?;
-        Ok(Running { child, group, input, lines, messages })
-    }
-
-    /// The status of a program that ends now or in a moment; none if it still runs.
-    fn last_status(&mut self) -> Option<ExitStatus> {
-        let end = Instant::now() + LAST_STATUS;
-        loop {
-            if let Some(status) = self.child.try_wait().ok().flatten() {
-                self.group.end();
-                return Some(status);
-            }
-            if Instant::now() >= end {
-                return None;
-            }
-            thread::sleep(Duration::from_millis(2));
-        }
-    }
 }
 
 impl ChildProcess {
@@ -139,7 +43,7 @@ impl ChildProcess {
             words: words.to_vec(),
             patience,
             deadline: None,
-            running: Running::start(words, &environment)?,
+            running: RunningProgram::start(words, &environment)?,
             environment,
             has_energy: false,
             answered: 0,
@@ -305,7 +209,7 @@ impl BlackBox for ChildProcess {
     }
 
     fn restart(&mut self) -> Result<bool, BlackBoxError> {
-        self.running = Running::start(&self.words, &self.environment)?;
+        self.running = RunningProgram::start(&self.words, &self.environment)?;
         self.answered = 0;
         if self.reads_description {
             self.first_line()?;

@@ -55,6 +55,8 @@ pub fn rate(text: &str) -> Option<f64> {
 pub fn excessive_latency(seconds: f64, period: f64) -> String {
     // Three digits are enough to see that it is far too much.
     let periods: f64 = format!("{:.2e}", seconds / period).parse().unwrap_or(f64::INFINITY);
+    let in_digits = |x: f64| if x < 1e7 { x.to_string() } else { format!("{x:e}") };
+    let [seconds, periods] = [seconds, periods].map(in_digits);
     format!("{seconds} is {seconds} s, {periods} periods; did you mean {seconds}ms?")
 }
 

@@ -86,7 +86,10 @@ fn actions(advice: &LinearAdvice) -> Vec<String> {
             actions
                 .push("Use the redesigned controller below, which is ready to paste.".to_owned());
         }
-        None if is_stable && advice.is_costly() && advice.schedule.is_empty() => actions.push(
+        // A loop that is unstable without imperfections has no cost under this timing.
+        None if advice.unstable_motions.is_empty()
+            && advice.is_costly()
+            && advice.schedule.is_empty() => actions.push(
             "Add `--redesign`, with weights of a cost, for the controller of least cost under this timing."
                 .to_owned(),
         ),

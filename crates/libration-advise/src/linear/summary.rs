@@ -23,7 +23,7 @@ impl LinearAdvice {
             None => all_met,
         };
         if let Some(point) = &self.operating_point {
-            text = format!("{} {}", text.trim_end(), point.sentence());
+            text = format!("{} {}", text.trim_end(), point.location());
         }
         text
     }

@@ -15,7 +15,6 @@ use libration::analysis::{LinearStepper, without_rounding};
 use libration::linear::{
     Complex64, DiscreteController, LinearLoop, LinearPlant, LoopTiming, Matrix, ModeDetails, Signal,
 };
-use libration_report::verdict::Verdict;
 use libration_settings::linear_loop::OperatingPoint;
 use serde::Serialize;
 
@@ -65,8 +64,6 @@ pub struct LinearAnalysis {
     /// The equilibrium at which the plant is a linearisation; none of other plants.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub operating_point: Option<OperatingPoint>,
-    /// Whether the modes grow. Unknown of modes that neither grow nor decay.
-    pub verdict: Verdict,
     /// Whether the plant is a linearisation that is zero to rounding, so that it decides nothing.
     #[serde(skip)]
     pub decides_nothing: bool,
@@ -87,7 +84,7 @@ pub struct LinearAnalysis {
     /// The closed loop; none without a controller.
     #[serde(rename = "loop")]
     pub closed_loop: Option<ClosedLoop>,
-    /// The verdicts on the step of the request and on the loop.
+    /// The verdicts on the plant, on the step of the request and on the loop.
     pub verdicts: LinearVerdicts,
     /// A restriction of the numbers, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -154,6 +151,11 @@ pub fn analyze(
         Some(timing) => Some(ClosedLoop::new(&request.linear, timing)?),
         None => None,
     };
+    let verdicts = LinearVerdicts::new(
+        plant_verdict::of_modes(&modes, point),
+        request.integrator.and(steps.first()),
+        closed_loop.as_ref(),
+    );
     Ok(LinearAnalysis {
         schema: SCHEMA,
         states: SignalName::all(&plant.states),
@@ -162,7 +164,6 @@ pub fn analyze(
         sampling_period: plant.sampling_period,
         mechanical: stepper.as_ref().is_some_and(LinearStepper::is_mechanical),
         operating_point: point.cloned(),
-        verdict: plant_verdict::of_modes(&modes, point),
         decides_nothing,
         modes,
         fastest_rate: fastest,
@@ -170,7 +171,7 @@ pub fn analyze(
         stiffness: slowest.map(|slowest| fastest / slowest),
         dt: request.dt,
         not_applicable: not_applicable.into_iter().map(AnyMethod::name).collect(),
-        verdicts: LinearVerdicts::new(request.integrator.and(steps.first()), closed_loop.as_ref()),
+        verdicts,
         steps,
         closed_loop,
         note: request.note.clone(),

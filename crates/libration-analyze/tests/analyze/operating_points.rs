@@ -26,7 +26,7 @@ fn growth(found: &EquationAnalysis) -> f64 {
 }
 
 fn outcome(found: &EquationAnalysis) -> Outcome {
-    found.linear.as_ref().unwrap().verdict.outcome
+    found.linear.as_ref().unwrap().verdicts.plant.outcome
 }
 
 fn step<'a>(found: &'a EquationAnalysis, method: &str) -> &'a StepAnalysis {
@@ -82,7 +82,7 @@ fn growth_and_decay_at_rounding_level_are_none_and_a_linearisation_of_zero_decid
     let friction = "coordinates = [\"x\"]\nacceleration.x = \"-x^3 - 0.1*x'\"\nstart = { x = 0.5 }";
     let found = analysis(friction, Method::Rk4, 0.01, 50);
     assert_eq!((outcome(&found), growth(&found)), (Outcome::Unknown, 0.0));
-    assert_eq!(found.linear.as_ref().unwrap().verdict.not_examined.len(), 1);
+    assert_eq!(found.linear.as_ref().unwrap().verdicts.plant.not_examined.len(), 1);
     assert_eq!(found.operating_point.as_ref().unwrap().undecided, 1);
 }
 

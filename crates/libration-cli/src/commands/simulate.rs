@@ -103,10 +103,9 @@ fn write(
     watcher.clear();
     let outcome = outcome?;
     let unsolved = outcome.newton_residual().and_then(|residual| residual.error());
+    let unsolved = unsolved.map(Failure::run);
     let warning = match outcome {
-        Outcome::Complete | Outcome::Iterated(_) => {
-            return unsolved.map_or(Ok(()), |error| Err(Failure::run(error)));
-        }
+        Outcome::Complete | Outcome::Iterated(_) => return unsolved.map_or(Ok(()), Err),
         Outcome::Diverged(Divergence { step, t, reason, .. }) => {
             let last = step - 1;
             format!("warning: the last row is step {last}: at step {step} (t = {t} s) {reason}")
@@ -122,7 +121,7 @@ fn write(
     if !quiet {
         terminal::say(&warning);
     }
-    Err(unsolved.map_or(Failure::Disagreement, Failure::run))
+    Err(unsolved.unwrap_or(Failure::Disagreement))
 }
 
 /// Returns the format of `--format` or of the extension of `--output`; both must agree.

@@ -47,7 +47,7 @@ fn implicit_integrators_are_listed_simulated_and_analysed() {
 #[test]
 fn an_unstable_step_names_the_limit_of_an_implicit_integrator() {
     libration("simulate --system oscillator --set omega2=1 --integrator stable-pd --dt 2 --steps 5000 --save-every 5000")
-        .success()
+        .code(1)
         .stderr(contains("ωΔt = 2 exceeds stable-pd's limit 1.15; choose --dt below 1.15"));
 }
 

@@ -11,7 +11,7 @@ use serde_json::Value;
 #[cfg(target_os = "linux")]
 use tempfile::TempDir;
 
-use crate::simulate::{folder, libration, stdout};
+use crate::simulate::{folder, libration};
 
 #[test]
 fn a_run_may_have_more_steps_than_anybody_waits_for() {
@@ -19,7 +19,8 @@ fn a_run_may_have_more_steps_than_anybody_waits_for() {
     // It overflows long before.
     let words = "simulate --system oscillator --integrator explicit-euler --dt 0.1 --format json \
                  --steps 9007199254740992 --save-every 1e14";
-    let json: Value = serde_json::from_str(&stdout(&folder, words)).unwrap();
+    let overflow = libration(&folder, words).assert().code(1);
+    let json: Value = serde_json::from_slice(&overflow.get_output().stdout).unwrap();
     assert_eq!(json["steps"], 1_u64 << 53);
     assert_eq!(json["rows"].as_array().unwrap().len(), 2);
     let words = words.replace("9007199254740992", "9007199254740993");

@@ -61,7 +61,10 @@ fn check(text: &str, what: &str) {
     }
     let forged = text.lines().filter(|line| line.contains("forged"));
     for line in forged {
-        assert!(!line.starts_with("error") && !line.starts_with("\u{1b}"), "{what}: {line:?}");
+        assert!(
+            !line.starts_with("error: forged") && !line.starts_with("\u{1b}"),
+            "{what}: {line:?}"
+        );
     }
 }
 

@@ -94,7 +94,7 @@ fn what_cannot_be_asked_of_timing_is_refused_in_words() {
         ("--integrator rk4 --jitter gamma:0.1", "gaussian:0.1"),
         ("--integrator rk4 --jitter gaussian:-1", "from 0 to 100"),
         ("--integrator rk4 --jitter uniform:1e300", "from 0 to 100"),
-        ("--integrator rk4 --latency 1e300", "1e302 steps"),
+        ("--integrator rk4 --latency 1e300", "1e302 periods"),
         ("--integrator rk9", "exact"),
         ("--integrator exact --max-drift 1e-3", "max-drift"),
     ] {

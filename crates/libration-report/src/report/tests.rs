@@ -18,7 +18,7 @@ fn a_single_page_has_a_link_to_each_of_its_headings() {
 #[test]
 fn a_page_may_load_nothing() {
     let page = render_page(&Page::default(), "");
-    for html in [page, crate::live::page(&[], "")] {
+    for html in [page, live::page(&[], "")] {
         let (head, _) = html.split_once("</head>").unwrap();
         let (_, policy) =
             head.split_once("<meta http-equiv=\"Content-Security-Policy\" content=\"").unwrap();

@@ -114,8 +114,13 @@ impl OperatingPoint {
         remarks.join(" ")
     }
 
-    /// The operating point in sentences.
+    /// The operating point in sentences, with its remarks.
     pub fn sentence(&self) -> String {
+        format!("{} {}", self.location(), self.remarks()).trim_end().to_owned()
+    }
+
+    /// The operating point in sentences that say where it is.
+    pub fn location(&self) -> String {
         let residual = match self.residual == 0.0 {
             true => String::new(),
             false => format!(", with an acceleration of {:.1e}", self.residual),
@@ -127,10 +132,6 @@ impl OperatingPoint {
             true => format!(", {} away from the start", digits(self.distance, 3)),
             false => String::new(),
         };
-        let remarks = match self.remarks() {
-            remarks if remarks.is_empty() => remarks,
-            remarks => format!(" {remarks}"),
-        };
         let kinks = match self.is_smooth {
             true => "",
             false => {
@@ -138,7 +139,7 @@ impl OperatingPoint {
             }
         };
         format!(
-            "The plant is the system {} linearised at {} under {}{residual}{distance}.{remarks}{kinks}",
+            "The plant is the system {} linearised at {} under {}{residual}{distance}.{kinks}",
             self.system,
             list(&self.states),
             list(&self.commands)

@@ -99,7 +99,7 @@ fn shorter_step(analysis: &LinearAnalysis) -> Option<f64> {
 
 /// Whether a mode of the plant grows.
 pub(super) fn is_unstable(analysis: &LinearAnalysis) -> bool {
-    analysis.verdict.outcome == Outcome::Unstable
+    analysis.verdicts.plant.outcome == Outcome::Unstable
 }
 
 /// The stability of a plant in a sentence, with the point at which it is a linearisation.
@@ -117,7 +117,7 @@ pub(super) fn verdict(analysis: &LinearAnalysis) -> String {
     let place = point.map(|point| format!(", linearised at {},", point.place()));
     let place = place.unwrap_or_default();
     let about = format!("plant ({}{clock}){place}", counts.join(", "));
-    let Verdict { outcome, evidence, .. } = &analysis.verdict;
+    let Verdict { outcome, evidence, .. } = &analysis.verdicts.plant;
     let sentence = match outcome {
         Outcome::Unknown if analysis.decides_nothing => {
             format!("The stability of the {about} is unknown: {evidence}.")
