@@ -52,7 +52,7 @@ def keywords_of_settings(settings: Mapping[str, Any]) -> tuple[str | EquationSys
     """
     try:
         return _keywords(settings)
-    except (KeyError, TypeError, AttributeError, IndexError, OverflowError, RecursionError) as error:
+    except (KeyError, TypeError, AttributeError, IndexError, ArithmeticError, RecursionError) as error:
         raise ValueError(f"the data set has settings of another form ({type(error).__name__}: {error}); expected those of datasets.write") from None
 
 

@@ -365,9 +365,10 @@ def check_step(name: str, dt: float, substeps: int, dtype: str) -> None:
 
 def check_within_episode(name: str, delay: tuple[float, float], dt: float, steps: Any) -> None:
     """Fail if a delay is as long as an episode: milliseconds that were given as seconds, as a rule."""
-    if not isinstance(steps, numbers.Real) or not 0 < steps < math.inf:
+    count = float(steps) if isinstance(steps, numbers.Real) else math.nan
+    if not 0.0 < count < math.inf:
         return
-    lasts = steps * dt
+    lasts = count * dt
     # A range may end somewhat later than a short episode.
     seconds = delay[1] if delay[1] >= 2 * lasts else delay[0]
     # A delay that is too long in milliseconds as well has another error.

@@ -48,7 +48,9 @@ def test_an_object_with_matrices_is_a_plant_and_its_labels_are_names():
     assert limit(advice, "output-latency", "rate") > 0.02
     # The request is a file that gives the same answer.
     repeated = json.loads(libration._native._advise(advice.request, False, False, None)[0])
-    assert repeated["budgets"] == advice["budgets"]
+    # Its commands name a file, those of a call have the call.
+    of = [[{**budget, "command": None} for budget in each["budgets"]] for each in (repeated, advice)]
+    assert of[0] == of[1]
 
 
 def test_the_gain_is_that_of_the_riccati_equation_of_the_sampled_plant():
@@ -442,7 +444,6 @@ def test_bad_input_is_refused_by_name():
         (StateFeedback([[20.0, 5.0]]), {"latency": [1, 2]}, ValueError, "2 values; expected one"),
         (StateFeedback([[20.0, 5.0]]), {"q": [1.0]}, TypeError, "q cannot be combined with a linear plant"),
         (StateFeedback([[20.0, 5.0]]), {"latency": -1.0}, ValueError, "expected a finite number of at least 0"),
-        (StateFeedback([[0.0, 0.0]]), {}, ValueError, "a motion grows"),
         (StateFeedback([[20.0, 5.0]]), {"deadline_misses": (2, 5)}, TypeError, "expected text like '2 of 5'"),
         (StateFeedback([[20.0, 5.0]]), {"deadline_misses": "5 of 2"}, ValueError, "expected `m of K`"),
         (StateFeedback([[20.0, 5.0]]), {"cost_weights": (1, 2, 3)}, TypeError, "expected \\(Q, R\\), weights of states and inputs"),
@@ -469,7 +470,7 @@ def test_bad_input_is_refused_by_name():
         lambda: advise(PENDULUM, LQR([10, 1], [0.1]), period=0.05, page=True),
         lambda: advise(PENDULUM, StateFeedback([[20.0, 5.0]]), latency=0.01, jitter=("uniform", 0.05)),
         lambda: advise("oscillator", libration.PD(10.0, 2.0), horizon=1.0, loss=0.1),
-        lambda: advise("oscillator", tolerance=("energy", 1e-3), horizon=1.0),
+        lambda: advise("oscillator", q=[1.0], tolerance=("energy", 1e-3), horizon=1.0),
         lambda: advise("oscillator", libration.PD(-10.0, -2.0)),
     ],
 )

@@ -159,7 +159,7 @@ def svgs(text):
 def test_the_page_has_a_named_map_of_each_result_and_needs_no_network(table, tmp_path):
     table.page(tmp_path / "page.html")
     text = (tmp_path / "page.html").read_text(encoding="utf-8")
-    assert "http" not in text and "<script" not in text and "src=" not in text
+    assert "http:" not in text and "https:" not in text and "<script" not in text and "src=" not in text
     assert [svg.get("aria-label") for svg in svgs(text)] == ["Map of sum over a and b", "Map of is_less over a and b"]
     assert "From 3 at a = 2 m, b = 1 to 13 at a = 3 m, b = 10. 2 points have no number, drawn in grey." in text
     assert "a (m)" in text and "a = 2 m, b = 9: 11" in text and "2 points failed" in text and "light-dark" in text

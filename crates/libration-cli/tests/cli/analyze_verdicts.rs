@@ -32,7 +32,9 @@ fn check(words: &str, sentence: &str, code: i32) -> Value {
     let verdicts = json["verdicts"].as_object().unwrap();
     let is_good =
         |verdict: &Value| ["stable", "resolved"].contains(&verdict["outcome"].as_str().unwrap());
-    assert_eq!(i32::from(!verdicts.values().all(is_good)), code, "{json}");
+    // A plant that is unstable by itself is no fault of a step.
+    let mut judged = verdicts.iter().filter(|(name, _)| *name != "plant");
+    assert_eq!(i32::from(!judged.all(|(_, verdict)| is_good(verdict))), code, "{json}");
     Value::Object(verdicts.clone())
 }
 

@@ -87,13 +87,14 @@ pub(crate) fn along_motion(steps: &MotionSteps, motion: &EquationMotion) -> Stri
     }
 }
 
-/// Half of the step, or of the largest stable one.
+/// Half of the step, or of the largest stable one at the equilibrium and along the motion.
 fn shorter(analysis: &EquationAnalysis) -> f64 {
     let EquationAnalysis { motion, linear, .. } = analysis;
     let own = |step: &&StepAnalysis| step.integrator == motion.integrator;
     let step = linear.as_ref().and_then(|linear| linear.steps.iter().find(own));
     let end = step.and_then(|step| step.stable_dt.as_deref()?.first()?[1]);
-    0.5 * end.map_or(motion.dt, |end| end.min(motion.dt))
+    let along = analysis.steps_along_motion.largest_stable_dt;
+    0.5 * [end, along].into_iter().flatten().fold(motion.dt, f64::min)
 }
 
 /// The first sentence is about an instability of the step, if there is one, else about the motion.
