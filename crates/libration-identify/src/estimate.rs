@@ -190,7 +190,7 @@ pub(crate) fn busiest(recording: &Recording, first: usize, count: usize) -> usiz
     let mut busiest = starts.filter(|&i| change(i) >= (1.0 - 1e-9) * most);
     let earliest = busiest.next().unwrap_or(first);
     // Of windows with the same changes, as of a single step, one that has the responses before them and three times as many behind them.
-    let latest = busiest.last().unwrap_or(earliest);
+    let latest = busiest.next_back().unwrap_or(earliest);
     latest - (latest - earliest) / 4
 }
 

@@ -43,6 +43,7 @@ struct Step<const N: usize> {
 
 impl<const N: usize> Step<N> {
     /// The step of twice the length `h`.
+    #[allow(clippy::needless_range_loop, reason = "an index of rows and of columns")]
     fn double(&mut self, h: f64) {
         let moved = times(&self.grown, &self.slope);
         // A command that rises has risen to `h` when the second half begins.
@@ -59,7 +60,7 @@ impl<const N: usize> Step<N> {
         }
         let square = product(&self.grown, &self.grown);
         for (grown, square) in self.grown.iter_mut().flatten().zip(square.iter().flatten()) {
-            *grown += *grown + square;
+            *grown = 2.0 * *grown + square;
         }
     }
 }

@@ -96,6 +96,7 @@ impl BalancedPair {
 
 /// The columns of the least right inverse of the matrix whose rows have these conjugates, by orthogonal rows; none if they depend on each
 /// other.
+#[allow(clippy::needless_range_loop, reason = "an index of rows and of columns")]
 fn right_inverse(mut rows: Vec<Vec<Complex64>>) -> Option<Vec<Vec<Complex64>>> {
     let n = rows.len();
     let norm = |x: &[Complex64]| x.iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt();

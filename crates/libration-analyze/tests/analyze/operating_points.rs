@@ -36,7 +36,7 @@ fn step<'a>(found: &'a EquationAnalysis, method: &str) -> &'a StepAnalysis {
 
 /// Where RK4 loses stability on the negative real axis and on the imaginary axis.
 const REAL: f64 = 2.785_293_563_405_282;
-const IMAGINARY: f64 = 2.828_427_124_746_190;
+const IMAGINARY: f64 = 2.828_427_124_746_19;
 
 const BODY: &str = "rate.a = \"-b*c\"\nrate.b = \"a*c\"\nrate.c = \"-a*b/3\"\n\
                     start = { a = 0.01, b = 1, c = 0.01 }";

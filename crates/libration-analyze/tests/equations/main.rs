@@ -1,5 +1,7 @@
 //! Systems by equations: the examples against SciPy, and their conserved energies.
 
+#![allow(clippy::unwrap_used)]
+
 mod verdicts;
 
 use std::fs;

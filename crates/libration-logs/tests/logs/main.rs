@@ -1,5 +1,7 @@
 //! Logs that other programs wrote; `tools/make_log_files.py` and `tools/make_db3_files.py` run them.
 
+#![allow(clippy::unwrap_used)]
+
 mod bags;
 mod mutations;
 mod other_bags;

@@ -3,6 +3,7 @@
 use libration_analyze::equation_analysis::{EquationAnalysis, EquationMotion, MotionSteps};
 use libration_analyze::linear_analysis::StepAnalysis;
 use libration_report::verdict::Verdict;
+use libration_settings::linear_loop::OperatingPoint;
 
 use super::super::digits::{limit, significant};
 use super::super::repeat_command::{SYSTEM, of_subcommand, with_option};
@@ -38,11 +39,11 @@ pub(crate) fn of_equations(analysis: &EquationAnalysis, order: &str) -> String {
         append_steps(linear, false, &mut summary);
     }
     summary.row("along the motion", &along_motion(&analysis.steps_along_motion, motion));
-    if let Some(point) = &analysis.operating_point {
-        summary.sentence(&point.sentence());
-    }
-    if let Some(linear) = &analysis.linear {
-        summary.sentence(&verdict(linear));
+    let point = analysis.operating_point.as_ref().map(OperatingPoint::sentence);
+    let plant = analysis.linear.as_ref().map(verdict);
+    let sentences: Vec<String> = point.into_iter().chain(plant).collect();
+    if !sentences.is_empty() {
+        summary.sentence(&sentences.join(" "));
     }
     let horizon = significant(motion.error_steps as f64 * motion.dt, 4);
     let more = ["--tolerance", "trajectory=1e-6", "--horizon", &horizon];
@@ -63,7 +64,7 @@ pub(crate) fn of_equations(analysis: &EquationAnalysis, order: &str) -> String {
 /// The largest stable step along the motion in words.
 pub(crate) fn along_motion(steps: &MotionSteps, motion: &EquationMotion) -> String {
     let until = significant(steps.until, 4);
-    let about = format!("an estimate from {} states up to {until} s", steps.states);
+    let about = format!("estimate of {} states", steps.states);
     let unknown = match steps.unknown_states {
         0 => String::new(),
         count => format!("; not known at {count} of them"),
@@ -73,17 +74,17 @@ pub(crate) fn along_motion(steps: &MotionSteps, motion: &EquationMotion) -> Stri
             format!("stable steps are not known at any of {} states up to {until} s", steps.states)
         }
         Some(0.0) => {
-            format!("no step is stable at {} s, {about}{unknown}", significant(steps.at_time, 3))
+            format!("no step is stable at {} s ({about}{unknown})", significant(steps.at_time, 3))
         }
         Some(dt) => {
             let exceeds = if motion.dt > dt { "; dt exceeds it" } else { "" };
             format!(
-                "stable up to {} s, at {} s, {about}{unknown}{exceeds}",
+                "stable up to {} s, at {} s ({about}{unknown}){exceeds}",
                 limit(dt, 4),
                 significant(steps.at_time, 3)
             )
         }
-        None => format!("no limit of stable steps, {about}{unknown}"),
+        None => format!("no limit of stable steps up to {until} s ({about}{unknown})"),
     }
 }
 
