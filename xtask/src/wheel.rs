@@ -173,6 +173,7 @@ mod tests {
                 "test_gymnasium_vector_suite.py",
                 "test_gymnasium_vector_wrappers.py",
                 "test_probe_gymnasium.py",
+                "test_probe_gymnasium_wrappers.py",
                 "test_sb3.py",
                 "test_spaces.py",
                 "test_specs.py",

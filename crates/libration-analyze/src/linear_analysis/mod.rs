@@ -122,9 +122,11 @@ pub fn analyze(
     if details.is_empty() {
         return Err(LinearAnalysisError::Eigenvalues);
     }
-    let values: Vec<Complex64> = details.iter().map(|mode| mode.value).collect();
-    let values = without_rounding(&values);
-    details.iter_mut().zip(&values).for_each(|(mode, &value)| mode.value = value);
+    // Of a sampled plant, a mode of factor zero is infinitely fast: beside it all others would be roundings.
+    let mut finite: Vec<&mut Complex64> = details.iter_mut().map(|mode| &mut mode.value).collect();
+    finite.retain(|value| value.is_finite());
+    let values: Vec<Complex64> = finite.iter().map(|value| **value).collect();
+    finite.into_iter().zip(without_rounding(&values)).for_each(|(own, value)| *own = value);
     plant_verdict::remove_rounding(plant, &mut details);
     let modes: Vec<Mode> = details.iter().map(Mode::from).collect();
     let point = request.operating_point.as_ref();

@@ -17,12 +17,22 @@ fn significant(x: f64) -> String {
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
+/// Roundings of an eigenvalue that may move the mean of a cluster of eigenvalues, whose projector is not orthogonal.
+const OF_MEAN: f64 = 1e3;
+
 /// Sets growth rates and eigenvalues to zero that roundings of the entries of the plant may cause.
+///
+/// Roundings part a multiple eigenvalue by a root of their size, but hardly move the mean of its parts (T. Kato, *Perturbation Theory for Linear
+/// Operators*, section II.2). A cluster is therefore zero only if its mean is: `(s + 1)¹⁰` decays.
 pub(super) fn remove_rounding(plant: &LinearPlant, details: &mut [ModeDetails]) {
     // The eigenvalues of a sampled plant are factors per period.
     let factor = |rate: Complex64| match plant.sampling_period {
         None => rate,
         Some(period) => (rate * period).exp(),
+    };
+    let rate = |factor: Complex64| match plant.sampling_period {
+        None => factor,
+        Some(period) => factor.ln() / period,
     };
     let upper = details.iter().map(|mode| factor(mode.value));
     let all: Vec<Complex64> = upper
@@ -31,15 +41,22 @@ pub(super) fn remove_rounding(plant: &LinearPlant, details: &mut [ModeDetails]) 
             _ => vec![value, value.conj()],
         })
         .collect();
-    for mode in details {
+    // A factor of zero decays at once.
+    for mode in details.iter_mut().filter(|mode| mode.value.is_finite()) {
         let value = factor(mode.value);
-        let mut rounding = eigenvalue_rounding(&plant.a, value, &all);
-        if let Some(period) = plant.sampling_period {
-            rounding /= value.norm() * period;
-        }
-        if mode.value.norm() <= rounding {
+        let per_rate = plant.sampling_period.map_or(1.0, |period| value.norm() * period);
+        let own = eigenvalue_rounding(&plant.a, value, &all);
+        let cluster: Vec<Complex64> =
+            all.iter().filter(|other| (*other - value).norm() <= 2.0 * own).copied().collect();
+        let mean = rate(cluster.iter().sum::<Complex64>() / cluster.len() as f64);
+        let rounding = own / per_rate;
+        let of_mean = match cluster.len() {
+            1 => rounding,
+            _ => rounding.min(OF_MEAN * eigenvalue_rounding(&plant.a, value, &[value]) / per_rate),
+        };
+        if mode.value.norm() <= rounding && mean.norm() <= of_mean {
             mode.value = Complex64::ZERO;
-        } else if mode.value.re.abs() <= rounding {
+        } else if mode.value.re.abs() <= rounding && mean.re.abs() <= of_mean {
             mode.value.re = 0.0;
         }
     }
@@ -53,7 +70,9 @@ pub(super) fn decides_nothing(modes: &[Mode], point: Option<&OperatingPoint>) ->
 
 /// The verdict of modes, the one that grows fastest first.
 pub(super) fn of_modes(modes: &[Mode], point: Option<&OperatingPoint>) -> Verdict {
-    let fastest = modes.iter().map(|mode| mode.natural_frequency).fold(0.0, f64::max);
+    // Of a sampled plant, a mode of factor zero is infinitely fast.
+    let sizes = modes.iter().map(|mode| mode.natural_frequency).filter(|size| size.is_finite());
+    let fastest = sizes.fold(0.0, f64::max);
     let Some(first) = modes.first() else { return Verdict::unknown("there are no modes") };
     let least = ROUNDING * fastest;
     let moved =

@@ -10,6 +10,7 @@ use libration_analyze::Stepping;
 use libration_analyze::linear_analysis::{
     LinearAnalysis, LinearAnalysisError, LinearRequest, StepAnalysis, analyze,
 };
+use libration_report::verdict::Outcome;
 use serde_json::Value;
 
 fn cases() -> Vec<Value> {
@@ -196,5 +197,61 @@ fn steps_that_overflow_have_no_numbers_and_no_panic() {
             let known = step.predicted_spectral_radius.is_none_or(f64::is_finite);
             assert!(known, "{step:?}");
         }
+    }
+}
+
+/// A plant of one input with this matrix.
+fn free(rows: &[Vec<f64>]) -> LinearPlant {
+    let n = rows.len();
+    let b = Matrix::from_rows(&vec![vec![1.0]; n]).unwrap();
+    let c = Matrix::identity(n);
+    LinearPlant::new(Matrix::from_rows(rows).unwrap(), b, c, Matrix::zeros(n, 1)).unwrap()
+}
+
+/// The companion matrix of `(s + shift)ⁿ`.
+fn multiple(n: usize, shift: f64) -> Vec<Vec<f64>> {
+    let mut coefficients = vec![1.0];
+    for _ in 0..n {
+        let shifted = coefficients.iter().map(|x| x * shift).chain([0.0]);
+        let raised = [0.0].into_iter().chain(coefficients.iter().copied());
+        coefficients = shifted.zip(raised).map(|(x, y)| x + y).collect();
+    }
+    let row = |i: usize| match i + 1 == n {
+        true => coefficients[..n].iter().map(|x| -x).collect(),
+        false => (0..n).map(|j| f64::from(j == i + 1)).collect(),
+    };
+    (0..n).map(row).collect()
+}
+
+#[test]
+fn a_multiple_pole_is_neutral_only_if_it_is_zero() {
+    for n in [2, 5, 8, 10] {
+        for (shift, wanted) in
+            [(1.0, Outcome::Stable), (-3.0, Outcome::Unstable), (0.0, Outcome::Unknown)]
+        {
+            let found = run(&open(free(&multiple(n, shift)), Some(10.0)));
+            assert_eq!(found.verdicts.plant.outcome, wanted, "{n} {shift} {:?}", found.modes);
+            // Explicit Euler multiplies by 1 − 10 for each pole of −1, and that of RK4 is 291 there.
+            for name in ["explicit-euler", "rk4"].into_iter().filter(|_| shift == 1.0) {
+                let verdict = step(&found, name).verdict.clone().unwrap();
+                assert_eq!(verdict.outcome, Outcome::Unstable, "{name} {n}: {verdict}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_sampled_mode_of_factor_zero_hides_no_growth() {
+    for (factor, wanted) in
+        [(2.0, Outcome::Unstable), (1.1, Outcome::Unstable), (0.9, Outcome::Stable)]
+    {
+        let mut plant = free(&[vec![factor, 0.0], vec![0.0, 0.0]]);
+        plant.sampling_period = Some(0.01);
+        let found = run(&open(plant, None));
+        assert_eq!(found.verdicts.plant.outcome, wanted, "{:?}", found.verdicts.plant);
+        let rates = found.modes.iter().map(|mode| mode.growth_rate);
+        let largest = rates.fold(f64::NEG_INFINITY, f64::max);
+        // To the rounding of a logarithm of a factor near 1.
+        assert!((largest - factor.ln() / 0.01).abs() < 1e-10 * largest.abs(), "{largest}");
     }
 }
