@@ -1,5 +1,6 @@
 """The names of the package: what its documents use, and nothing foreign."""
 
+import importlib.metadata
 import inspect
 import subprocess
 import sys
@@ -44,3 +45,11 @@ assert all(hasattr(libration, name) for name in libration.__all__)
     # An import that is blocked is a ModuleNotFoundError of that name.
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
+
+
+def test_the_package_contains_the_licenses_of_what_is_compiled_into_it():
+    files = {file.name: file for file in importlib.metadata.files("libration")}
+    text = files["THIRD-PARTY-LICENSES.txt"].read_text()
+    for name in ("parquet", "pyo3", "zstd-sys"):
+        assert f"\n{name} " in text
+    assert {"LICENSE-APACHE", "LICENSE-MIT"} <= files.keys()

@@ -1,6 +1,6 @@
-//! `cargo xtask dependencies`: the crates that the engine may depend on, and those of the wheel that the tests compile anyway.
+//! `cargo xtask dependencies`: the crates that the engine may depend on, those of the wheel that the tests compile anyway, and licenses.
 
-use crate::{Outcome, command};
+use crate::{Outcome, command, licenses};
 
 /// The engine, and what it depends on directly.
 const ALLOWED: [&str; 24] = [
@@ -36,7 +36,8 @@ const FORBIDDEN: [&str; 2] = ["serde", "serde_core"];
 /// Fails if the engine depends on a crate that is not listed, or the tests of the wheel would compile a crate once more.
 pub(crate) fn run() -> Outcome {
     engine()?;
-    wheel()
+    wheel()?;
+    licenses::check()
 }
 
 /// The wheel is made of what the tests of the workspace have compiled, if all its dependencies have the same features.

@@ -6,6 +6,7 @@ mod command;
 mod dependencies;
 mod examples;
 mod instructions;
+mod licenses;
 mod lints;
 mod live;
 mod processor_time;
@@ -40,7 +41,7 @@ enum Action {
     With(fn(&[String]) -> Outcome),
 }
 
-const TASKS: [Task; 13] = [
+const TASKS: [Task; 14] = [
     Task {
         name: "ci",
         summary: "all of the below up to `report`, with format, lints and documentation",
@@ -53,8 +54,13 @@ const TASKS: [Task; 13] = [
     },
     Task {
         name: "dependencies",
-        summary: "the engine depends on listed crates only, and tests compile none twice",
+        summary: "the engine depends on listed crates only, tests compile none twice, and licenses are listed",
         action: Action::Plain(dependencies::run),
+    },
+    Task {
+        name: "licenses",
+        summary: "writes THIRD-PARTY-LICENSES.txt, which the wheel contains",
+        action: Action::Plain(licenses::write),
     },
     Task {
         name: "codegen",
