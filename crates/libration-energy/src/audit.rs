@@ -64,7 +64,7 @@ pub fn audit(traces: &[EnergyTrace], requirement: Requirement) -> Result<EnergyR
         libration_version: env!("CARGO_PKG_VERSION"),
         repeat_command: String::new(),
     };
-    report.findings = findings(&report, &sorted);
+    report.findings = findings(&report, &sorted, requirement.scale);
     report.verdict = of_faults(&report);
     if let (Some(largest), Some(predicted), Some(_)) =
         (largest_dt, predicted, requirement.tolerance)

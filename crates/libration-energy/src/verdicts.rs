@@ -4,7 +4,7 @@ use libration_report::notation::{number, plural};
 use libration_report::verdict::{Outcome, Verdict};
 
 use crate::cause::OscillationCause;
-use crate::{EnergyReport, EnergyTrace, FindingKind, LargestDt};
+use crate::{EnergyReport, EnergyTrace, Finding, FindingKind, LargestDt};
 
 /// Part of an energy below which its digits are those of double precision.
 const FINE: f64 = 1e-12;
@@ -43,7 +43,7 @@ pub(crate) fn of_faults(report: &EnergyReport) -> Verdict {
 }
 
 /// Why the runs do not tell whether there is a fault.
-fn unclear(report: &EnergyReport) -> Vec<&'static str> {
+fn unclear(report: &EnergyReport) -> Vec<&str> {
     let has = |kind| report.findings.iter().any(|finding| finding.kind == kind);
     let reasons = [
         (
@@ -54,7 +54,11 @@ fn unclear(report: &EnergyReport) -> Vec<&'static str> {
         (has(FindingKind::UnclearWalk), "how the random walk depends on the step is unclear"),
         (has(FindingKind::DifferentStart), "the runs start at different energies"),
     ];
-    reasons.into_iter().filter(|(holds, _)| *holds).map(|(_, reason)| reason).collect()
+    let named = reasons.into_iter().filter(|(holds, _)| *holds).map(|(_, reason)| reason);
+    let is_told = |finding: &&Finding| {
+        matches!(finding.kind, FindingKind::NotConverged | FindingKind::LocalDeviation)
+    };
+    named.chain(report.findings.iter().filter(is_told).map(|own| own.text.as_str())).collect()
 }
 
 /// The deviation of a run over the horizon, relative to the allowed one: as measured, or at both ends of its interval.

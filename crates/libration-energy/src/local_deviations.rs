@@ -1,0 +1,146 @@
+//! Local deviations of an energy: samples, stretches and jumps that are out of line with all others.
+
+use crate::EnergyTrace;
+use crate::single_precision::{is_single_precision, quantum};
+
+/// Blocks of a run, whose largest values are compared.
+const BLOCKS: usize = 48;
+/// The most blocks that may be out of line.
+const MOST: usize = 6;
+/// Numbers of the largest blocks below those, which show how the largest values scatter: few for events that are fewer than the blocks.
+const TAILS: [usize; 2] = [10, 20];
+/// Samples that a block must have at a scale.
+const LEAST: usize = 3;
+/// Roundings of the energies below which values do not differ: a difference of fourth order adds up 16 of them.
+const ROUNDINGS: f64 = 16.0;
+/// The least ratio of values that are out of line to all others.
+const RATIO: f64 = 3.0;
+/// Part of the largest deviation of a run below which nothing matters.
+const SMALL: f64 = 0.01;
+/// Probability of an honest gap in a test.
+const LEVEL: f64 = 1e-6;
+/// The same for the confirmation of a deviation by another run.
+const CONFIRMED: f64 = 1e-2;
+
+/// A local deviation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LocalDeviation {
+    /// Its time.
+    pub time: f64,
+    /// Time between the values that are compared.
+    pub spacing: f64,
+    /// Distance from the curve through its neighbours.
+    pub size: f64,
+    /// How many times as large it is as the next largest.
+    pub ratio: f64,
+}
+
+/// Distances from the curves through neighbours, at samples and at means of 2, 4, … of them.
+pub(crate) struct Roughness {
+    scales: Vec<Scale>,
+    floor: f64,
+}
+
+struct Scale {
+    spacing: f64,
+    /// The largest distance of each block, with its time.
+    maxima: Vec<(f64, f64)>,
+}
+
+impl Roughness {
+    pub(crate) fn of(trace: &EnergyTrace) -> Self {
+        let largest = trace.energies.iter().fold(0.0_f64, |most, energy| most.max(energy.abs()));
+        let precision = match is_single_precision(&trace.energies) {
+            true => f64::from(f32::EPSILON),
+            false => f64::EPSILON,
+        };
+        let start = trace.energies[0];
+        let deviation = trace.energies.iter().map(|x| (x - start).abs()).fold(0.0, f64::max);
+        let rounding = ROUNDINGS * quantum(&trace.energies).max(precision * largest);
+        let floor = rounding.max(SMALL * deviation);
+        let (mut times, mut energies) = (trace.times.clone(), trace.energies.clone());
+        let mut scales = Vec::new();
+        while energies.len() >= LEAST * BLOCKS + 4 {
+            scales.push(Scale::of(&times, &energies));
+            let halve = |values: &[f64]| -> Vec<f64> {
+                values.chunks_exact(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect()
+            };
+            (times, energies) = (halve(&times), halve(&energies));
+        }
+        Roughness { scales, floor }
+    }
+
+    /// The largest distance of a sample.
+    pub(crate) fn largest(&self) -> f64 {
+        self.scales.first().map_or(0.0, |scale| scale.maxima[0].0)
+    }
+
+    /// The largest deviation that is out of line, at the finest scale that shows one.
+    pub(crate) fn out_of_line(&self) -> Option<LocalDeviation> {
+        self.scales.iter().find_map(|scale| scale.outliers(self.floor, LEVEL).into_iter().next())
+    }
+
+    /// The deviation of this run that is a deviation of another run, at about the same time.
+    pub(crate) fn same(&self, other: &LocalDeviation, within: f64) -> Option<LocalDeviation> {
+        let is_same = |own: &LocalDeviation| {
+            (own.time - other.time).abs() <= within + own.spacing + other.spacing
+        };
+        let near = |scale: &Scale| scale.outliers(self.floor, CONFIRMED).into_iter().find(is_same);
+        self.scales.iter().find_map(near)
+    }
+}
+
+impl Scale {
+    fn of(times: &[f64], energies: &[f64]) -> Self {
+        let distances: Vec<(f64, f64)> = (2..times.len() - 2)
+            .map(|i| (off_curve(&times[i - 2..i + 3], &energies[i - 2..i + 3]), times[i]))
+            .collect();
+        let edge = |k: usize| k * distances.len() / BLOCKS;
+        let largest = |k| {
+            let block = &distances[edge(k)..edge(k + 1)];
+            block.iter().copied().fold((0.0, 0.0), |a, b| if b.0 > a.0 { b } else { a })
+        };
+        let mut maxima: Vec<(f64, f64)> = (0..BLOCKS).map(largest).collect();
+        maxima.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let spacing = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
+        Scale { spacing, maxima }
+    }
+
+    /// The deviations that are out of line, the largest first.
+    ///
+    /// Of values with a tail of any power law, the logarithm of the ratio of the j-th largest to the next is exponential with the mean ξ/j,
+    /// and ξ is the mean logarithm of the ratios of the next to the smallest of the tail (Hill 1975; Rényi 1953). Tails that fall faster
+    /// have smaller ratios.
+    fn outliers(&self, floor: f64, level: f64) -> Vec<LocalDeviation> {
+        let value = |k: usize| self.maxima[k].0.max(floor);
+        let is_gap = |below: usize, tail: usize| {
+            let base = value(below + tail).ln();
+            let logs: f64 = (below..below + tail).map(|k| value(k).ln() - base).sum();
+            // The quantile of the ratio of an exponential number to the mean of as many others as the tail has.
+            let quantile = level.powf(-1.0 / tail as f64) - 1.0;
+            let allowed = (logs * quantile / below as f64).exp().max(RATIO);
+            value(below - 1) > allowed * value(below)
+        };
+        let is_gap = |below: &usize| TAILS.into_iter().any(|tail| is_gap(*below, tail));
+        let Some(count) = (1..=MOST).rev().find(is_gap) else { return Vec::new() };
+        let own = |k: usize| LocalDeviation {
+            time: self.maxima[k].1,
+            spacing: self.spacing,
+            size: self.maxima[k].0,
+            ratio: value(k) / value(count),
+        };
+        (0..count).map(own).collect()
+    }
+}
+
+/// The distance of the middle one of five values from the cubic curve through the others.
+fn off_curve(times: &[f64], energies: &[f64]) -> f64 {
+    let others = [0, 1, 3, 4];
+    let weight = |i: usize| -> f64 {
+        let factor = |j: usize| (times[2] - times[j]) / (times[i] - times[j]);
+        others.into_iter().filter(|j| *j != i).map(factor).product()
+    };
+    // Differences first: energies share most of their digits.
+    let distance: f64 = others.into_iter().map(|i| weight(i) * (energies[i] - energies[2])).sum();
+    distance.abs()
+}
