@@ -13,10 +13,12 @@ const TAILS: [usize; 2] = [10, 20];
 const LEAST: usize = 3;
 /// Roundings of the energies below which values do not differ: a difference of fourth order adds up 16 of them.
 const ROUNDINGS: f64 = 16.0;
+/// Samples for which any energy may be the same.
+const REPEATS: f64 = 4.0;
 /// The least ratio of values that are out of line to all others.
 const RATIO: f64 = 3.0;
 /// Part of the largest deviation of a run below which nothing matters.
-const SMALL: f64 = 0.01;
+const SMALL: f64 = 1e-3;
 /// Probability of an honest gap in a test.
 const LEVEL: f64 = 1e-6;
 /// The same for the confirmation of a deviation by another run.
@@ -38,6 +40,8 @@ pub(crate) struct LocalDeviation {
 /// Distances from the curves through neighbours, at samples and at means of 2, 4, … of them.
 pub(crate) struct Roughness {
     scales: Vec<Scale>,
+    /// Numbers of samples for which the energy is the same.
+    repeats: Scale,
     floor: f64,
 }
 
@@ -60,14 +64,15 @@ impl Roughness {
         let floor = rounding.max(SMALL * deviation);
         let (mut times, mut energies) = (trace.times.clone(), trace.energies.clone());
         let mut scales = Vec::new();
+        let repeats = Scale::of(&times, &repeats(&energies));
         while energies.len() >= LEAST * BLOCKS + 4 {
-            scales.push(Scale::of(&times, &energies));
+            scales.push(Scale::of(&times, &distances(&times, &energies)));
             let halve = |values: &[f64]| -> Vec<f64> {
                 values.chunks_exact(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect()
             };
             (times, energies) = (halve(&times), halve(&energies));
         }
-        Roughness { scales, floor }
+        Roughness { scales, repeats, floor }
     }
 
     /// The largest distance of a sample.
@@ -78,6 +83,16 @@ impl Roughness {
     /// The largest deviation that is out of line, at the finest scale that shows one.
     pub(crate) fn out_of_line(&self) -> Option<LocalDeviation> {
         self.scales.iter().find_map(|scale| scale.outliers(self.floor, LEVEL).into_iter().next())
+    }
+
+    /// The longest time for which the energy is the same number, if it is out of line.
+    pub(crate) fn repeated(&self) -> Option<LocalDeviation> {
+        self.repeats.outliers(REPEATS, LEVEL).into_iter().next()
+    }
+
+    /// Whether the energy is the same for the time of another run, somewhere in the run.
+    pub(crate) fn repeats_as(&self, other: &LocalDeviation) -> bool {
+        2.0 * self.repeats.maxima[0].0 * self.repeats.spacing > other.size * other.spacing
     }
 
     /// The deviation of this run that is a deviation of another run, at about the same time.
@@ -91,14 +106,11 @@ impl Roughness {
 }
 
 impl Scale {
-    fn of(times: &[f64], energies: &[f64]) -> Self {
-        let distances: Vec<(f64, f64)> = (2..times.len() - 2)
-            .map(|i| (off_curve(&times[i - 2..i + 3], &energies[i - 2..i + 3]), times[i]))
-            .collect();
-        let edge = |k: usize| k * distances.len() / BLOCKS;
+    fn of(times: &[f64], values: &[f64]) -> Self {
+        let edge = |k: usize| k * values.len() / BLOCKS;
         let largest = |k| {
-            let block = &distances[edge(k)..edge(k + 1)];
-            block.iter().copied().fold((0.0, 0.0), |a, b| if b.0 > a.0 { b } else { a })
+            let block = (edge(k)..edge(k + 1)).map(|i| (values[i], times[i]));
+            block.fold((0.0, 0.0), |a, b| if b.0 > a.0 { b } else { a })
         };
         let mut maxima: Vec<(f64, f64)> = (0..BLOCKS).map(largest).collect();
         maxima.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -131,6 +143,27 @@ impl Scale {
         };
         (0..count).map(own).collect()
     }
+}
+
+/// The number of samples before each that have the same energy.
+fn repeats(energies: &[f64]) -> Vec<f64> {
+    let mut count = 0.0;
+    let mut last = f64::NAN;
+    let next = |energy: &f64| {
+        count = if *energy == last { count + 1.0 } else { 0.0 };
+        last = *energy;
+        count
+    };
+    energies.iter().map(next).collect()
+}
+
+/// The distance of each sample from the curve through its neighbours; 0 for two at each end.
+fn distances(times: &[f64], energies: &[f64]) -> Vec<f64> {
+    let mut all = vec![0.0; times.len()];
+    for i in 2..times.len() - 2 {
+        all[i] = off_curve(&times[i - 2..i + 3], &energies[i - 2..i + 3]);
+    }
+    all
 }
 
 /// The distance of the middle one of five values from the cubic curve through the others.

@@ -10,14 +10,29 @@ const SAME_TIME: f64 = 0.05;
 /// Part of a deviation of the longest step that the shortest step keeps if it does not fall with the step.
 const STAYS: f64 = 0.5;
 
-/// That a run is out of line at a time, and others are not, or all by as much; else that the energy of a run jumps.
+/// That a run is out of line at a time, and others are not, or all by as much; else that its energy stands still or jumps alone.
 ///
 /// An event of the system is out of line in all runs at the same time, and by less with a shorter step.
 pub(crate) fn local(runs: &[Run], roughness: &[Roughness]) -> Option<Finding> {
-    deviation(runs, roughness).or_else(|| jump(runs))
+    let found = deviation(runs, roughness).or_else(|| repeated(runs, roughness));
+    found.or_else(|| jump(runs, roughness)).map(|text| Finding::new(FindingKind::LocalDeviation, text))
 }
 
-fn deviation(runs: &[Run], roughness: &[Roughness]) -> Option<Finding> {
+fn repeated(runs: &[Run], roughness: &[Roughness]) -> Option<String> {
+    runs.iter().zip(roughness).find_map(|(run, own)| {
+        let repeated = own.repeated()?;
+        roughness.iter().any(|other| !other.repeats_as(&repeated)).then(|| {
+            format!(
+                "the energy of `{}` is the same number in {} samples up to t = {} s, and another run does not stand still for as long",
+                run.title,
+                number(repeated.size + 1.0, 4),
+                number(repeated.time, 6)
+            )
+        })
+    })
+}
+
+fn deviation(runs: &[Run], roughness: &[Roughness]) -> Option<String> {
     let deviations = roughness.iter().map(Roughness::out_of_line);
     runs.iter().zip(deviations).find_map(|(run, deviation)| {
         let deviation = deviation?;
@@ -30,30 +45,29 @@ fn deviation(runs: &[Run], roughness: &[Roughness]) -> Option<Finding> {
             }
             Some(_) => return None,
         };
-        Some(Finding::new(
-            FindingKind::LocalDeviation,
-            format!(
-                "the energy of `{}` is out of line at t = {} s: {} off the curve through the neighbours, {} s apart, {} times as far as elsewhere; {others}",
-                run.title,
-                number(deviation.time, 6),
-                number(deviation.size, 2),
-                number(deviation.spacing, 2),
-                number(deviation.ratio, 2)
-            ),
+        Some(format!(
+            "the energy of `{}` is out of line at t = {} s: {} off the curve through the neighbours, {} s apart, {} times as far as elsewhere; {others}",
+            run.title,
+            number(deviation.time, 6),
+            number(deviation.size, 2),
+            number(deviation.spacing, 2),
+            number(deviation.ratio, 2)
         ))
     })
 }
 
-fn jump(runs: &[Run]) -> Option<Finding> {
-    let time = |run: &Run| run.walk.and_then(|walk| walk.jump);
-    let run = runs.iter().find(|run| time(run).is_some())?;
-    let at = time(run)?;
-    Some(Finding::new(
-        FindingKind::LocalDeviation,
-        format!(
-            "the mean energy of `{}` jumps at about t = {} s, by more than it changes in the rest of the run",
-            run.title,
-            number(at, 3)
-        ),
-    ))
+fn jump(runs: &[Run], roughness: &[Roughness]) -> Option<String> {
+    runs.iter().find_map(|run| {
+        let time = run.walk.and_then(|walk| walk.jump)?;
+        let spacing = SAME_TIME * run.duration;
+        let event = LocalDeviation { time, spacing, size: f64::NAN, ratio: f64::NAN };
+        // At an event of the system, such as a collision, errors of the steps may change the energy.
+        roughness.iter().any(|other| other.same(&event, spacing).is_none()).then(|| {
+            format!(
+                "the mean energy of `{}` jumps at about t = {} s, by more than it changes elsewhere, and a run has no event there",
+                run.title,
+                number(time, 3)
+            )
+        })
+    })
 }

@@ -66,6 +66,8 @@ pub struct Run {
     pub is_single_precision: bool,
     /// Whether samples are equidistant.
     pub is_equidistant: bool,
+    /// The longest time without samples in s, from and to, if most samples are at equal distances.
+    pub gap: Option<[f64; 2]>,
 }
 
 impl Run {
@@ -124,6 +126,7 @@ impl Run {
             walk,
             resolution,
             is_single_precision: is_single_precision(&trace.energies),
+            gap: trace.gap(),
             is_equidistant: trace
                 .times
                 .windows(2)

@@ -36,6 +36,11 @@ pub(crate) fn of_faults(report: &EnergyReport) -> Verdict {
             .without(format!("fluctuations below {}, the digits of a run", number(coarse, 2))),
         false => verdict,
     };
+    let gaps = report.runs.iter().filter_map(|run| run.gap.map(|gap| (run, gap)));
+    let verdict = gaps.fold(verdict, |verdict, (run, [from, to])| {
+        let [from, to] = [from, to].map(|time| number(time, 6));
+        verdict.without(format!("{from} to {to} s of `{}`, where samples are missing", run.title))
+    });
     match report.is_dt_assumed {
         true => verdict.without("time steps, taken from the spacing of the samples"),
         false => verdict,
