@@ -98,8 +98,11 @@ fn not_falling(runs: &[Run]) -> Option<String> {
     let grows = runs.windows(2).any(|pair| {
         is_seen(&pair[0]) && pair[0].deviation_from_start > RARE * pair[1].deviation_from_start
     });
-    let exponents: Vec<f64> =
-        runs.windows(2).filter(|pair| is_seen(&pair[0])).map(|pair| exponent(&pair[0], &pair[1])).collect();
+    let exponents: Vec<f64> = runs
+        .windows(2)
+        .filter(|pair| is_seen(&pair[0]))
+        .map(|pair| exponent(&pair[0], &pair[1]))
+        .collect();
     let bends = exponents.windows(2).any(|pair| (pair[1] - pair[0]).abs() > BEND);
     let why = match grows || (is_seen(first) && exponent(first, last) < FALLS) {
         true => "do not fall with the step",

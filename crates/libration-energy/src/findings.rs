@@ -3,8 +3,8 @@
 use libration_report::notation::number;
 
 use crate::FindingKind as Kind;
-use crate::interval::{exponent, interval};
 use crate::convergence::Convergence;
+use crate::interval::{exponent, interval};
 use crate::local_deviations::Roughness;
 use crate::{DriftCause, EnergyReport, EnergyTrace, Finding, PowerLaw, Run, WalkCause};
 use crate::{local_findings, oscillation_findings};

@@ -15,7 +15,9 @@ const STAYS: f64 = 0.5;
 /// An event of the system is out of line in all runs at the same time, and by less with a shorter step.
 pub(crate) fn local(runs: &[Run], roughness: &[Roughness]) -> Option<Finding> {
     let found = deviation(runs, roughness).or_else(|| repeated(runs, roughness));
-    found.or_else(|| jump(runs, roughness)).map(|text| Finding::new(FindingKind::LocalDeviation, text))
+    found
+        .or_else(|| jump(runs, roughness))
+        .map(|text| Finding::new(FindingKind::LocalDeviation, text))
 }
 
 fn repeated(runs: &[Run], roughness: &[Roughness]) -> Option<String> {

@@ -21,10 +21,9 @@ pub(crate) fn step_independent(
     }
     let (first, last) = (report.runs.first()?, report.runs.last()?);
     let (kind, why) = match convergence.stays_together {
-        true => (
-            Kind::StepIndependentOscillation,
-            "it is not the energy that the simulation conserves",
-        ),
+        true => {
+            (Kind::StepIndependentOscillation, "it is not the energy that the simulation conserves")
+        }
         false => (
             Kind::NotConverged,
             "the runs do not converge, as those of shorter steps do not stay together for longer: the steps do not resolve the motion, or forces are random",

@@ -22,7 +22,8 @@ pub(crate) fn quantum(values: &[f64]) -> f64 {
     let smallest = changes().filter(|change| *change > 0.0).fold(f64::INFINITY, f64::min);
     let largest = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     let allowed = MULTIPLES.1 + 4.0 * f64::EPSILON * largest / smallest;
-    let is_multiple = |change: &f64| (change / smallest - (change / smallest).round()).abs() < allowed;
+    let is_multiple =
+        |change: &f64| (change / smallest - (change / smallest).round()).abs() < allowed;
     let multiples = changes().filter(is_multiple).count() - equal;
     let others = values.len() - 1 - equal;
     let is_stored = multiples as f64 >= MULTIPLES.0 * others as f64;

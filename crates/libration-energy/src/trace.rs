@@ -48,11 +48,13 @@ impl EnergyTrace {
     pub(crate) fn gap(&self) -> Option<[f64; 2]> {
         let mut distances: Vec<f64> = self.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
         distances.sort_by(f64::total_cmp);
-        let [low, middle, high] = [0.1, 0.5, 0.9]
-            .map(|part: f64| distances[(part * distances.len() as f64) as usize]);
-        let longest = self.times.windows(2).max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])))?;
+        let [low, middle, high] =
+            [0.1, 0.5, 0.9].map(|part: f64| distances[(part * distances.len() as f64) as usize]);
+        let longest =
+            self.times.windows(2).max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])))?;
         let is_even = high - low < GAP * middle;
-        (is_even && longest[1] - longest[0] > (1.0 + GAP) * middle).then(|| [longest[0], longest[1]])
+        (is_even && longest[1] - longest[0] > (1.0 + GAP) * middle)
+            .then(|| [longest[0], longest[1]])
     }
 
     /// The time step in s.
