@@ -34,12 +34,14 @@ pub(crate) fn findings(
     found.extend(walk(report));
     if convergence.is_saturated {
         // How such energies depend on the step says nothing of the program, but for a drift of first order, which diverges.
-        found.retain(|finding| !finding.is_fault || finding.kind == Kind::FirstOrderDrift);
+        found.retain(|finding| finding.kind == Kind::FirstOrderDrift);
     }
     if !found.iter().any(|finding| finding.is_fault || finding.kind == Kind::NotConverged) {
         found.extend(convergence.reason.map(|reason| Finding::new(Kind::NotConverged, reason)));
     }
-    found.extend(local_findings::local(&report.runs, &roughness));
+    if !convergence.is_saturated {
+        found.extend(local_findings::local(&report.runs, &roughness));
+    }
     found.extend(short_run(report));
     found.extend(different_start(&report.runs));
     found.extend(thinned(traces));

@@ -104,6 +104,8 @@ pub(crate) fn of_tolerance(
             }
         })
         .collect();
+    let is_predicted = report.runs.iter().any(|run| largest.horizon > run.duration);
+    let converges = report.findings.iter().all(|own| own.kind != FindingKind::NotConverged);
     let count = |outcome| all.iter().filter(|own| own.outcome() == outcome).count();
     let (exceeding, unknown) = (count(Outcome::Exceeds), count(Outcome::Unknown));
     let of = format!("{} over {} s", largest.allowed_in_words(), number(largest.horizon, 4));
@@ -128,6 +130,9 @@ pub(crate) fn of_tolerance(
             "{unknown} of {runs} may deviate by up to {} times {of}: their intervals beyond the end of the runs are too wide",
             range(all.iter().map(|own| own.high).filter(|high| *high > 1.0))
         ));
+    }
+    if is_predicted && !converges {
+        return Verdict::unknown("the horizon is beyond the end of runs that do not converge");
     }
     let sizes = all.iter().map(|own| own.high);
     Verdict::new(
