@@ -21,8 +21,8 @@ const LONGER: f64 = 1.05;
 const THROUGHOUT: f64 = 0.95;
 /// The least exponent of the largest deviation, between 0 and 1.
 const FALLS: f64 = 0.5;
-/// Change of the exponent from step to step that neither rare events nor the next term of an error explain: a factor of 6 at half the step.
-const BEND: f64 = 2.5;
+/// Change of the exponent from step to step that neither rare events nor the next term of an error explain: a factor of 11 at half the step.
+const BEND: f64 = 3.5;
 /// Ratio by which the largest deviation of a shorter step may exceed that of its neighbour: rare events differ from run to run.
 const RARE: f64 = 1.5;
 

@@ -21,8 +21,6 @@ const RATIO: f64 = 3.0;
 const SMALL: f64 = 1e-3;
 /// Probability of an honest gap in a test.
 const LEVEL: f64 = 1e-6;
-/// The same for the confirmation of a deviation by another run.
-const CONFIRMED: f64 = 1e-2;
 
 /// A local deviation.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +33,8 @@ pub(crate) struct LocalDeviation {
     pub size: f64,
     /// How many times as large it is as the next largest.
     pub ratio: f64,
+    /// How many times as large it is as the middle one of all blocks.
+    pub prominence: f64,
 }
 
 /// Distances from the curves through neighbours, at samples and at means of 2, 4, … of them.
@@ -95,13 +95,15 @@ impl Roughness {
         2.0 * self.repeats.maxima[0].0 * self.repeats.spacing > other.size * other.spacing
     }
 
-    /// The deviation of this run that is a deviation of another run, at about the same time.
+    /// The deviation of this run, at about the same time, that is as prominent as one of another run, but for the square root.
     pub(crate) fn same(&self, other: &LocalDeviation, within: f64) -> Option<LocalDeviation> {
+        let distance = |scale: &Scale| (scale.spacing / other.spacing).ln().abs();
+        let nearest = self.scales.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
         let is_same = |own: &LocalDeviation| {
             (own.time - other.time).abs() <= within + own.spacing + other.spacing
+                && own.prominence >= other.prominence.sqrt().max(RATIO)
         };
-        let near = |scale: &Scale| scale.outliers(self.floor, CONFIRMED).into_iter().find(is_same);
-        self.scales.iter().find_map(near)
+        (0..MOST).map(|k| nearest.deviation(k, MOST, self.floor)).find(is_same)
     }
 }
 
@@ -135,13 +137,20 @@ impl Scale {
         };
         let is_gap = |below: &usize| TAILS.into_iter().any(|tail| is_gap(*below, tail));
         let Some(count) = (1..=MOST).rev().find(is_gap) else { return Vec::new() };
-        let own = |k: usize| LocalDeviation {
-            time: self.maxima[k].1,
+        (0..count).map(|k| self.deviation(k, count, floor)).collect()
+    }
+
+    /// The largest value but `k`, with that number of values which are out of line.
+    fn deviation(&self, k: usize, count: usize, floor: f64) -> LocalDeviation {
+        let (size, time) = self.maxima[k];
+        let value = |k: usize| self.maxima[k].0.max(floor);
+        LocalDeviation {
+            time,
             spacing: self.spacing,
-            size: self.maxima[k].0,
+            size,
             ratio: value(k) / value(count),
-        };
-        (0..count).map(own).collect()
+            prominence: value(k) / value(BLOCKS / 2),
+        }
     }
 }
 

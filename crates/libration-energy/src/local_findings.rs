@@ -10,14 +10,12 @@ const SAME_TIME: f64 = 0.05;
 /// Part of a deviation of the longest step that the shortest step keeps if it does not fall with the step.
 const STAYS: f64 = 0.5;
 
-/// That a run is out of line at a time, and others are not, or all by as much; else that its energy stands still or jumps alone.
+/// That a run is out of line at a time, and others are not, or all by as much; else that its energy stands still alone.
 ///
 /// An event of the system is out of line in all runs at the same time, and by less with a shorter step.
 pub(crate) fn local(runs: &[Run], roughness: &[Roughness]) -> Option<Finding> {
     let found = deviation(runs, roughness).or_else(|| repeated(runs, roughness));
-    found
-        .or_else(|| jump(runs, roughness))
-        .map(|text| Finding::new(FindingKind::LocalDeviation, text))
+    found.map(|text| Finding::new(FindingKind::LocalDeviation, text))
 }
 
 fn repeated(runs: &[Run], roughness: &[Roughness]) -> Option<String> {
@@ -55,21 +53,5 @@ fn deviation(runs: &[Run], roughness: &[Roughness]) -> Option<String> {
             number(deviation.spacing, 2),
             number(deviation.ratio, 2)
         ))
-    })
-}
-
-fn jump(runs: &[Run], roughness: &[Roughness]) -> Option<String> {
-    runs.iter().find_map(|run| {
-        let time = run.walk.and_then(|walk| walk.jump)?;
-        let spacing = SAME_TIME * run.duration;
-        let event = LocalDeviation { time, spacing, size: f64::NAN, ratio: f64::NAN };
-        // At an event of the system, such as a collision, errors of the steps may change the energy.
-        roughness.iter().any(|other| other.same(&event, spacing).is_none()).then(|| {
-            format!(
-                "the mean energy of `{}` jumps at about t = {} s, by more than it changes elsewhere, and a run has no event there",
-                run.title,
-                number(time, 3)
-            )
-        })
     })
 }

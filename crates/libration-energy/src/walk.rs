@@ -26,9 +26,6 @@ pub struct Walk {
     /// Whether the walk may be present, at a level of 5 %.
     #[serde(skip)]
     pub(crate) is_possible: bool,
-    /// The time at which the energy jumps instead.
-    #[serde(skip)]
-    pub(crate) jump: Option<f64>,
     /// Whether the walk is present; else the energy is that of a trend and of noise with a short memory.
     pub is_present: bool,
 }
@@ -42,9 +39,6 @@ impl Walk {
         // Means of a walk over batches move less than the walk.
         let per_second = 1.0 / (batches.spacing() * (1.0 - MEAN_DISTANCE));
         let Estimate { value, low, high } = fit.walk;
-        let moves = (value * batches.count() as f64).sqrt() > LEAKS * leakage;
-        let is_change = fit.evidence > PRESENT && moves;
-        let jump = jump(&batches.times, means);
         Some(Walk {
             diffusion: Estimate {
                 value: value * per_second,
@@ -52,17 +46,18 @@ impl Walk {
                 high: high * per_second,
             },
             evidence: fit.evidence,
-            is_possible: fit.evidence > POSSIBLE && moves,
-            is_present: is_change && jump.is_none(),
-            jump: jump.filter(|_| is_change),
+            is_possible: fit.evidence > POSSIBLE
+                && (value * batches.count() as f64).sqrt() > LEAKS * leakage,
+            is_present: fit.evidence > PRESENT
+                && !is_jump(means)
+                && (value * batches.count() as f64).sqrt() > LEAKS * leakage,
         })
     }
 }
 
-/// The time of a single jump that makes the means differ; the window may divide it between two changes.
-fn jump(times: &[f64], means: &[f64]) -> Option<f64> {
+/// Whether a single jump makes the means differ; the window may divide it between two changes.
+fn is_jump(means: &[f64]) -> bool {
     let changes: Vec<f64> = means.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).collect();
     let total: f64 = changes.iter().sum();
-    let at = changes.windows(2).position(|pair| pair[0] + pair[1] > JUMP * total)?;
-    Some(times[at + 1])
+    changes.windows(2).any(|pair| pair[0] + pair[1] > JUMP * total)
 }
