@@ -101,7 +101,7 @@ fn honest_runs_of_smooth_stiff_chaotic_and_colliding_systems_are_not_accused() {
         ("fine steps, single precision", mapped(fine(), single)),
         ("pendulum", runs(&pendulum(2.5), 0.1, 100.0)),
         ("pendulum from level", runs(&pendulum(std::f64::consts::FRAC_PI_2), 0.1, 100.0)),
-        ("pendulum from near the top", runs(&pendulum(3.14), 0.02, 40.0)),
+        ("pendulum from near the top", runs(&pendulum(3.13), 0.02, 40.0)),
         ("double pendulum", [0.04, 0.02, 0.01].map(|dt| double_pendulum(dt, 100.0))),
         ("ball on a spring", runs(&ball(1.0, 0.0), 0.002, 30.0)),
         ("ball, one bounce", runs(&ball(1.0, 0.0), 0.002, 3.5)),
