@@ -202,7 +202,9 @@ fn main() -> Result<(), IdentifyError> {
         ];
         let shares = truths.map(|(key, truth)| {
             let holds = |one: &&Identification| {
-                one.parameter(key).and_then(|p| p.likelihood_interval).is_some_and(|i| i.contains(truth))
+                one.parameter(key)
+                    .and_then(|p| p.likelihood_interval)
+                    .is_some_and(|i| i.contains(truth))
             };
             100.0 * found.iter().filter(holds).count() as f64 / count as f64
         });

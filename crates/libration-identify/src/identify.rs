@@ -97,7 +97,9 @@ pub fn identify(
         arrivals: arrivals.as_ref().map_or(ArrivalLaw::Certain, |fit| fit.law).name(),
         start: estimate.model.assumed_start(),
         correlation,
-        is_contradicted: residuals.contradict() || linearity.contradict() || lacks_commands(recording),
+        is_contradicted: residuals.contradict()
+            || linearity.contradict()
+            || lacks_commands(recording),
         residuals,
         linearity,
         other_dead_times: Vec::new(),
@@ -156,7 +158,10 @@ pub fn identify(
         ));
     }
     if found.depends_on_command && found.linearity.command_levels.is_none() {
-        not_examined.push("whether the response is proportional to the command, which has too few levels".to_owned());
+        not_examined.push(
+            "whether the response is proportional to the command, which has too few levels"
+                .to_owned(),
+        );
     }
     found.verdict = verdict(&found, &dependence, &context, not_examined);
     let is_good = found.verdict.is_good();

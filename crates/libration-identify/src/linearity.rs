@@ -76,10 +76,8 @@ impl LinearityTests {
             let forces = Recording { command_times: times, commands: forces, ..recording.clone() };
             through(&forces, 0.0, Hold::Zero)
         };
-        let rates: Vec<f64> = [0.0]
-            .into_iter()
-            .chain(predicted.windows(2).map(|pair| pair[1] - pair[0]))
-            .collect();
+        let rates: Vec<f64> =
+            [0.0].into_iter().chain(predicted.windows(2).map(|pair| pair[1] - pair[0])).collect();
         let of_rates = |f: fn(f64) -> f64| rates.iter().map(|&rate| f(rate)).collect::<Vec<f64>>();
         let mut directions: Vec<Vec<f64>> =
             plays(&recording.commands).into_iter().map(commanded).collect();
@@ -102,14 +100,24 @@ impl LinearityTests {
     /// What contradicts a linear plant, in words.
     pub(crate) fn contradictions(&self) -> Vec<String> {
         let named = [
-            ("the level of the command", "a dead zone, a limit or a coarse command", self.command_levels),
-            ("the level of the response", "a dead zone or a limit of the sensor", self.response_levels),
+            (
+                "the level of the command",
+                "a dead zone, a limit or a coarse command",
+                self.command_levels,
+            ),
+            (
+                "the level of the response",
+                "a dead zone or a limit of the sensor",
+                self.response_levels,
+            ),
             ("the direction of the motion", "backlash or friction", self.directions),
         ];
         named
             .into_iter()
             .filter_map(|(on, such, p)| Some((on, such, p.filter(|p| *p < CONTRADICTION)?)))
-            .map(|(on, such, p)| format!("they depend on {on} (p = {}), as with {such}", number(p, 2)))
+            .map(|(on, such, p)| {
+                format!("they depend on {on} (p = {}), as with {such}", number(p, 2))
+            })
             .collect()
     }
 

@@ -35,8 +35,7 @@ pub(crate) fn rival_dead_times(
     };
     let costs: Vec<f64> = (0..=count).map(|i| model.cost(window, &at(i))).collect();
     let cost = |i: usize| costs.get(i).copied().unwrap_or(f64::INFINITY);
-    let is_minimum =
-        |&i: &usize| cost(i) <= cost(i + 1) && (i == 0 || cost(i) < cost(i - 1));
+    let is_minimum = |&i: &usize| cost(i) <= cost(i + 1) && (i == 0 || cost(i) < cost(i - 1));
     let mut minima: Vec<usize> =
         (0..=count).filter(is_minimum).filter(|&i| is_far(grid * i as f64)).collect();
     minima.sort_by(|&a, &b| cost(a).total_cmp(&cost(b)));

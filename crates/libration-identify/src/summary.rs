@@ -69,7 +69,9 @@ pub(crate) fn answer(found: &Identification) -> String {
     let judgement = match found.verdict.outcome {
         Outcome::NoFault => "The residuals do not contradict the model.".to_owned(),
         Outcome::Unknown => {
-            format!("Whether these numbers are right is unknown: {evidence}. They have no intervals.")
+            format!(
+                "Whether these numbers are right is unknown: {evidence}. They have no intervals."
+            )
         }
         _ => format!("{}. The numbers have no intervals.", capitalised(evidence)),
     };

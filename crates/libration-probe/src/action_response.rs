@@ -42,7 +42,8 @@ pub(crate) fn uneven_response(
         }
     }
     let order = |a: &&(String, f64), b: &&(String, f64)| a.1.total_cmp(&b.1);
-    let (Some(least), Some(most)) = (slopes.iter().min_by(order), slopes.iter().max_by(order)) else {
+    let (Some(least), Some(most)) = (slopes.iter().min_by(order), slopes.iter().max_by(order))
+    else {
         return Ok(None);
     };
     if most.1 <= NOTHING {
