@@ -139,7 +139,7 @@ fn a_saved_plant_is_read_again_whatever_its_names() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("plant.toml");
     // A line break in the title would end the comment in front of the plant.
-    let command = "sh -c 'while read q v u dt; do echo $q $v; done #\nb = [[7.0], [7.0]]'";
+    let command = "sh -c 'while read q v u dt; do echo $u $v; done #\nb = [[7.0], [7.0]]'";
     for names in [
         ["Gelenk é", "nœud\u{a0}x"],
         ["a\"b\\c", "関節"],
