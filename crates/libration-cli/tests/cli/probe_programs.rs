@@ -139,7 +139,8 @@ fn a_saved_plant_is_read_again_whatever_its_names() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("plant.toml");
     // A line break in the title would end the comment in front of the plant.
-    let command = "sh -c 'while read q v u dt; do echo $u $v; done #\nb = [[7.0], [7.0]]'";
+    let command = "python3 -c 'import sys\nfor line in sys.stdin:\n    q, v, u, dt = map(float, line.split())\n    \
+                   print(q + dt * u, v, flush=True)\nb = [[7.0], [7.0]]'";
     for names in [
         ["Gelenk é", "nœud\u{a0}x"],
         ["a\"b\\c", "関節"],
