@@ -66,7 +66,7 @@ class Identification:
 
     @property
     def intervals(self) -> dict[str, tuple[float, float]]:
-        """The 95 % intervals by key; infinite ends where the recording excludes nothing. None without a good verdict."""
+        """The 95 % intervals by key; infinite ends where the recording excludes nothing. Empty if the verdict is not ``no-fault``."""
         return {
             row["key"]: (float(row["interval"]["low"]), _end(row["interval"]["high"]))
             for row in self.results["parameters"]
@@ -94,7 +94,10 @@ class Identification:
         of two dead times."""
         found = self.results["delay_range"]
         if found is None:
-            why = "the recording excludes no long dead time" if self.results["verdict"]["outcome"] == "no-fault" else f"the verdict is not good: {self.results['verdict']['evidence']}"
+            verdict = self.results["verdict"]
+            why = "the recording excludes no long dead time"
+            if verdict["outcome"] != "no-fault":
+                why = f"the verdict is {verdict['outcome']}: {verdict['evidence']}"
             raise ValueError(f"{why}; help: give the range of action_delay in s")
         low, high = found
         return float(low), float(high)

@@ -12,21 +12,13 @@ use crate::{Outcome, command, workspace};
 /// The name of the file, in the root of the workspace. The wheel and the source distribution contain it.
 const FILE: &str = "THIRD-PARTY-LICENSES.txt";
 
-/// What is given to users in compiled form.
+/// The packages that users get in compiled form.
 const ROOTS: [&str; 2] = ["libration-cli", "libration-py"];
 
 const HEAD: &str = "The program and the Python package of Libration contain the packages below, under these licenses.\n";
 
-/// Text of a package whose archive has none.
-const MIT: &str = "Permission is hereby granted, free of charge, to any person obtaining a copy of this software and associated \
-documentation files (the \"Software\"), to deal in the Software without restriction, including without limitation the rights to use, \
-copy, modify, merge, publish, distribute, sublicense, and/or sell copies of the Software, and to permit persons to whom the Software \
-is furnished to do so, subject to the following conditions:\n\nThe above copyright notice and this permission notice shall be \
-included in all copies or substantial portions of the Software.\n\nTHE SOFTWARE IS PROVIDED \"AS IS\", WITHOUT WARRANTY OF ANY KIND, \
-EXPRESS OR IMPLIED, INCLUDING BUT NOT LIMITED TO THE WARRANTIES OF MERCHANTABILITY, FITNESS FOR A PARTICULAR PURPOSE AND \
-NONINFRINGEMENT. IN NO EVENT SHALL THE AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER LIABILITY, WHETHER IN \
-AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM, OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE \
-SOFTWARE.";
+/// The license of Libration, whose text packages without one get under their own authors.
+const MIT: &str = include_str!("../../LICENSE-MIT");
 
 /// Writes the file.
 pub(crate) fn write() -> Outcome {
@@ -152,7 +144,8 @@ fn license(folder: &Path, package: &Value) -> Result<String, String> {
         package["authors"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
     let holders =
         if authors.is_empty() { "the authors of the package".into() } else { authors.join(", ") };
-    Ok(format!("Copyright (c) {holders}\n\n{MIT}"))
+    let (_, terms) = MIT.split_once("\n\nPermission").ok_or("LICENSE-MIT has no terms")?;
+    Ok(format!("Copyright (c) {holders}\n\nPermission{}", terms.trim_end()))
 }
 
 fn upper(path: &Path) -> String {

@@ -58,11 +58,6 @@ const TASKS: [Task; 14] = [
         action: Action::Plain(dependencies::run),
     },
     Task {
-        name: "licenses",
-        summary: "writes THIRD-PARTY-LICENSES.txt, which the wheel contains",
-        action: Action::Plain(licenses::write),
-    },
-    Task {
         name: "codegen",
         summary: "every batch kernel is made of vectors, read from its assembly",
         action: Action::Plain(codegen::run),
@@ -96,6 +91,11 @@ const TASKS: [Task; 14] = [
         name: "report",
         summary: "a quick `libration lab` and its files checked; with `built` of the program that is there",
         action: Action::With(|given| on_built(given, report::run, report::run_built)),
+    },
+    Task {
+        name: "licenses",
+        summary: "writes THIRD-PARTY-LICENSES.txt, which the wheel contains",
+        action: Action::Plain(licenses::write),
     },
     Task {
         name: "release",

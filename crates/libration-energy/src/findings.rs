@@ -24,7 +24,8 @@ pub(crate) fn findings(
     traces: &[&EnergyTrace],
     scale: Option<f64>,
 ) -> Vec<Finding> {
-    let roughness: Vec<Roughness> = traces.iter().map(|trace| Roughness::of(trace)).collect();
+    let roughness: Vec<Roughness> =
+        traces.iter().zip(&report.runs).map(|(trace, run)| Roughness::of(trace, run)).collect();
     let convergence = Convergence::of(traces, &report.runs, &roughness, scale);
     let mut found = Vec::new();
     found.extend(drift(report));

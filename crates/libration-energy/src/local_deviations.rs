@@ -1,7 +1,6 @@
 //! Local deviations of an energy: samples, stretches and jumps that are out of line with all others.
 
-use crate::EnergyTrace;
-use crate::single_precision::{is_single_precision, quantum};
+use crate::{EnergyTrace, Run};
 
 /// Blocks of a run, whose largest values are compared.
 const BLOCKS: usize = 48;
@@ -52,16 +51,13 @@ struct Scale {
 }
 
 impl Roughness {
-    pub(crate) fn of(trace: &EnergyTrace) -> Self {
-        let largest = trace.energies.iter().fold(0.0_f64, |most, energy| most.max(energy.abs()));
-        let precision = match is_single_precision(&trace.energies) {
+    pub(crate) fn of(trace: &EnergyTrace, run: &Run) -> Self {
+        let precision = match run.is_single_precision {
             true => f64::from(f32::EPSILON),
             false => f64::EPSILON,
         };
-        let start = trace.energies[0];
-        let deviation = trace.energies.iter().map(|x| (x - start).abs()).fold(0.0, f64::max);
-        let rounding = ROUNDINGS * quantum(&trace.energies).max(precision * largest);
-        let floor = rounding.max(SMALL * deviation);
+        let rounding = ROUNDINGS * run.resolution.max(precision * run.largest_energy);
+        let floor = rounding.max(SMALL * run.deviation_from_start);
         let (mut times, mut energies) = (trace.times.clone(), trace.energies.clone());
         let mut scales = Vec::new();
         let repeats = Scale::of(&times, &repeats(&energies));
@@ -82,12 +78,12 @@ impl Roughness {
 
     /// The largest deviation that is out of line, at the finest scale that shows one.
     pub(crate) fn out_of_line(&self) -> Option<LocalDeviation> {
-        self.scales.iter().find_map(|scale| scale.outliers(self.floor, LEVEL).into_iter().next())
+        self.scales.iter().find_map(|scale| scale.outliers(self.floor).into_iter().next())
     }
 
     /// The longest time for which the energy is the same number, if it is out of line.
     pub(crate) fn repeated(&self) -> Option<LocalDeviation> {
-        self.repeats.outliers(REPEATS, LEVEL).into_iter().next()
+        self.repeats.outliers(REPEATS).into_iter().next()
     }
 
     /// Whether the energy is the same for the time of another run, somewhere in the run.
@@ -122,16 +118,16 @@ impl Scale {
 
     /// The deviations that are out of line, the largest first.
     ///
-    /// Of values with a tail of any power law, the logarithm of the ratio of the j-th largest to the next is exponential with the mean ξ/j,
+    /// If the tail of the values is a power law, the logarithm of the ratio of the j-th largest to the next is exponential with the mean ξ/j,
     /// and ξ is the mean logarithm of the ratios of the next to the smallest of the tail (Hill 1975; Rényi 1953). Tails that fall faster
     /// have smaller ratios.
-    fn outliers(&self, floor: f64, level: f64) -> Vec<LocalDeviation> {
+    fn outliers(&self, floor: f64) -> Vec<LocalDeviation> {
         let value = |k: usize| self.maxima[k].0.max(floor);
         let is_gap = |below: usize, tail: usize| {
             let base = value(below + tail).ln();
             let logs: f64 = (below..below + tail).map(|k| value(k).ln() - base).sum();
             // The quantile of the ratio of an exponential number to the mean of as many others as the tail has.
-            let quantile = level.powf(-1.0 / tail as f64) - 1.0;
+            let quantile = LEVEL.powf(-1.0 / tail as f64) - 1.0;
             let allowed = (logs * quantile / below as f64).exp().max(RATIO);
             value(below - 1) > allowed * value(below)
         };

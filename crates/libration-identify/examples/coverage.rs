@@ -21,162 +21,82 @@ struct Case {
     foreign: fn(f64, u64) -> f64,
     /// The time of a single step, in place of random ones, in s.
     step: Option<f64>,
-    /// What acts of a command of random levels; of `None`, commands have two levels.
+    /// The action of a command of random levels; if there is none, commands have two levels and act as they are.
     acting: Option<fn(f64) -> f64>,
 }
 
+/// White noise, two levels, and a dead time of part of a period.
+const PLAIN: Case = Case {
+    name: "",
+    noise: NoiseKind::White,
+    dead_time: 0.0334,
+    lag: 0.05,
+    simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
+    foreign: |_, _| 0.0,
+    step: None,
+    acting: None,
+};
+
 /// Dead times are those of the middle of a period, of a whole number of periods, and of a lag that is short for the samples.
 const CASES: [Case; 15] = [
-    Case {
-        name: "white, part of a period",
-        noise: NoiseKind::White,
-        dead_time: 0.0334,
-        lag: 0.05,
-        simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
-        foreign: |_, _| 0.0,
-        step: None,
-        acting: None,
-    },
-    Case {
-        name: "white, whole periods",
-        noise: NoiseKind::White,
-        dead_time: 0.03,
-        lag: 0.05,
-        simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
-        foreign: |_, _| 0.0,
-        step: None,
-        acting: None,
-    },
-    Case {
-        name: "white, short lag",
-        noise: NoiseKind::White,
-        dead_time: 0.0334,
-        lag: 0.005,
-        simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
-        foreign: |_, _| 0.0,
-        step: None,
-        acting: None,
-    },
+    Case { name: "white, part of a period", ..PLAIN },
+    Case { name: "white, whole periods", dead_time: 0.03, ..PLAIN },
+    Case { name: "white, short lag", lag: 0.005, ..PLAIN },
     Case {
         name: "coloured",
         noise: NoiseKind::Coloured,
-        dead_time: 0.0334,
-        lag: 0.05,
         simulated: |plain| SimulatedLoop { white: 0.05, coloured: (0.05, 0.04), ..plain },
-        foreign: |_, _| 0.0,
-        step: None,
-        acting: None,
+        ..PLAIN
     },
     Case {
         name: "disturbance",
         noise: NoiseKind::Disturbance,
-        dead_time: 0.0334,
-        lag: 0.05,
         simulated: |plain| SimulatedLoop { white: 0.02, disturbance: 0.03, ..plain },
-        foreign: |_, _| 0.0,
-        step: None,
-        acting: None,
+        ..PLAIN
     },
     Case {
         name: "coloured, fitted as white",
-        noise: NoiseKind::White,
-        dead_time: 0.0334,
-        lag: 0.05,
         simulated: |plain| SimulatedLoop { white: 0.03, coloured: (0.06, 0.04), ..plain },
-        foreign: |_, _| 0.0,
-        step: None,
-        acting: None,
+        ..PLAIN
     },
     Case {
         name: "hum of 7 Hz, which no model has",
         noise: NoiseKind::Coloured,
-        dead_time: 0.0334,
-        lag: 0.05,
         simulated: |plain| SimulatedLoop { white: 0.03, ..plain },
         foreign: |time, seed| 0.08 * (44.0 * time + seed as f64).sin(),
-        step: None,
-        acting: None,
+        ..PLAIN
     },
     Case {
         name: "white, a step at 0.1 s",
-        noise: NoiseKind::White,
-        dead_time: 0.0334,
-        lag: 0.05,
         simulated: |plain| SimulatedLoop { white: 0.02, load: 0.0, ..plain },
-        foreign: |_, _| 0.0,
         step: Some(0.1),
-        acting: None,
+        ..PLAIN
     },
     Case {
         name: "white, a step at 1 s",
-        noise: NoiseKind::White,
         dead_time: 0.03,
-        lag: 0.05,
         simulated: |plain| SimulatedLoop { white: 0.02, load: 0.0, ..plain },
-        foreign: |_, _| 0.0,
         step: Some(1.0),
-        acting: None,
+        ..PLAIN
     },
-    Case {
-        name: "random levels, white",
-        noise: NoiseKind::White,
-        dead_time: 0.0334,
-        lag: 0.05,
-        simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
-        foreign: |_, _| 0.0,
-        step: None,
-        acting: Some(|u| u),
-    },
+    Case { name: "random levels, white", acting: Some(|u| u), ..PLAIN },
     Case {
         name: "random levels, coloured",
         noise: NoiseKind::Coloured,
-        dead_time: 0.0334,
-        lag: 0.05,
         simulated: |plain| SimulatedLoop { white: 0.05, coloured: (0.05, 0.04), ..plain },
-        foreign: |_, _| 0.0,
-        step: None,
         acting: Some(|u| u),
+        ..PLAIN
     },
     Case {
         name: "random levels, disturbance",
         noise: NoiseKind::Disturbance,
-        dead_time: 0.0334,
-        lag: 0.05,
         simulated: |plain| SimulatedLoop { white: 0.02, disturbance: 0.03, ..plain },
-        foreign: |_, _| 0.0,
-        step: None,
         acting: Some(|u| u),
+        ..PLAIN
     },
-    Case {
-        name: "command in steps of 1/16",
-        noise: NoiseKind::White,
-        dead_time: 0.0334,
-        lag: 0.05,
-        simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
-        foreign: |_, _| 0.0,
-        step: None,
-        acting: Some(|u| (16.0 * u).round() / 16.0),
-    },
-    Case {
-        name: "dead zone of 0.05",
-        noise: NoiseKind::White,
-        dead_time: 0.0334,
-        lag: 0.05,
-        simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
-        foreign: |_, _| 0.0,
-        step: None,
-        acting: Some(|u| u - u.clamp(-0.05, 0.05)),
-    },
-    Case {
-        name: "limit of 0.8",
-        noise: NoiseKind::White,
-        dead_time: 0.0334,
-        lag: 0.05,
-        simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
-        foreign: |_, _| 0.0,
-        step: None,
-        acting: Some(|u| u.clamp(-0.8, 0.8)),
-    },
+    Case { name: "command in steps of 1/16", acting: Some(|u| (16.0 * u).round() / 16.0), ..PLAIN },
+    Case { name: "dead zone of 0.05", acting: Some(|u| u - u.clamp(-0.05, 0.05)), ..PLAIN },
+    Case { name: "limit of 0.8", acting: Some(|u| u.clamp(-0.8, 0.8)), ..PLAIN },
 ];
 
 fn main() -> Result<(), IdentifyError> {

@@ -149,8 +149,9 @@ pub fn identify(
         not_examined
             .push(format!("the first {dropped}, up to the largest dead time of {dead_time}"));
     }
-    let period = warnings::period(recording).filter(|&period| period > largest);
-    if let Some(period) = period.filter(|_| estimate.model.known[0].is_none()) {
+    if estimate.model.known[0].is_none()
+        && let Some(period) = warnings::period(recording).filter(|&period| period > largest)
+    {
         let period = summary::seconds(period);
         not_examined.push(format!(
             "dead times above {}, of which the command repeats itself every {period}",

@@ -16,11 +16,11 @@ use crate::whitening::{Whitened, Window, whiten};
 /// Probabilities of innovations that depend at least as much on levels and directions, if the plant is linear.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LinearityTests {
-    /// Of levels of the command; `null` if it has too few to show them, such as two.
+    /// The probability for levels of the command; `null` if it has too few to show them, such as two.
     pub command_levels: Option<f64>,
-    /// Of levels of the response.
+    /// The probability for levels of the response.
     pub response_levels: Option<f64>,
-    /// Of the direction of command and response.
+    /// The probability for the direction of command and response.
     pub directions: Option<f64>,
 }
 
@@ -97,7 +97,7 @@ impl LinearityTests {
         }
     }
 
-    /// What contradicts a linear plant, in words.
+    /// The levels and directions that contradict a linear plant, in words.
     pub(crate) fn contradictions(&self) -> Vec<String> {
         let named = [
             (
@@ -171,7 +171,7 @@ fn length(column: &[f64]) -> f64 {
     column.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// What the parameters of a fit may add to its innovations. Of a dead time on both sides: there is a kink where an arrival meets a sample.
+/// The changes of the innovations by each parameter of a fit, to both sides: the likelihood has a kink where an arrival meets a sample.
 fn nuisances(estimate: &Estimate<'_>, window: Window<'_>, whitened: &Whitened) -> Basis {
     let model = &estimate.model;
     let columns = whitened.columns;

@@ -16,7 +16,7 @@ const NOTHING: f64 = 1e-12;
 /// Why the effect of an action is not known; `None` if the step responds in proportion.
 ///
 /// # Errors
-/// Those of the simulator.
+/// The simulator fails at the state.
 pub(crate) fn uneven_response(
     prober: &mut Prober<'_>,
     step: &LinearisedStep,

@@ -69,7 +69,14 @@ impl ProbeReport {
         let growth = format!("grows at {} 1/s", number(leading.step.growth_rate, 4));
         let names = leading.names();
         let is_at_rest = self.equilibrium.holds;
+        let is_neutral = leading.radius <= 1.0 + 1e-9;
+        let is_stable = match self.growth() {
+            Growth::OfStep => !is_at_rest && is_neutral,
+            Growth::None => is_at_rest || is_neutral,
+            Growth::OfSystem | Growth::Unknown => false,
+        };
         let mut text = match self.growth() {
+            _ if is_stable => format!("With dt = {dt} s the step is stable at this state"),
             Growth::OfSystem => {
                 format!("With dt = {dt} s a mode {growth}, as in the system itself ({names})")
             }
@@ -79,11 +86,8 @@ impl ProbeReport {
             Growth::Unknown => format!(
                 "With dt = {dt} s a mode of the step {growth} ({names}), and whether it does so in the system is unknown"
             ),
-            Growth::OfStep | Growth::None if leading.radius > 1.0 + 1e-9 && !is_at_rest => {
-                format!("With dt = {dt} s a mode of deviations from the motion {growth} ({names})")
-            }
             Growth::OfStep | Growth::None => {
-                format!("With dt = {dt} s the step is stable at this state")
+                format!("With dt = {dt} s a mode of deviations from the motion {growth} ({names})")
             }
         };
         // The fault comes first, and has the limit.
@@ -119,14 +123,9 @@ impl ProbeReport {
                 text += " (refsafe: contacts give way where dt exceeds half the time constant of solref)";
             }
         }
-        let is_stable = text.contains("the step is stable at this state");
         if is_stable {
-            let unseen = self.unseen_growth();
-            text += &format!(
-                "; growth below {} per step ({} 1/s) is not measurable",
-                number(unseen, 2),
-                number(unseen / self.dt, 2)
-            );
+            text += "; ";
+            text += &self.unseen_growth();
         }
         Some(text + ".")
     }

@@ -70,23 +70,24 @@ impl ProbeReport {
         }
         let checks = match self.modes.is_empty() {
             true => String::new(),
-            false => {
-                let unseen = self.unseen_growth();
-                format!(
-                    "spectral radius {}, growth below {} per step ({} 1/s) is not measurable",
-                    number(self.spectral_radius, 7),
-                    number(unseen, 2),
-                    number(unseen / self.dt, 2)
-                )
-            }
+            false => format!(
+                "spectral radius {}, {}",
+                number(self.spectral_radius, 7),
+                self.unseen_growth()
+            ),
         };
         Verdict::new(Outcome::NoFault, checks)
     }
 
-    /// Growth per step that the audit cannot tell from none.
-    pub(crate) fn unseen_growth(&self) -> f64 {
+    /// The growth per step that the audit cannot tell from none, in words.
+    pub(crate) fn unseen_growth(&self) -> String {
         let errors = self.modes.iter().map(|mode| 10.0 * mode.error * self.dt * mode.radius);
-        errors.fold(GROWTH, f64::max)
+        let unseen = errors.fold(GROWTH, f64::max);
+        format!(
+            "growth below {} per step ({} 1/s) is not measurable",
+            number(unseen, 2),
+            number(unseen / self.dt, 2)
+        )
     }
 
     /// What the fastest mode says.

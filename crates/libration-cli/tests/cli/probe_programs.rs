@@ -135,6 +135,18 @@ fn a_plant_goes_to_a_file_whose_format_is_known() {
 }
 
 #[test]
+fn a_plant_in_which_an_action_has_no_effect_is_not_saved() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("plant.toml");
+    let command = "sh -c 'while read q v u dt; do echo $q $v; done'";
+    let words = ["probe", "--command", command, "--state", "0,0", "--action", "0", "--dt", "0.1"];
+    libration(&[&words[..], &["--save-plant", path.to_str().unwrap()]].concat())
+        .code(1)
+        .stderr(contains("--save-plant: the effect of `u1` is zero in the matrices of the step"));
+    assert!(!path.exists());
+}
+
+#[test]
 fn a_saved_plant_is_read_again_whatever_its_names() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("plant.toml");
@@ -160,7 +172,7 @@ fn a_saved_plant_is_read_again_whatever_its_names() {
         let found: Vec<&str> = plant.states.iter().map(|signal| signal.name.as_str()).collect();
         // What acts on a terminal is text of its escape.
         assert_eq!(found, names.map(printable), "{text}");
-        // Of differences, which have seven digits; 7 from the title.
+        // Differences have seven digits; a line of the title would make it 7.
         assert!((plant.b.row(0)[0] - 1.0).abs() < 1e-6, "{text}");
     }
 }
