@@ -130,3 +130,28 @@ def test_a_step_within_the_largest_dead_time_is_read_from_rest_and_nothing_is_sa
         identify(t, u, y, start="resting")
     with pytest.raises(ValueError, match="budget"):
         identify(t, u, y, budget=5)
+
+
+def test_a_command_that_repeats_itself_leaves_no_loop_to_save_and_no_intervals(tmp_path):
+    # A square wave with a period of 0.3 s, 33.4 ms late, behind a lag of 50 ms in closed form: dead times up to 0.6 s have rivals 0.3 s apart.
+    count, dt, lag, late = 500, 0.01, 0.05, 0.0334
+    times = dt * np.arange(count)
+    commands = np.where(np.arange(count) % 30 < 15, 1.0, -1.0)
+    response, responses = 0.0, []
+    for k in range(count):
+        responses.append(response)
+        # The command of four periods ago acts until the one of three arrives.
+        for source, duration in ((k - 4, late - 3 * dt), (k - 3, 4 * dt - late)):
+            target = commands[source] if source >= 0 else 0.0
+            response = target + (response - target) * math.exp(-duration / lag)
+    responses = np.array(responses) + NOISE * np.random.default_rng(5).standard_normal(count)
+    found = identify(
+        times, commands, responses, model="lag", noise="white", hold="zero", largest_dead_time=0.6, random_arrivals=False, bootstrap=0
+    )
+    assert found.results["verdict"]["outcome"] == "unknown"
+    assert found.intervals == {}
+    with pytest.raises(ValueError, match="there is no loop to save: .* fit alike"):
+        found.save_loop(tmp_path / "loop.toml")
+    assert not (tmp_path / "loop.toml").exists()
+    with pytest.raises(ValueError, match="the verdict is unknown"):
+        found.delay_range
