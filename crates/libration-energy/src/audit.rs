@@ -9,8 +9,8 @@ use crate::power_law::PowerLaw;
 use crate::trace::checked;
 use crate::verdicts::{of_faults, of_tolerance};
 use crate::{
-    DriftCause, EnergyReport, EnergyTrace, Estimate, LargestDt, Requirement, Run, TraceError,
-    WalkCause,
+    DriftCause, EnergyReport, EnergyTrace, Estimate, FindingKind, LargestDt, Requirement, Run,
+    TraceError, WalkCause,
 };
 
 /// Audits the energies of runs of the same system at several time steps.
@@ -64,12 +64,17 @@ pub fn audit(traces: &[EnergyTrace], requirement: Requirement) -> Result<EnergyR
         libration_version: env!("CARGO_PKG_VERSION"),
         repeat_command: String::new(),
     };
-    report.findings = findings(&report, &sorted);
+    report.findings = findings(&report, &sorted, requirement.scale);
     report.verdict = of_faults(&report);
     if let (Some(largest), Some(predicted), Some(_)) =
         (largest_dt, predicted, requirement.tolerance)
     {
         report.tolerance_verdict = Some(of_tolerance(&report, &sorted, &largest, &predicted));
+    }
+    let is_unknown = report.findings.iter().any(|own| own.kind == FindingKind::NotConverged);
+    if let Some(largest) = report.largest_dt.as_mut().filter(|_| is_unknown) {
+        // Laws of runs that do not converge hold at no other step.
+        *largest = LargestDt { dt: None, low: None, high: None, is_unknown, ..*largest };
     }
     if report.is_dt_assumed {
         // Of samples that are thinned it would be too large by the thinning.

@@ -38,11 +38,15 @@ pub enum FindingKind {
     Thinned,
     /// Energies have too few digits.
     CoarseEnergy,
+    /// A sample, a stretch or a jump of a run is out of line with all others.
+    LocalDeviation,
+    /// The runs do not converge, so that their energies are no evidence.
+    NotConverged,
 }
 
 impl FindingKind {
     /// All kinds.
-    pub const ALL: [FindingKind; 15] = [
+    pub const ALL: [FindingKind; 17] = [
         FindingKind::StepIndependentDrift,
         FindingKind::StepIndependentOscillation,
         FindingKind::RoundingDrift,
@@ -58,6 +62,8 @@ impl FindingKind {
         FindingKind::DifferentStart,
         FindingKind::Thinned,
         FindingKind::CoarseEnergy,
+        FindingKind::LocalDeviation,
+        FindingKind::NotConverged,
     ];
 
     /// Its name in text and in JSON.
@@ -78,6 +84,8 @@ impl FindingKind {
             FindingKind::DifferentStart => "different-start",
             FindingKind::Thinned => "thinned",
             FindingKind::CoarseEnergy => "coarse-energy",
+            FindingKind::LocalDeviation => "local-deviation",
+            FindingKind::NotConverged => "not-converged",
         }
     }
 
@@ -130,6 +138,12 @@ impl FindingKind {
             }
             FindingKind::Thinned => "give the time steps with --dt",
             FindingKind::CoarseEnergy => "write energies with all digits",
+            FindingKind::LocalDeviation => {
+                "look at the run at that time: a damaged or missing row, a restart, a change of units, or an event that happens once"
+            }
+            FindingKind::NotConverged => {
+                "repeat the runs with steps at least four times as short, or write the energies of each step; of an energy with an arbitrary constant state the scale (--scale)"
+            }
         }
     }
 }

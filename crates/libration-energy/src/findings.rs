@@ -3,9 +3,11 @@
 use libration_report::notation::number;
 
 use crate::FindingKind as Kind;
+use crate::convergence::Convergence;
 use crate::interval::{exponent, interval};
-use crate::oscillation_findings;
+use crate::local_deviations::Roughness;
 use crate::{DriftCause, EnergyReport, EnergyTrace, Finding, PowerLaw, Run, WalkCause};
+use crate::{local_findings, oscillation_findings};
 
 /// Exponents below this are of first order.
 const FIRST_ORDER: f64 = 1.5;
@@ -17,13 +19,29 @@ const LONG: f64 = 1.05;
 const SINGLE: f64 = 6e-8;
 
 /// All findings, faults first.
-pub(crate) fn findings(report: &EnergyReport, traces: &[&EnergyTrace]) -> Vec<Finding> {
+pub(crate) fn findings(
+    report: &EnergyReport,
+    traces: &[&EnergyTrace],
+    scale: Option<f64>,
+) -> Vec<Finding> {
+    let roughness: Vec<Roughness> = traces.iter().map(|trace| Roughness::of(trace)).collect();
+    let convergence = Convergence::of(traces, &report.runs, &roughness, scale);
     let mut found = Vec::new();
     found.extend(drift(report));
-    found.extend(oscillation_findings::step_independent(report));
+    found.extend(oscillation_findings::step_independent(report, &convergence));
     found.extend(oscillation_findings::first_order(report));
     found.extend(oscillation_findings::unclear(report));
     found.extend(walk(report));
+    if convergence.is_saturated {
+        // How such energies depend on the step says nothing of the program, but for a drift of first order, which diverges.
+        found.retain(|finding| finding.kind == Kind::FirstOrderDrift);
+    }
+    if !found.iter().any(|finding| finding.is_fault || finding.kind == Kind::NotConverged) {
+        found.extend(convergence.reason.map(|reason| Finding::new(Kind::NotConverged, reason)));
+    }
+    if !convergence.is_saturated {
+        found.extend(local_findings::local(&report.runs, &roughness));
+    }
     found.extend(short_run(report));
     found.extend(different_start(&report.runs));
     found.extend(thinned(traces));

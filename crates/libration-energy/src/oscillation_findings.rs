@@ -3,26 +3,40 @@
 use libration_report::notation::number;
 
 use crate::FindingKind as Kind;
+use crate::convergence::Convergence;
 use crate::interval::{exponent, interval};
 use crate::{EnergyReport, Finding, OscillationCause, Run};
 
 /// Exponents below this are of first order.
 const FIRST_ORDER: f64 = 1.5;
 
-pub(crate) fn step_independent(report: &EnergyReport) -> Option<Finding> {
+/// That the oscillation does not fall with the step. It is a fault only of runs that stay together the longer, the shorter their steps:
+/// errors that saturate, and random forces, have as large a size at each step.
+pub(crate) fn step_independent(
+    report: &EnergyReport,
+    convergence: &Convergence,
+) -> Option<Finding> {
     if report.oscillation_cause != OscillationCause::StepIndependent {
         return None;
     }
     let (first, last) = (report.runs.first()?, report.runs.last()?);
+    let (kind, why) = match convergence.stays_together {
+        true => {
+            (Kind::StepIndependentOscillation, "it is not the energy that the simulation conserves")
+        }
+        false => (
+            Kind::NotConverged,
+            "the runs do not converge, as those of shorter steps do not stay together for longer: the steps do not resolve the motion, or forces are random",
+        ),
+    };
     Some(Finding::new(
-        Kind::StepIndependentOscillation,
+        kind,
         format!(
-            "the energy fluctuates by {} at dt = {} s and by {} at dt = {} s (standard deviations): {}",
+            "the energy fluctuates by {} at dt = {} s and by {} at dt = {} s (standard deviations): {why}",
             interval(first.oscillation, 3),
             number(first.dt, 4),
             interval(last.oscillation, 3),
             number(last.dt, 4),
-            "it is not the energy that the simulation conserves"
         ),
     ))
 }

@@ -66,6 +66,8 @@ pub struct Run {
     pub is_single_precision: bool,
     /// Whether samples are equidistant.
     pub is_equidistant: bool,
+    /// The longest time without samples in s, from and to, if most samples are at equal distances.
+    pub gap: Option<[f64; 2]>,
 }
 
 impl Run {
@@ -124,6 +126,7 @@ impl Run {
             walk,
             resolution,
             is_single_precision: is_single_precision(&trace.energies),
+            gap: trace.gap(),
             is_equidistant: trace
                 .times
                 .windows(2)
@@ -139,13 +142,18 @@ impl Run {
         self.drift_rate.value.abs() > self.finding_width
     }
 
+    /// Changes of the energy that its digits and its rounding explain: in double precision one rounding per step adds up as a walk.
+    pub(crate) fn rounding(&self) -> f64 {
+        let walk = f64::EPSILON * self.largest_energy * self.steps.sqrt();
+        let single = if self.is_single_precision { SINGLE * self.largest_energy } else { 0.0 };
+        (COARSE * self.resolution.max(walk)).max(single)
+    }
+
     /// Whether the energies have enough digits for their fluctuation.
     pub(crate) fn resolves_oscillation(&self) -> bool {
-        let stored = self.resolution.max(f64::EPSILON * self.largest_energy);
         let drift = self.drift_rate.value.abs() * self.duration;
-        self.oscillation.value > COARSE * stored
+        self.oscillation.value > self.rounding()
             && !(self.drifts() && self.oscillation.value < CURVED * drift)
-            && !(self.is_single_precision && self.oscillation.value < SINGLE * self.largest_energy)
     }
 
     /// Whether the run is too short for an interval of its oscillation.

@@ -12,6 +12,8 @@ const SAME_STEP: f64 = 1e-3;
 const SAME_DURATION: f64 = 0.05;
 /// Largest relative rms deviation of sampling intervals for which their mean is taken for the time step.
 const UNEVEN: f64 = 0.03;
+/// Part of a sampling interval by which distances of samples without gaps differ at most.
+const GAP: f64 = 0.5;
 /// Part of a sampling interval by which printed times may err.
 const PRINTED: f64 = 1e-3;
 
@@ -40,6 +42,19 @@ impl EnergyTrace {
     /// Mean time between samples in s.
     pub fn spacing(&self) -> f64 {
         self.duration() / self.times.len().saturating_sub(1).max(1) as f64
+    }
+
+    /// The longest time without samples, from and to, if most samples are at equal distances and those are not.
+    pub(crate) fn gap(&self) -> Option<[f64; 2]> {
+        let mut distances: Vec<f64> = self.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        distances.sort_by(f64::total_cmp);
+        let [low, middle, high] =
+            [0.1, 0.5, 0.9].map(|part: f64| distances[(part * distances.len() as f64) as usize]);
+        let longest =
+            self.times.windows(2).max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])))?;
+        let is_even = high - low < GAP * middle;
+        (is_even && longest[1] - longest[0] > (1.0 + GAP) * middle)
+            .then(|| [longest[0], longest[1]])
     }
 
     /// The time step in s.

@@ -4,7 +4,7 @@ use libration_report::notation::{number, plural};
 use libration_report::verdict::{Outcome, Verdict};
 
 use crate::cause::OscillationCause;
-use crate::{EnergyReport, EnergyTrace, FindingKind, LargestDt};
+use crate::{EnergyReport, EnergyTrace, Finding, FindingKind, LargestDt};
 
 /// Part of an energy below which its digits are those of double precision.
 const FINE: f64 = 1e-12;
@@ -36,6 +36,11 @@ pub(crate) fn of_faults(report: &EnergyReport) -> Verdict {
             .without(format!("fluctuations below {}, the digits of a run", number(coarse, 2))),
         false => verdict,
     };
+    let gaps = report.runs.iter().filter_map(|run| run.gap.map(|gap| (run, gap)));
+    let verdict = gaps.fold(verdict, |verdict, (run, [from, to])| {
+        let [from, to] = [from, to].map(|time| number(time, 6));
+        verdict.without(format!("{from} to {to} s of `{}`, where samples are missing", run.title))
+    });
     match report.is_dt_assumed {
         true => verdict.without("time steps, taken from the spacing of the samples"),
         false => verdict,
@@ -43,7 +48,7 @@ pub(crate) fn of_faults(report: &EnergyReport) -> Verdict {
 }
 
 /// Why the runs do not tell whether there is a fault.
-fn unclear(report: &EnergyReport) -> Vec<&'static str> {
+fn unclear(report: &EnergyReport) -> Vec<&str> {
     let has = |kind| report.findings.iter().any(|finding| finding.kind == kind);
     let reasons = [
         (
@@ -54,7 +59,11 @@ fn unclear(report: &EnergyReport) -> Vec<&'static str> {
         (has(FindingKind::UnclearWalk), "how the random walk depends on the step is unclear"),
         (has(FindingKind::DifferentStart), "the runs start at different energies"),
     ];
-    reasons.into_iter().filter(|(holds, _)| *holds).map(|(_, reason)| reason).collect()
+    let named = reasons.into_iter().filter(|(holds, _)| *holds).map(|(_, reason)| reason);
+    let is_told = |finding: &&Finding| {
+        matches!(finding.kind, FindingKind::NotConverged | FindingKind::LocalDeviation)
+    };
+    named.chain(report.findings.iter().filter(is_told).map(|own| own.text.as_str())).collect()
 }
 
 /// The deviation of a run over the horizon, relative to the allowed one: as measured, or at both ends of its interval.
@@ -95,6 +104,8 @@ pub(crate) fn of_tolerance(
             }
         })
         .collect();
+    let is_predicted = report.runs.iter().any(|run| largest.horizon > run.duration);
+    let converges = report.findings.iter().all(|own| own.kind != FindingKind::NotConverged);
     let count = |outcome| all.iter().filter(|own| own.outcome() == outcome).count();
     let (exceeding, unknown) = (count(Outcome::Exceeds), count(Outcome::Unknown));
     let of = format!("{} over {} s", largest.allowed_in_words(), number(largest.horizon, 4));
@@ -119,6 +130,9 @@ pub(crate) fn of_tolerance(
             "{unknown} of {runs} may deviate by up to {} times {of}: their intervals beyond the end of the runs are too wide",
             range(all.iter().map(|own| own.high).filter(|high| *high > 1.0))
         ));
+    }
+    if is_predicted && !converges {
+        return Verdict::unknown("the horizon is beyond the end of runs that do not converge");
     }
     let sizes = all.iter().map(|own| own.high);
     Verdict::new(
