@@ -29,3 +29,4 @@ pub use step::{
     LoopGrowth, ModifiedHamiltonian, OrderOfWord, Request, RequestSummary, StableLatencies,
     StepVerdicts, Stepping, Timing, analyze, analyze_until, loop_growth,
 };
+pub use step_verdict::{is_at_limit, is_within};

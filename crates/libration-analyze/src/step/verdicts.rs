@@ -5,12 +5,14 @@ use std::sync::atomic::AtomicBool;
 use libration::AnySystem;
 use libration::ensemble::dynamics_of;
 use libration::equations::StepProgram;
+use libration::linear::GROWTH_ROUNDING;
 use libration_report::verdict::{Outcome, Verdict};
 use libration_settings::units;
 use serde::Serialize;
 
 use super::{Analysis, AnalyzeError, LoopAnalysis, Request};
 use crate::digits::change_per_step;
+use crate::step_verdict::is_within;
 use crate::motion::{MotionExamination, MotionState, MotionSubject, examine};
 
 /// The verdicts on a step of a system of the catalogue. Of a loop there is that of the loop alone.
@@ -51,7 +53,7 @@ fn of_step(analysis: &Analysis, request: &Request) -> Verdict {
     let rounding = 0.5 * f64::EPSILON * exact.abs();
     let motions = format!("motions {}", change_per_step(excess));
     let moments = analysis.timing.as_ref().and_then(|timing| timing.growth?.mean_square_growth);
-    if let Some(growth) = moments.filter(|growth| *growth > ROUNDING) {
+    if let Some(growth) = moments.filter(|growth| *growth > GROWTH_ROUNDING) {
         let moments = change_per_step(growth);
         return Verdict::new(
             Outcome::Unstable,
@@ -61,6 +63,13 @@ fn of_step(analysis: &Analysis, request: &Request) -> Verdict {
     if excess != 0.0 && excess.abs() <= rounding {
         return Verdict::unknown(
             "at the limit of stability, motions neither grow nor decay beyond the rounding of its parameters",
+        );
+    }
+    let windows = analysis.stability_windows.as_deref().unwrap_or_default();
+    if excess > 0.0 && excess <= COEFFICIENTS && is_within(windows, request.dt) {
+        return Verdict::new(
+            Outcome::Stable,
+            "motions grow by less than the rounding of the integrator's coefficients, with which every motion stays bounded",
         );
     }
     match analysis.bounded {
@@ -82,8 +91,8 @@ fn of_step(analysis: &Analysis, request: &Request) -> Verdict {
     }
 }
 
-/// Growth of second moments per step that is rounding.
-const ROUNDING: f64 = 1e-12;
+/// Growth per step that rounded coefficients of an integrator may cause.
+const COEFFICIENTS: f64 = f64::EPSILON;
 
 /// A motion that grows in exact steps may grow by this part faster: the step is inaccurate then, not unstable.
 const FASTER: f64 = 1.5;

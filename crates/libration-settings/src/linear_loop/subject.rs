@@ -7,8 +7,41 @@ use libration::equations::{Degree, Dynamics};
 use libration::linear::Signal;
 use libration::{AnySystem, catalog, with_system};
 
+use super::{PlantTable, plant_file};
 use crate::equations::EquationSystem;
 use crate::{Fault, suggestions, units};
+
+/// Whether a name is that of a file of equations.
+pub(super) fn is_file(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"))
+}
+
+impl PlantTable {
+    /// The system of equations that the plant is the linearisation of; none of other plants.
+    ///
+    /// # Errors
+    /// [`Fault`]: as for [`PlantTable::plant`].
+    pub fn equations(&self) -> Result<Option<EquationSystem>, Fault> {
+        match (&self.file, &self.of) {
+            (Some(file), _) => {
+                let table = plant_file::read(Path::new(file));
+                table.map_err(|why| Fault::new("system.linear.file", why))?.equations()
+            }
+            (None, Some(of)) if is_file(of) => {
+                let parameters = self.parameters.iter().map(|(name, x)| (name.clone(), x.0));
+                Subject::system_of_file(of, &parameters.collect::<Vec<_>>()).map(Some)
+            }
+            (None, _) => Ok(None),
+        }
+    }
+
+    /// Whether the plant is a linear system of the catalogue.
+    pub fn is_linear_system(&self) -> bool {
+        let parameters = self.parameters.iter().map(|(name, x)| (name.as_str(), x.0));
+        let system = self.of.as_ref().map(|of| catalog::build(of, &parameters.collect::<Vec<_>>()));
+        system.is_some_and(|system| system.is_ok_and(|(system, _)| system.is_linear()))
+    }
+}
 
 /// A system that can be linearised.
 pub(super) struct Subject {
@@ -79,12 +112,17 @@ impl Subject {
     }
 
     pub(super) fn of_file(path: &str, parameters: &[(String, f64)]) -> Result<Self, Fault> {
+        Subject::of_equations(&Subject::system_of_file(path, parameters)?)
+    }
+
+    pub(super) fn system_of_file(
+        path: &str,
+        parameters: &[(String, f64)],
+    ) -> Result<EquationSystem, Fault> {
         let wrong =
             |why: String| Fault::new("system.linear.of", format!("cannot use `{path}`: {why}"));
         let text = crate::read_text(Path::new(path)).map_err(|error| wrong(error.to_string()))?;
-        let system = EquationSystem::parse(&text, path, parameters)
-            .map_err(|error| wrong(error.sentence()))?;
-        Subject::of_equations(&system)
+        EquationSystem::parse(&text, path, parameters).map_err(|error| wrong(error.sentence()))
     }
 
     pub(super) fn of_equations(system: &EquationSystem) -> Result<Self, Fault> {
