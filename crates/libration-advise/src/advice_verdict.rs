@@ -28,7 +28,9 @@ impl Advice {
                 let least =
                     self.integrators.iter().map(|choice| choice.lost).fold(f64::INFINITY, f64::min);
                 let evidence = match least.is_finite() {
-                    true => format!("the least error of a tried step is {least:.3e}, above {most:e}"),
+                    true => {
+                        format!("the least error of a tried step is {least:.3e}, above {most:e}")
+                    }
                     false => format!("no tried step follows the motion, tolerance {most:e}"),
                 };
                 Verdict::new(Outcome::Exceeds, evidence)

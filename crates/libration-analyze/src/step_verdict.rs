@@ -87,7 +87,8 @@ impl StepGrowth<'_> {
             false => evidence,
         };
         let decays = excess < -ROUNDING_OF_ZEROS && spurious <= 0.0;
-        if added <= DEFECTIVE && self.stable_dt.is_some_and(|windows| is_at_limit(windows, self.dt)) {
+        if added <= DEFECTIVE && self.stable_dt.is_some_and(|windows| is_at_limit(windows, self.dt))
+        {
             return self.verdict_at_limit();
         }
         if inside == Some(false) && !decays && added <= VISIBLE {

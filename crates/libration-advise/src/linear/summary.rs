@@ -54,7 +54,8 @@ impl LinearAdvice {
                 remedies.unwrap_or_default()
             );
         }
-        if let Some(motion) = self.motion.as_ref().filter(|motion| motion.contradiction().is_some()) {
+        if let Some(motion) = self.motion.as_ref().filter(|motion| motion.contradiction().is_some())
+        {
             return format!(
                 "The loop is {}: {}. Its linearisation is stable, and all limits are those of it.",
                 match self.verdict.outcome {
@@ -74,7 +75,9 @@ impl LinearAdvice {
                 "The simulation contradicts the theory of the loop: see the warnings.".to_owned()
             }
             _ if self.exceeds_tolerated_cost() => {
-                format!("{of_loop} is stable with the stated imperfections, but its cost exceeds the tolerance.")
+                format!(
+                    "{of_loop} is stable with the stated imperfections, but its cost exceeds the tolerance."
+                )
             }
             _ if let Some((budget, window)) = regained => describe_window(budget, window),
             (Some(margin), _) => format!(

@@ -232,7 +232,9 @@ impl SystemMotion {
     pub(super) fn contradiction(&self) -> Option<Verdict> {
         let outcome = match self.end {
             MotionEnd::Returns => return None,
-            MotionEnd::NotFinite | MotionEnd::Grows { .. } if self.deviation.is_none() => Outcome::Unstable,
+            MotionEnd::NotFinite | MotionEnd::Grows { .. } if self.deviation.is_none() => {
+                Outcome::Unstable
+            }
             _ => Outcome::Unknown,
         };
         Some(Verdict::new(outcome, self.in_words()))

@@ -12,8 +12,8 @@ use serde::Serialize;
 
 use super::{Analysis, AnalyzeError, LoopAnalysis, Request};
 use crate::digits::change_per_step;
-use crate::step_verdict::is_within;
 use crate::motion::{MotionExamination, MotionState, MotionSubject, examine};
+use crate::step_verdict::is_within;
 
 /// The verdicts on a step of a system of the catalogue. Of a loop there is that of the loop alone.
 #[derive(Clone, Debug, Default, Serialize)]

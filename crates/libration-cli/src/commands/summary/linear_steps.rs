@@ -1,7 +1,7 @@
 //! Steps of integrators on a linear plant.
 
-use libration_analyze::{is_at_limit, is_within};
 use libration_analyze::linear_analysis::{LinearAnalysis, StepAnalysis};
+use libration_analyze::{is_at_limit, is_within};
 
 use super::super::digits::{least, limit, significant};
 use super::Summary;
