@@ -4,6 +4,7 @@ use libration_report::verdict::{Outcome, Verdict};
 
 use crate::digits::{beside_one, change_per_step};
 use crate::linear_analysis::ModeUnderSteps;
+use crate::stable_steps::{is_at_limit, is_within};
 
 /// Growth per step of a matrix of simple eigenvalues that is rounding.
 const ROUNDING: f64 = 1e-11;
@@ -20,23 +21,6 @@ const DEFECTIVE: f64 = 1e-6;
 
 /// A mode of the plant that grows may grow by this part faster in steps: they are inaccurate then, not unstable.
 const FASTER: f64 = 1.5;
-
-/// Distance of a time step from the limit of stability, relative to it, within which rounding decides on the side.
-const AT_LIMIT: f64 = 4.0 * f64::EPSILON;
-
-/// Whether a time step is in one of these windows.
-pub fn is_within(windows: &[[Option<f64>; 2]], dt: f64) -> bool {
-    let is_in = |&[from, to]: &[Option<f64>; 2]| {
-        from.is_none_or(|from| from <= dt) && to.is_none_or(|to| dt <= to)
-    };
-    windows.iter().any(is_in)
-}
-
-/// Whether a time step is the longest or the shortest of a window, where multipliers leave the unit circle.
-pub fn is_at_limit(windows: &[[Option<f64>; 2]], dt: f64) -> bool {
-    let is_near = |end: &f64| *end > 0.0 && (dt - end).abs() <= AT_LIMIT * end;
-    windows.iter().flatten().flatten().any(is_near)
-}
 
 /// The growth of deviations in steps of an integrator on a linear system, or about an equilibrium.
 pub(crate) struct StepGrowth<'a> {

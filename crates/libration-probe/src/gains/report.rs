@@ -1,6 +1,6 @@
 //! The report on gains.
 
-use libration::linear::{Matrix, eigenvalues};
+use libration::linear::eigenvalues;
 use libration_report::verdict::Verdict;
 use serde::Serialize;
 

@@ -3,7 +3,7 @@
 use libration::linear::{Matrix, is_schur_stable, log_spectral_radius};
 
 /// Growth per step that is no rounding: the two factors of a free joint, both 1, are off by the root of a rounding.
-const OUTSIDE: f64 = 1e-7;
+pub(super) const OUTSIDE: f64 = 1e-7;
 /// Smallest and largest factor that is tried.
 const RANGE: [f64; 2] = [1e-6, 1e9];
 const RATIO: f64 = 1.5;

@@ -5,6 +5,7 @@ use libration_report::verdict::{Outcome, Verdict};
 
 use super::measured::MeasuredGains;
 use super::report::MOST_SUBSTEPS;
+use super::stable_factors::OUTSIDE;
 use super::{GainReport, ServoIntegrator, Torque};
 
 /// What the servo model does not have.
@@ -65,10 +66,18 @@ impl GainReport {
             ),
             None => Verdict::new(
                 Outcome::Unstable,
-                format!("spectral radius {radius} of the servo model"),
+                match self.is_at_limit() {
+                    true => format!("the servo model is at its limit: spectral radius {radius}"),
+                    false => format!("spectral radius {radius} of the servo model"),
+                },
             ),
         };
         verdict.without(NOT_MODELLED)
+    }
+
+    /// Whether gains do not hold because slightly longer steps are unstable.
+    fn is_at_limit(&self) -> bool {
+        !self.holds && self.spectral_radius.ln() <= OUTSIDE
     }
 
     /// The steps in words.
@@ -143,6 +152,10 @@ impl GainReport {
         }
         let mut text = if self.holds {
             format!("The gains hold with {integrator} and {of}")
+        } else if self.is_at_limit() {
+            format!(
+                "The gains do not hold with {integrator} and {of}: they are at the limit of stability, where a motion does not decay or grows with the number of steps"
+            )
         } else {
             format!(
                 "The gains do not hold with {integrator} and {of}: a mode grows by a factor {} per step",

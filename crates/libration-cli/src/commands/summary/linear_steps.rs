@@ -1,7 +1,7 @@
 //! Steps of integrators on a linear plant.
 
 use libration_analyze::linear_analysis::{LinearAnalysis, StepAnalysis};
-use libration_analyze::{is_at_limit, is_within};
+use libration_analyze::{beside_one, is_at_limit, is_within};
 
 use super::super::digits::{least, limit, significant};
 use super::Summary;
@@ -78,12 +78,8 @@ pub(super) fn append_steps(analysis: &LinearAnalysis, is_one: bool, summary: &mu
     }
     append_predictions(&analysis.steps, summary);
     if is_one && let Some(radius) = first.predicted_spectral_radius {
-        summary.row("spectral radius", &format!("1 {}, predicted", signed(radius - 1.0)));
+        summary.row("spectral radius", &format!("{}, predicted", beside_one(radius - 1.0)));
     }
-}
-
-fn signed(x: f64) -> String {
-    format!("{} {}", if x < 0.0 { "−" } else { "+" }, significant(x.abs(), 5))
 }
 
 /// Relative difference of a simulated growth from the prediction that is rounding.
