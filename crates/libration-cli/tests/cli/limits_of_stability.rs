@@ -12,13 +12,11 @@ fn answer(command: &str) -> (String, i32) {
     (String::from_utf8(output.stdout.clone()).unwrap(), output.status.code().unwrap())
 }
 
+/// The outcome of a verdict in JSON, by its key. Some numbers there are beyond those of a parser.
 fn outcome(command: &str, verdict: &str) -> String {
     let (text, _) = answer(&format!("{command} --json"));
-    let json: Value = serde_json::from_str(&text).unwrap();
-    json.pointer(verdict).unwrap_or_else(|| panic!("{text}"))["outcome"]
-        .as_str()
-        .unwrap()
-        .to_owned()
+    let own = text.split(&format!("\"{verdict}\": {{")).nth(1).unwrap_or_else(|| panic!("{text}"));
+    own.split('"').nth(3).unwrap().to_owned()
 }
 
 /// Both multipliers are −1 at ωh = 2 with one shape: deviations grow with the number of steps. With ω = 16 and h = 1/8 no number is rounded.
@@ -34,11 +32,9 @@ fn a_step_at_the_limit_is_unstable_for_the_catalogue_the_plant_and_servos() {
         let matrices = format!("analyze --plant {} {step}", plant.display());
         let servo = format!("gains --inertia 1 --kp 256 {step}");
         for (dt, wanted) in [("0.125", "unstable"), ("0.1249", "stable"), ("0.1251", "unstable")] {
-            for (command, verdict) in [
-                (&catalogue, "/verdicts/step"),
-                (&matrices, "/verdicts/step"),
-                (&servo, "/verdict"),
-            ] {
+            for (command, verdict) in
+                [(&catalogue, "step"), (&matrices, "step"), (&servo, "verdict")]
+            {
                 assert_eq!(outcome(&format!("{command} {dt}"), verdict), wanted, "{command} {dt}");
             }
         }
@@ -81,6 +77,16 @@ fn a_rate_that_is_rounding_is_no_growth() {
     }
 }
 
+/// Rounded coefficients of Dormand and Prince's integrator add 10⁻¹⁶ (ωh)² to its growth; that of explicit Euler is (ωh)²/2.
+#[test]
+fn growth_by_rounded_coefficients_is_no_verdict() {
+    for (integrator, wanted) in [("dormand-prince-5", "unknown"), ("explicit-euler", "unstable")] {
+        let step = format!("--integrator {integrator} --dt 1e-9");
+        let command = format!("analyze --system oscillator --set omega2=400 {step}");
+        assert_eq!(outcome(&command, "step"), wanted, "{integrator}");
+    }
+}
+
 /// Explicit Euler grows by (ωh)²/2 = 2·10⁻¹⁶ per step, which no `f64` shows.
 #[test]
 fn a_step_is_not_stable_beside_never_stable() {
@@ -88,10 +94,10 @@ fn a_step_is_not_stable_beside_never_stable() {
     let plant = written(&folder, "plant.toml", "a = [[0, 1], [-400, 0]]\nb = [[0], [1]]\n");
     for (dt, wanted) in [("1e-9", "unknown"), ("3e-10", "unknown"), ("1e-6", "unstable")] {
         let step = format!("--plant {} --integrator explicit-euler --dt {dt}", plant.display());
-        assert_eq!(outcome(&format!("analyze {step}"), "/verdicts/step"), wanted, "{dt}");
+        assert_eq!(outcome(&format!("analyze {step}"), "step"), wanted, "{dt}");
         let (text, code) = answer(&format!("analyze {step}"));
         assert!(text.contains("never stable: explicit-euler") && code == 1, "{text}");
-        assert!(!text.contains("s is stable on"), "{text}");
+        assert!(!text.starts_with("explicit-euler") || wanted == "unstable", "{text}");
     }
 }
 
@@ -109,7 +115,7 @@ fn a_number_that_is_missing_is_not_printed() {
             "is stable",
         ),
     ] {
-        let (text, _) = answer(&command);
+        let text = answer(&command).0.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(text.contains(said), "{text}");
         let is_number = |word: &str| !["NaN", "inf"].contains(&word.trim_matches([',', ';', '.']));
         assert!(text.split_whitespace().all(is_number), "{command}: {text}");

@@ -2,7 +2,6 @@
 
 use libration::linear::{Matrix, Signal};
 
-use super::stable_factors::TrialStep;
 use super::{ServoIntegrator, Servos, Torque};
 
 impl Servos {
@@ -18,11 +17,6 @@ impl Servos {
             Torque::EachSubstep => self.step(integrator, h),
             Torque::Held => self.held_step(integrator, h, substeps),
         }
-    }
-
-    /// The matrix of a substep or time step as [`Servos::period`], with that of a slightly longer one.
-    pub(super) fn trial(&self, integrator: ServoIntegrator, dt: f64, substeps: u32) -> TrialStep {
-        TrialStep::new(|dt| self.period(integrator, dt, substeps), dt)
     }
 
     /// Substeps under the torques `−K_p q − K_v v` of their beginning.

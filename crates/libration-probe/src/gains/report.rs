@@ -1,6 +1,6 @@
 //! The report on gains.
 
-use libration::linear::eigenvalues;
+use libration::linear::{Matrix, eigenvalues};
 use libration_report::verdict::Verdict;
 use serde::Serialize;
 
@@ -8,7 +8,7 @@ use super::gain_limits::GainLimits;
 use super::limit_in_json::limit;
 use super::measured::MeasuredGains;
 use super::servo_mode::{ServoMode, modes};
-use super::stable_factors::{StableFactors, TrialStep};
+use super::stable_factors::{StableFactors, growth, holds, is_stable};
 use super::{ServoIntegrator, Servos, Torque};
 
 /// Most substeps that are tried.
@@ -118,17 +118,16 @@ pub fn gains(
     notes: Vec<String>,
 ) -> GainReport {
     let row = |integrator: ServoIntegrator| {
-        let step = |servos: &Servos| servos.trial(integrator, dt, substeps);
-        let own = step(servos);
+        let step = |servos: &Servos| servos.period(integrator, dt, substeps);
         let factor = StableFactors::search(|factor| step(&servos.with_factor(factor)));
         IntegratorRow {
             name: integrator.name(),
             title: integrator.title(),
-            holds: own.is_stable(),
+            holds: holds(|dt| servos.period(integrator, dt, substeps), dt),
             largest_factor: factor.most,
             least_factor: factor.least,
             fewest_substeps: fewest_substeps(servos, dt, integrator),
-            spectral_radius: own.growth().exp(),
+            spectral_radius: growth(step(servos)).exp(),
         }
     };
     let integrators: Vec<IntegratorRow> = ServoIntegrator::all().map(row).collect();
@@ -140,7 +139,7 @@ pub fn gains(
     };
     let parts = if servos.torque == Torque::Held { substeps } else { 1 };
     let step = |length: f64| servos.period(integrator, length, parts);
-    let passive = servos.passive().trial(integrator, length, parts).is_stable();
+    let passive = is_stable(servos.passive().period(integrator, length, parts));
     let mut report = GainReport {
         answer: String::new(),
         verdict: Verdict::unknown("no step was examined"),
@@ -178,7 +177,7 @@ fn continuous_growth(servos: &Servos) -> Option<f64> {
 }
 
 fn fewest_substeps(servos: &Servos, dt: f64, integrator: ServoIntegrator) -> Option<u32> {
-    let holds = |substeps: u32| servos.trial(integrator, dt, substeps).is_stable();
+    let holds = |substeps: u32| holds(|dt| servos.period(integrator, dt, substeps), dt);
     // Doubling finds a number that holds, bisection the fewest.
     let mut high = 1;
     while !holds(high) {
@@ -210,8 +209,8 @@ fn joint_row(
     let damping = kv + alone.damping[(0, 0)];
     let damping_ratio = (omega > 0.0).then(|| damping / inertia / (2.0 * omega));
     // Longer steps change ωh at the same damping ratio.
-    let longest = StableFactors::search(|factor| alone.trial(integrator, length * factor, parts));
-    let step = |servos: &Servos| servos.trial(integrator, length, parts);
+    let longest = StableFactors::search(|factor| alone.period(integrator, length * factor, parts));
+    let step = |servos: &Servos| servos.period(integrator, length, parts);
     // The whole row of a gain that is there; the entry of the joint of one that is not.
     let largest_kp = match kp {
         0.0 => largest(inertia / length.powi(2), kp, |kp| step(&servos.with_kp(i, kp))),
@@ -231,9 +230,9 @@ fn joint_row(
 }
 
 /// The largest gain with which a step is stable; `size` is one that is about the limit.
-fn largest(size: f64, given: f64, step: impl Fn(f64) -> TrialStep) -> f64 {
+fn largest(size: f64, given: f64, step: impl Fn(f64) -> Option<Matrix>) -> f64 {
     let found = GainLimits::search(given, 1e-2 * size, RESOLUTION, &mut |gain| {
-        Ok::<_, core::convert::Infallible>(step(gain).is_stable())
+        Ok::<_, core::convert::Infallible>(is_stable(step(gain)))
     });
     match found {
         Ok(limits) => limits.most,

@@ -12,32 +12,25 @@ const LARGEST: f64 = 1e100;
 const BISECTIONS: usize = 60;
 const RESOLUTION: f64 = 1e-9;
 
-/// Part by which a step is longer that must be stable, too: at a limit, where two factors meet at −1, deviations grow with the number of
-/// steps without a factor above 1. Just beyond the limit the largest factor exceeds 1 by more than [`OUTSIDE`].
+/// Part by which a step is longer that must be stable, too, for gains to hold: at a limit, where factors leave the unit circle at −1, a
+/// motion does not decay, or grows with the number of steps. Just beyond the limit a factor exceeds 1 by more than [`OUTSIDE`].
 const LONGER: f64 = 2e-7;
 
-/// The matrix of a step, and that of a slightly longer one; none where it is not finite.
-pub(super) struct TrialStep([Option<Matrix>; 2]);
+/// Whether no mode grows.
+pub(super) fn is_stable(step: Option<Matrix>) -> bool {
+    step.is_some_and(|step| {
+        step.largest() < LARGEST && is_schur_stable(&step.scaled((-OUTSIDE).exp()))
+    })
+}
 
-impl TrialStep {
-    /// The steps of `length` and slightly more.
-    pub(super) fn new(step: impl Fn(f64) -> Option<Matrix>, length: f64) -> Self {
-        TrialStep([length, length * (1.0 + LONGER)].map(step))
-    }
+/// Whether no mode grows in steps of `length`, nor in slightly longer ones.
+pub(super) fn holds(step: impl Fn(f64) -> Option<Matrix>, length: f64) -> bool {
+    [length, length * (1.0 + LONGER)].into_iter().all(|length| is_stable(step(length)))
+}
 
-    /// Whether no mode grows, also in steps that are slightly longer.
-    pub(super) fn is_stable(&self) -> bool {
-        self.0.iter().all(|step| {
-            step.as_ref().is_some_and(|step| {
-                step.largest() < LARGEST && is_schur_stable(&step.scaled((-OUTSIDE).exp()))
-            })
-        })
-    }
-
-    /// The logarithm of the growth per step; infinite without a step.
-    pub(super) fn growth(&self) -> f64 {
-        self.0[0].as_ref().map_or(f64::INFINITY, log_spectral_radius)
-    }
+/// The logarithm of the growth per step; infinite without a step.
+pub(super) fn growth(step: Option<Matrix>) -> f64 {
+    step.map_or(f64::INFINITY, |step| log_spectral_radius(&step))
 }
 
 /// The factors with which steps are stable: those around 1, or the next ones if a step with 1 is unstable.
@@ -52,8 +45,8 @@ pub(super) struct StableFactors {
 impl StableFactors {
     const NONE: Self = StableFactors { least: 0.0, most: 0.0 };
 
-    pub(super) fn search(step: impl Fn(f64) -> TrialStep) -> Self {
-        let stable = |factor: f64| step(factor).is_stable();
+    pub(super) fn search(step: impl Fn(f64) -> Option<Matrix>) -> Self {
+        let stable = |factor: f64| is_stable(step(factor));
         let upper = |from: f64| end(from, RATIO, &stable).unwrap_or(f64::INFINITY);
         if stable(1.0) {
             return StableFactors { least: 0.0, most: upper(1.0) };
@@ -62,7 +55,7 @@ impl StableFactors {
         let below = end(1.0, RATIO.recip(), &|factor| !stable(factor));
         if let Some(limit) = below {
             // Growth that falls with the factor has no limit: it only becomes smaller than what counts as growth.
-            let always = step(limit / 4.0).growth() > 0.15 * step(limit * (1.0 + 1e-6)).growth();
+            let always = growth(step(limit / 4.0)) > 0.15 * growth(step(limit * (1.0 + 1e-6)));
             return if always { Self::NONE } else { StableFactors { least: 0.0, most: limit } };
         }
         match end(1.0, RATIO, &|factor| !stable(factor)) {

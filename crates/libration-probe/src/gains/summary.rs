@@ -114,6 +114,7 @@ impl GainReport {
     /// The largest common factor of gains of position, as the end of a sentence.
     pub(super) fn factor(&self) -> String {
         match self.largest_factor {
+            _ if self.is_at_limit() => ".".to_owned(),
             x if x.is_nan() => ".".to_owned(),
             f64::INFINITY if self.holds => {
                 "; no larger gain of position was found that does not.".to_owned()
@@ -188,7 +189,7 @@ impl GainReport {
         if let Some(joint) = of_kp {
             let most = match joint.largest_kp {
                 0.0 => "no gain of it holds".to_owned(),
-                most => format!("its gain is at most {}", number(cut_off(most, 5), 5)),
+                most => format!("its gain must stay below {}", number(cut_off(most, 5), 5)),
             };
             text += &format!(
                 " The joint with the least margin is {}: {most}, with all others as they are.",
@@ -200,7 +201,7 @@ impl GainReport {
         let of_kv = of_kv.min_by(|a, b| (a.largest_kv / a.kv).total_cmp(&(b.largest_kv / b.kv)));
         if let Some(joint) = of_kv {
             text += &format!(
-                " The gain of velocity of {} is at most {}; given {}.",
+                " The gain of velocity of {} must stay below {}; given {}.",
                 joint.name,
                 number(cut_off(joint.largest_kv, 5), 5),
                 number(joint.kv, 5)
