@@ -190,7 +190,13 @@ impl LinearAdvice {
                     percent(self.cost_tolerance.unwrap_or_default())
                 ),
             ),
-            () => of_loop,
+            () => match &self.motion {
+                Some(motion) => {
+                    let evidence = format!("{}; {}", of_loop.evidence, motion.in_words());
+                    Verdict { evidence, ..of_loop }
+                }
+                None => of_loop,
+            },
         };
         let is_good = verdict.is_good();
         let missing = [

@@ -116,9 +116,7 @@ impl LinearAdvice {
         if let Some(increase) = self.cost_increase.filter(|_| self.margin_tried_up_to.is_some()) {
             text += &format!(" Its cost is {}.", beside_ideal(increase));
         }
-        if let Some(motion) = &self.motion {
-            text += &format!(" {}.", capitalise(&motion.in_words()));
-        } else if self.is_linearised_only() {
+        if self.is_linearised_only() {
             text += " The motion of the nonlinear system was not simulated.";
         }
         text
