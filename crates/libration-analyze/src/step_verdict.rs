@@ -4,6 +4,7 @@ use libration_report::verdict::{Outcome, Verdict};
 
 use crate::digits::{beside_one, change_per_step};
 use crate::linear_analysis::ModeUnderSteps;
+use crate::stable_steps::{is_at_limit, is_within};
 
 /// Growth per step of a matrix of simple eigenvalues that is rounding.
 const ROUNDING: f64 = 1e-11;
@@ -33,6 +34,8 @@ pub(crate) struct StepGrowth<'a> {
     pub(crate) has_zeros: bool,
     /// The time steps at which no mode grows that does not grow in exact steps, if they are known.
     pub(crate) stable_dt: Option<&'a [[Option<f64>; 2]]>,
+    /// Whether the integrator has a stability function: a step of it has the shapes of the modes of the plant.
+    pub(crate) has_stability_function: bool,
     /// The modes, if it is known which multiplier belongs to which.
     pub(crate) modes: &'a [ModeUnderSteps],
 }
@@ -40,10 +43,7 @@ pub(crate) struct StepGrowth<'a> {
 impl StepGrowth<'_> {
     /// The verdict on the step.
     pub(crate) fn verdict(&self) -> Verdict {
-        let is_in = |&[from, to]: &[Option<f64>; 2]| {
-            from.is_none_or(|from| from <= self.dt) && to.is_none_or(|to| self.dt <= to)
-        };
-        let inside = self.stable_dt.map(|windows| windows.iter().any(is_in));
+        let inside = self.stable_dt.map(|windows| is_within(windows, self.dt));
         let Some(radius) = self.radius else {
             return match inside {
                 Some(false) => Verdict::new(Outcome::Unstable, "multipliers of the step overflow"),
@@ -71,15 +71,41 @@ impl StepGrowth<'_> {
             false => evidence,
         };
         let decays = excess < -ROUNDING_OF_ZEROS && spurious <= 0.0;
+        if added <= DEFECTIVE && self.stable_dt.is_some_and(|windows| is_at_limit(windows, self.dt))
+        {
+            return self.verdict_at_limit();
+        }
+        if inside == Some(false) && !decays && added <= VISIBLE {
+            return Verdict::unknown(format!(
+                "motions grow in such steps, but by less per step than the rounding of f64: {evidence}"
+            ));
+        }
         let outcome = match inside {
             Some(true) if added <= DEFECTIVE => Outcome::Stable,
-            Some(false) if !decays && added.max(excess - exact.max(0.0)) > VISIBLE => {
-                Outcome::Unstable
-            }
+            Some(false) if !decays => Outcome::Unstable,
             _ if added <= ROUNDING => Outcome::Stable,
             _ if added <= rounding => Outcome::Unknown,
             _ => Outcome::Unstable,
         };
         Verdict::new(outcome, evidence)
+    }
+    /// Without damping, the two multipliers of a mode leave the unit circle where they meet, at ±1. If steps have other shapes than the plant,
+    /// both have one shape there, and deviations grow with the number of steps. Steps by a stability function keep the shapes of the plant.
+    fn verdict_at_limit(&self) -> Verdict {
+        let is_double = |mode: &ModeUnderSteps| {
+            (mode.growth - 1.0).abs() <= DEFECTIVE
+                && (mode.exact_growth - 1.0).abs() <= ROUNDING
+                && mode.exact_angle.abs() > ROUNDING
+                && mode.angle.sin().abs() <= DEFECTIVE
+        };
+        match !self.has_stability_function && self.modes.iter().any(is_double) {
+            true => Verdict::new(
+                Outcome::Unstable,
+                "at the limit of stability, motions grow without bound, but not exponentially",
+            ),
+            false => Verdict::unknown(
+                "at the limit of stability, a motion neither grows nor decays beyond rounding",
+            ),
+        }
     }
 }

@@ -68,6 +68,7 @@ fn about_equilibrium(motion: &EquationMotion, linear: &LinearAnalysis) -> Option
         exact_rate: linear.modes.first()?.growth_rate,
         has_zeros: linear.modes.iter().any(|mode| mode.natural_frequency == 0.0),
         stable_dt: None,
+        has_stability_function: false,
         modes: &[],
     };
     Some(growth.verdict())
@@ -86,6 +87,7 @@ fn of_affine(system: &EquationSystem, method: AnyMethod, dt: f64) -> Option<Verd
         // Without an equilibrium there is one.
         has_zeros: true,
         stable_dt: None,
+        has_stability_function: false,
         modes: &[],
     };
     Some(growth.verdict())

@@ -146,6 +146,7 @@ impl Subject<'_> {
             exact_rate: rates.fold(f64::NEG_INFINITY, f64::max),
             has_zeros: self.shapes.iter().any(|(value, _)| value.norm() == 0.0),
             stable_dt: analysis.stable_dt.as_deref(),
+            has_stability_function: analysis.stability_function.is_some(),
             modes: &analysis.modes,
         }
     }

@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 use libration::AnySystem;
 use libration::ensemble::dynamics_of;
 use libration::equations::StepProgram;
+use libration::linear::GROWTH_ROUNDING;
 use libration_report::verdict::{Outcome, Verdict};
 use libration_settings::units;
 use serde::Serialize;
@@ -51,7 +52,7 @@ fn of_step(analysis: &Analysis, request: &Request) -> Verdict {
     let rounding = 0.5 * f64::EPSILON * exact.abs();
     let motions = format!("motions {}", change_per_step(excess));
     let moments = analysis.timing.as_ref().and_then(|timing| timing.growth?.mean_square_growth);
-    if let Some(growth) = moments.filter(|growth| *growth > ROUNDING) {
+    if let Some(growth) = moments.filter(|growth| *growth > GROWTH_ROUNDING) {
         let moments = change_per_step(growth);
         return Verdict::new(
             Outcome::Unstable,
@@ -61,6 +62,15 @@ fn of_step(analysis: &Analysis, request: &Request) -> Verdict {
     if excess != 0.0 && excess.abs() <= rounding {
         return Verdict::unknown(
             "at the limit of stability, motions neither grow nor decay beyond the rounding of its parameters",
+        );
+    }
+    let turn = match request.system {
+        AnySystem::Oscillator(model) => model.omega2 * request.dt * request.dt,
+        _ => 0.0,
+    };
+    if excess > 0.0 && excess <= COEFFICIENTS * turn {
+        return Verdict::unknown(
+            "motions grow by less than the rounding of the coefficients of the integrator",
         );
     }
     match analysis.bounded {
@@ -82,8 +92,8 @@ fn of_step(analysis: &Analysis, request: &Request) -> Verdict {
     }
 }
 
-/// Growth of second moments per step that is rounding.
-const ROUNDING: f64 = 1e-12;
+/// Growth per step, for each squared radian of it, that roundings of a dozen coefficients of an integrator may cause.
+const COEFFICIENTS: f64 = 8.0 * f64::EPSILON;
 
 /// A motion that grows in exact steps may grow by this part faster: the step is inaccurate then, not unstable.
 const FASTER: f64 = 1.5;
