@@ -142,7 +142,7 @@ pub(crate) fn examine(
     if let (Some(change), Some(of)) = (&mut found.energy, &mut energy_of) {
         change.compare(of, subject.start, &samples, &reference);
     }
-    found.verdict = found.judge(dt, excess, unsure, steps, reference.end());
+    found.verdict = found.judge(dt, excess, unsure, steps, &reference);
     Ok(found)
 }
 

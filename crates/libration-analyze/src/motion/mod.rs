@@ -7,6 +7,7 @@ mod judgement;
 mod reference;
 mod sample_steps;
 mod step_run;
+mod unseen;
 
 use libration::equations::{Dynamics, StepProgram};
 
