@@ -1,5 +1,6 @@
 //! Whether a step lets deviations grow more than exact steps do.
 
+use libration::linear::Complex64;
 use libration_report::verdict::{Outcome, Verdict};
 
 use crate::digits::{beside_one, change_per_step};
@@ -8,7 +9,7 @@ use crate::linear_analysis::ModeUnderSteps;
 /// Growth per step of a matrix of simple eigenvalues that is rounding.
 const ROUNDING: f64 = 1e-11;
 
-/// The same of a plant with eigenvalues at zero, which rounding parts by their root.
+/// The same of a plant with eigenvalues at zero or multiple ones, which rounding parts by their root.
 const ROUNDING_OF_ZEROS: f64 = 1e-7;
 
 /// Growth per step that is visible in `f64` where exact windows say that there is some: a method of order 12 has less in short steps.
@@ -21,6 +22,16 @@ const DEFECTIVE: f64 = 1e-6;
 /// A mode of the plant that grows may grow by this part faster in steps: they are inaccurate then, not unstable.
 const FASTER: f64 = 1.5;
 
+/// Distance of eigenvalues, relative to their size, up to which they may be one that rounding parted.
+const PARTED: f64 = 1e-6;
+
+/// Whether two of these eigenvalues, of each pair of complex ones the upper one or both, may be one that rounding parted.
+pub(crate) fn has_multiple(values: impl Iterator<Item = Complex64>) -> bool {
+    let upper: Vec<Complex64> = values.filter(|value| value.im >= 0.0).collect();
+    let is_near = |a: &Complex64, b: &Complex64| (a - b).norm() <= PARTED * a.norm();
+    upper.iter().enumerate().any(|(i, a)| upper[i + 1..].iter().any(|b| is_near(a, b)))
+}
+
 /// The growth of deviations in steps of an integrator on a linear system, or about an equilibrium.
 pub(crate) struct StepGrowth<'a> {
     /// The time step in s.
@@ -29,8 +40,8 @@ pub(crate) struct StepGrowth<'a> {
     pub(crate) radius: Option<f64>,
     /// The largest growth rate of an exact mode in 1/s.
     pub(crate) exact_rate: f64,
-    /// Whether the system has eigenvalues at zero.
-    pub(crate) has_zeros: bool,
+    /// Whether the system has eigenvalues at zero, or multiple ones.
+    pub(crate) has_parted: bool,
     /// The time steps at which no mode grows that does not grow in exact steps, if they are known.
     pub(crate) stable_dt: Option<&'a [[Option<f64>; 2]]>,
     /// The modes, if it is known which multiplier belongs to which.
@@ -50,7 +61,7 @@ impl StepGrowth<'_> {
                 _ => Verdict::unknown("multipliers of the step overflow"),
             };
         };
-        let rounding = if self.has_zeros { ROUNDING_OF_ZEROS } else { ROUNDING };
+        let rounding = if self.has_parted { ROUNDING_OF_ZEROS } else { ROUNDING };
         let exact = (self.exact_rate * self.dt).exp_m1();
         let is_growing = exact > rounding;
         let excess = radius - 1.0;

@@ -2,8 +2,8 @@
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::program::{Operation, Program};
 use super::Function;
+use super::program::{Operation, Program};
 
 /// The least and the largest value of a quantity.
 pub type Interval = [f64; 2];

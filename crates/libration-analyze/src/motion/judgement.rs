@@ -32,6 +32,9 @@ impl MotionExamination {
         reference: &Reference,
     ) -> Verdict {
         let time = |step: u64| significant(step as f64 * dt, 6);
+        if let (Some(step), Some(why)) = (self.diverged_at_step, &self.undefined) {
+            return Verdict::unknown(format!("{why} in step {step}, the first that fails"));
+        }
         if let Some(step) = self.diverged_at_step {
             return Verdict::new(
                 Outcome::NotResolved,

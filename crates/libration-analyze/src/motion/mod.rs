@@ -4,9 +4,11 @@ mod adaptive_reference;
 mod energy;
 mod examination;
 mod judgement;
+mod narrow_force;
 mod reference;
 mod sample_steps;
 mod step_run;
+mod undefined_function;
 mod unseen;
 
 use libration::equations::{Dynamics, StepProgram};
@@ -14,7 +16,9 @@ use libration::equations::{Dynamics, StepProgram};
 pub use energy::EnergyChange;
 pub(crate) use examination::examine;
 pub use examination::{MotionExamination, StateExamination};
+pub use narrow_force::narrow_force;
 pub(crate) use step_run::StepRun;
+pub(crate) use undefined_function::undefined_function;
 
 /// Steps of a nonlinear motion without a number in the request: more are a choice of the user, since errors of most motions grow.
 pub const DEFAULT_STEPS: u64 = 1000;
