@@ -115,8 +115,8 @@ fn call(function: Function, x: Interval, y: Interval) -> Interval {
     // Infinite ends of growing functions have the values of limits.
     let within = |low: f64, high: f64| [x[0].clamp(low, high), x[1].clamp(low, high)];
     match function {
-        Function::Cos => cosine(x),
-        Function::Sin => cosine(x.map(|x| x - FRAC_PI_2)),
+        Function::Cos => wave(function, x, 0.0),
+        Function::Sin => wave(function, x, FRAC_PI_2),
         Function::Tan => {
             let turn = |x: f64| (x / PI + 0.5).floor();
             let is_near = size(x)[1] < MOST_ANGLE && x[1] - x[0] < PI;
@@ -147,14 +147,15 @@ fn call(function: Function, x: Interval, y: Interval) -> Interval {
     }
 }
 
-fn cosine([a, b]: Interval) -> Interval {
+/// A sine or cosine, whose maximum is at `top`.
+fn wave(function: Function, [a, b]: Interval, top: f64) -> Interval {
     if !(b - a < TAU && a.abs().max(b.abs()) < MOST_ANGLE) {
         return [-1.0, 1.0];
     }
-    let of = |x: f64| Function::Cos.of([x, x]);
+    let of = |x: f64| function.of([x, x]);
     let has = |at: f64| ((a - at) / TAU).ceil() <= ((b - at) / TAU).floor();
     let [low, high] = hull([of(a); 2], [of(b); 2]);
-    [if has(PI) { -1.0 } else { low }, if has(0.0) { 1.0 } else { high }]
+    [if has(top + PI) { -1.0 } else { low }, if has(top) { 1.0 } else { high }]
 }
 
 /// Angles of points with these `y` and `x`.
