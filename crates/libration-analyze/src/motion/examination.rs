@@ -7,11 +7,11 @@ use libration_report::verdict::Verdict;
 use serde::Serialize;
 
 use super::energy::EnergyOf;
-use super::judgement::{Excess, SMALL};
+use super::judgement::Excess;
 use super::reference::Reference;
 use super::sample_steps::sample_steps;
 use super::undefined_function::undefined_function;
-use super::{EnergyChange, MotionState, MotionSubject, StepRun, most_steps};
+use super::{EnergyChange, MotionState, MotionSubject, SMALL, StepRun, most_steps};
 use crate::AnalyzeError;
 
 /// An error counts where the exact motion is known to this part of it.

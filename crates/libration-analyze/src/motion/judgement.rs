@@ -3,12 +3,8 @@
 use libration_report::verdict::{Outcome, Verdict};
 
 use super::reference::{End, Reference};
-use super::{MotionExamination, StateExamination};
+use super::{MotionExamination, SMALL, StateExamination};
 use crate::digits::significant;
-
-/// The part of the range of a state up to which an error is small beside its motion: the width of a line in a plot. Twice as much of an
-/// amplitude.
-pub(super) const SMALL: f64 = 0.01;
 
 /// Fewer samples of the exact motion than up to this step decide nothing, unless fewer steps are examined.
 const LEAST_STEPS: u64 = 1000;

@@ -2,8 +2,7 @@
 
 use libration::equations::{Enclosure, Evaluation, Interval};
 
-use super::judgement::SMALL;
-use super::{MotionState, MotionSubject};
+use super::{MotionState, MotionSubject, SMALL};
 
 /// The largest part of a step of the reference without an evaluation: a force that is not seen acts for no longer.
 const GAP: f64 = 0.125;

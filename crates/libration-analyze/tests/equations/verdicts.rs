@@ -15,7 +15,12 @@ fn system(lines: &str) -> EquationSystem {
     EquationSystem::parse(&text, "case", &[]).unwrap_or_else(|error| panic!("{error}"))
 }
 
-pub(crate) fn examined(system: &EquationSystem, method: &str, dt: f64, steps: u64) -> EquationAnalysis {
+pub(crate) fn examined(
+    system: &EquationSystem,
+    method: &str,
+    dt: f64,
+    steps: u64,
+) -> EquationAnalysis {
     let method = AnyMethod::from_name(method).unwrap();
     analyze(system, method, dt, steps, &AtomicBool::new(false)).unwrap()
 }

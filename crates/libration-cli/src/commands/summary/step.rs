@@ -67,7 +67,11 @@ fn first_sentence(analysis: &Analysis) -> String {
             let of_motion = |subject: &str| sentence(subject, own, motion, about.dt);
             let on = format!(" on {system}");
             match verdict.outcome {
-                Outcome::Unstable => in_words(&step, &step, &on, verdict) + " " + &of_motion("It").replace("Whether It", "Whether it"),
+                Outcome::Unstable => {
+                    in_words(&step, &step, &on, verdict)
+                        + " "
+                        + &of_motion("It").replace("Whether It", "Whether it")
+                }
                 _ => of_motion(&(step + &on)),
             }
         }
