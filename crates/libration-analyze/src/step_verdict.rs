@@ -4,7 +4,6 @@ use libration::linear::Complex64;
 use libration_report::verdict::{Outcome, Verdict};
 
 use crate::digits::{beside_one, change_per_step};
-use crate::linear_analysis::ModeUnderSteps;
 
 /// Growth per step of a matrix of simple eigenvalues that is rounding.
 const ROUNDING: f64 = 1e-11;
@@ -44,8 +43,8 @@ pub(crate) struct StepGrowth<'a> {
     pub(crate) has_parted: bool,
     /// The time steps at which no mode grows that does not grow in exact steps, if they are known.
     pub(crate) stable_dt: Option<&'a [[Option<f64>; 2]]>,
-    /// The modes, if it is known which multiplier belongs to which.
-    pub(crate) modes: &'a [ModeUnderSteps],
+    /// The growth of each mode in an exact step and in a step, if it is known which multiplier belongs to which.
+    pub(crate) modes: Vec<[f64; 2]>,
 }
 
 impl StepGrowth<'_> {
@@ -67,8 +66,8 @@ impl StepGrowth<'_> {
         let excess = radius - 1.0;
         let evidence =
             format!("spectral radius {}, {} of exact steps", beside_one(excess), beside_one(exact));
-        let spurious = self.modes.iter().filter(|mode| mode.exact_growth <= 1.0 + rounding);
-        let spurious = spurious.map(|mode| mode.growth - 1.0).fold(0.0, f64::max);
+        let spurious = self.modes.iter().filter(|[exact, _]| *exact <= 1.0 + rounding);
+        let spurious = spurious.map(|[_, own]| own - 1.0).fold(0.0, f64::max);
         let added = match is_growing {
             true if radius.ln() > FASTER * self.exact_rate * self.dt => excess - exact,
             true => spurious,

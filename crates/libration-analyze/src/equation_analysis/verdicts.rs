@@ -78,7 +78,7 @@ fn about_equilibrium(motion: &EquationMotion, linear: &LinearAnalysis) -> Option
                     .map(|mode| Complex64::new(mode.eigenvalue[0], mode.eigenvalue[1])),
             ),
         stable_dt: None,
-        modes: &[],
+        modes: Vec::new(),
     };
     Some(growth.verdict())
 }
@@ -96,7 +96,7 @@ fn of_affine(system: &EquationSystem, method: AnyMethod, dt: f64) -> Option<Verd
         // Without an equilibrium there is one.
         has_parted: true,
         stable_dt: None,
-        modes: &[],
+        modes: Vec::new(),
     };
     Some(growth.verdict())
 }

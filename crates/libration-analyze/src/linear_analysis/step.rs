@@ -147,7 +147,7 @@ impl Subject<'_> {
             has_parted: self.shapes.iter().any(|(value, _)| value.norm() == 0.0)
                 || has_multiple(self.shapes.iter().map(|(value, _)| *value)),
             stable_dt: analysis.stable_dt.as_deref(),
-            modes: &analysis.modes,
+            modes: analysis.modes.iter().map(|mode| [mode.exact_growth, mode.growth]).collect(),
         }
     }
 

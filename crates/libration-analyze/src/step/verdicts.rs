@@ -59,7 +59,7 @@ fn at_rest(analysis: &Analysis) -> Verdict {
         exact_rate: analysis.flow_spectral_radius_minus_one.ln_1p() / dt,
         has_parted: false,
         stable_dt: None,
-        modes: &[],
+        modes: Vec::new(),
     };
     growth.verdict()
 }
