@@ -13,6 +13,7 @@ use serde::Serialize;
 use super::{Analysis, AnalyzeError, LoopAnalysis, Request};
 use crate::digits::change_per_step;
 use crate::motion::{MotionExamination, MotionState, MotionSubject, examine};
+use crate::step_verdict::StepGrowth;
 
 /// The verdicts on a step of a system of the catalogue. Of a loop there is that of the loop alone.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -20,7 +21,7 @@ pub struct StepVerdicts {
     /// Whether the loop is stable; none without a loop.
     #[serde(rename = "loop", skip_serializing_if = "Option::is_none")]
     pub closed_loop: Option<Verdict>,
-    /// Whether the step lets deviations grow more than exact steps do; none of nonlinear systems.
+    /// Whether the step lets deviations grow more than exact steps do; of nonlinear systems only at an equilibrium at which they rest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub step: Option<Verdict>,
     /// Whether the steps resolve the motion of a nonlinear system.
@@ -34,7 +35,12 @@ impl StepVerdicts {
         let is_loop = closed_loop.is_some();
         StepVerdicts {
             closed_loop,
-            step: (!is_loop && request.system.is_linear()).then(|| of_step(analysis, request)),
+            step: match &analysis.motion {
+                _ if is_loop => None,
+                _ if request.system.is_linear() => Some(of_step(analysis, request)),
+                Some(motion) if motion.is_at_rest() => Some(at_rest(analysis)),
+                _ => None,
+            },
             motion: analysis.motion.as_ref().map(|motion| motion.verdict.clone()),
         }
     }
@@ -43,6 +49,21 @@ impl StepVerdicts {
     pub fn all(&self) -> impl Iterator<Item = &Verdict> {
         self.closed_loop.iter().chain(&self.step).chain(&self.motion)
     }
+}
+
+/// The step at an equilibrium of a nonlinear system, by the rule of systems by equations.
+fn at_rest(analysis: &Analysis) -> Verdict {
+    let dt = analysis.request.dt;
+    let growth = StepGrowth {
+        dt,
+        radius: Some(1.0 + analysis.spectral_radius_minus_one),
+        exact_rate: analysis.flow_spectral_radius_minus_one.ln_1p() / dt,
+        has_parted: false,
+        stable_dt: None,
+        has_stability_function: false,
+        modes: Vec::new(),
+    };
+    growth.verdict()
 }
 
 fn of_step(analysis: &Analysis, request: &Request) -> Verdict {
