@@ -66,7 +66,7 @@ class Identification:
 
     @property
     def intervals(self) -> dict[str, tuple[float, float]]:
-        """The 95 % intervals by key; infinite ends where the recording excludes nothing."""
+        """The 95 % intervals by key; infinite ends where the recording excludes nothing. None without a good verdict."""
         return {
             row["key"]: (float(row["interval"]["low"]), _end(row["interval"]["high"]))
             for row in self.results["parameters"]
@@ -94,7 +94,8 @@ class Identification:
         of two dead times."""
         found = self.results["delay_range"]
         if found is None:
-            raise ValueError("the recording excludes no long dead time; help: give the range of action_delay in s")
+            why = "the recording excludes no long dead time" if self.results["verdict"]["outcome"] == "no-fault" else f"the verdict is not good: {self.results['verdict']['evidence']}"
+            raise ValueError(f"{why}; help: give the range of action_delay in s")
         low, high = found
         return float(low), float(high)
 
@@ -115,7 +116,9 @@ class Identification:
         return first * step, max(first, last) * step
 
     def save_loop(self, path: str | PathLike[str]) -> None:
-        """Write the loop as a file of ``libration advise --config``."""
+        """Write the loop as a file of ``libration advise --config``; fails where the dead time is unknown."""
+        if not self.results["depends_on_command"] or self.results["other_dead_times"]:
+            raise ValueError(f"there is no loop to save: {self.results['verdict']['evidence']}")
         Path(path).write_text(self._loop_file, encoding="utf-8")
 
     def save(self, path: str | PathLike[str]) -> None:

@@ -21,10 +21,12 @@ struct Case {
     foreign: fn(f64, u64) -> f64,
     /// The time of a single step, in place of random ones, in s.
     step: Option<f64>,
+    /// What acts of a command of random levels; of `None`, commands have two levels.
+    acting: Option<fn(f64) -> f64>,
 }
 
 /// Dead times are those of the middle of a period, of a whole number of periods, and of a lag that is short for the samples.
-const CASES: [Case; 9] = [
+const CASES: [Case; 15] = [
     Case {
         name: "white, part of a period",
         noise: NoiseKind::White,
@@ -33,6 +35,7 @@ const CASES: [Case; 9] = [
         simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
         foreign: |_, _| 0.0,
         step: None,
+        acting: None,
     },
     Case {
         name: "white, whole periods",
@@ -42,6 +45,7 @@ const CASES: [Case; 9] = [
         simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
         foreign: |_, _| 0.0,
         step: None,
+        acting: None,
     },
     Case {
         name: "white, short lag",
@@ -51,6 +55,7 @@ const CASES: [Case; 9] = [
         simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
         foreign: |_, _| 0.0,
         step: None,
+        acting: None,
     },
     Case {
         name: "coloured",
@@ -60,6 +65,7 @@ const CASES: [Case; 9] = [
         simulated: |plain| SimulatedLoop { white: 0.05, coloured: (0.05, 0.04), ..plain },
         foreign: |_, _| 0.0,
         step: None,
+        acting: None,
     },
     Case {
         name: "disturbance",
@@ -69,6 +75,7 @@ const CASES: [Case; 9] = [
         simulated: |plain| SimulatedLoop { white: 0.02, disturbance: 0.03, ..plain },
         foreign: |_, _| 0.0,
         step: None,
+        acting: None,
     },
     Case {
         name: "coloured, fitted as white",
@@ -78,6 +85,7 @@ const CASES: [Case; 9] = [
         simulated: |plain| SimulatedLoop { white: 0.03, coloured: (0.06, 0.04), ..plain },
         foreign: |_, _| 0.0,
         step: None,
+        acting: None,
     },
     Case {
         name: "hum of 7 Hz, which no model has",
@@ -87,6 +95,7 @@ const CASES: [Case; 9] = [
         simulated: |plain| SimulatedLoop { white: 0.03, ..plain },
         foreign: |time, seed| 0.08 * (44.0 * time + seed as f64).sin(),
         step: None,
+        acting: None,
     },
     Case {
         name: "white, a step at 0.1 s",
@@ -96,6 +105,7 @@ const CASES: [Case; 9] = [
         simulated: |plain| SimulatedLoop { white: 0.02, load: 0.0, ..plain },
         foreign: |_, _| 0.0,
         step: Some(0.1),
+        acting: None,
     },
     Case {
         name: "white, a step at 1 s",
@@ -105,6 +115,67 @@ const CASES: [Case; 9] = [
         simulated: |plain| SimulatedLoop { white: 0.02, load: 0.0, ..plain },
         foreign: |_, _| 0.0,
         step: Some(1.0),
+        acting: None,
+    },
+    Case {
+        name: "random levels, white",
+        noise: NoiseKind::White,
+        dead_time: 0.0334,
+        lag: 0.05,
+        simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
+        foreign: |_, _| 0.0,
+        step: None,
+        acting: Some(|u| u),
+    },
+    Case {
+        name: "random levels, coloured",
+        noise: NoiseKind::Coloured,
+        dead_time: 0.0334,
+        lag: 0.05,
+        simulated: |plain| SimulatedLoop { white: 0.05, coloured: (0.05, 0.04), ..plain },
+        foreign: |_, _| 0.0,
+        step: None,
+        acting: Some(|u| u),
+    },
+    Case {
+        name: "random levels, disturbance",
+        noise: NoiseKind::Disturbance,
+        dead_time: 0.0334,
+        lag: 0.05,
+        simulated: |plain| SimulatedLoop { white: 0.02, disturbance: 0.03, ..plain },
+        foreign: |_, _| 0.0,
+        step: None,
+        acting: Some(|u| u),
+    },
+    Case {
+        name: "command in steps of 1/16",
+        noise: NoiseKind::White,
+        dead_time: 0.0334,
+        lag: 0.05,
+        simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
+        foreign: |_, _| 0.0,
+        step: None,
+        acting: Some(|u| (16.0 * u).round() / 16.0),
+    },
+    Case {
+        name: "dead zone of 0.05",
+        noise: NoiseKind::White,
+        dead_time: 0.0334,
+        lag: 0.05,
+        simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
+        foreign: |_, _| 0.0,
+        step: None,
+        acting: Some(|u| u - u.clamp(-0.05, 0.05)),
+    },
+    Case {
+        name: "limit of 0.8",
+        noise: NoiseKind::White,
+        dead_time: 0.0334,
+        lag: 0.05,
+        simulated: |plain| SimulatedLoop { white: 0.05, ..plain },
+        foreign: |_, _| 0.0,
+        step: None,
+        acting: Some(|u| u.clamp(-0.8, 0.8)),
     },
 ];
 
@@ -114,8 +185,8 @@ fn main() -> Result<(), IdentifyError> {
     let stop = AtomicBool::new(false);
     let work = Work::new(&Silent, &stop);
     println!(
-        "{:<34} {:>9} {:>9} {:>9} {:>9} {:>13}",
-        "noise", "dead time", "lag", "latency", "gain", "contradicted"
+        "{:<34} {:>9} {:>9} {:>9} {:>9} {:>13} {:>9}",
+        "noise", "dead time", "lag", "latency", "gain", "contradicted", "not good"
     );
     for case in CASES.iter().filter(|case| case.name.contains(&wanted)) {
         let trajectories: Vec<u64> = (0..count).collect();
@@ -131,19 +202,23 @@ fn main() -> Result<(), IdentifyError> {
         ];
         let shares = truths.map(|(key, truth)| {
             let holds = |one: &&Identification| {
-                one.parameter(key).and_then(|p| p.interval).is_some_and(|i| i.contains(truth))
+                one.parameter(key)
+                    .and_then(|p| p.likelihood_interval)
+                    .is_some_and(|i| i.contains(truth))
             };
             100.0 * found.iter().filter(holds).count() as f64 / count as f64
         });
+        let bad = found.iter().filter(|one| !one.verdict.is_good()).count();
         let contradicted = found.iter().filter(|one| one.is_contradicted).count();
         println!(
-            "{:<34} {:>7.2} % {:>7.2} % {:>7.2} % {:>7.2} % {:>11.2} %",
+            "{:<34} {:>7.2} % {:>7.2} % {:>7.2} % {:>7.2} % {:>11.2} % {:>7.2} %",
             case.name,
             shares[0],
             shares[1],
             shares[2],
             shares[3],
-            100.0 * contradicted as f64 / count as f64
+            100.0 * contradicted as f64 / count as f64,
+            100.0 * bad as f64 / count as f64
         );
     }
     Ok(())
@@ -163,7 +238,8 @@ fn identified(case: &Case, trajectory: u64) -> Result<Identification, IdentifyEr
                 .wrapping_mul(6_364_136_223_846_793_005)
                 .wrapping_add(1_442_695_040_888_963_407);
         }
-        commands.push(if word >> 63 == 0 { 1.0 } else { -1.0 });
+        let level = (word >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
+        commands.push(if case.acting.is_some() { level } else { level.signum() });
     }
     if let Some(step) = case.step {
         commands = times.iter().map(|&time| if time < step - 1e-9 { 0.0 } else { 1.0 }).collect();
@@ -171,7 +247,7 @@ fn identified(case: &Case, trajectory: u64) -> Result<Identification, IdentifyEr
     let blank = vec![0.0; times.len()];
     let blank = Recording {
         command_times: times.clone(),
-        commands: commands.clone(),
+        commands: commands.iter().map(|&u| case.acting.map_or(u, |acting| acting(u))).collect(),
         response_times: times.clone(),
         responses: blank,
     };

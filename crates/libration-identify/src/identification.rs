@@ -8,6 +8,7 @@ use crate::candidate::CandidateRow;
 use crate::excitation::ExcitationRow;
 use crate::hold::Hold;
 use crate::likelihood_map::LikelihoodMap;
+use crate::linearity::LinearityTests;
 use crate::noise::NoiseKind;
 use crate::parameters::Estimated;
 use crate::residuals::ResidualTests;
@@ -51,6 +52,10 @@ pub struct Identification {
     pub correlation: Option<f64>,
     /// Tests of the residuals.
     pub residuals: ResidualTests,
+    /// Tests of the residuals for levels and directions on which those of a linear plant do not depend.
+    pub linearity: LinearityTests,
+    /// Dead times that fit as well and are far from the estimate, in s: the nearest first.
+    pub other_dead_times: Vec<f64>,
     /// Whether the residuals contradict the model, or more than 5 % of the commands are missing, so that its intervals cannot be trusted.
     pub is_contradicted: bool,
     /// All tried models, the best first.
@@ -66,7 +71,7 @@ pub struct Identification {
     /// Whether the response depends on the command.
     pub depends_on_command: bool,
     /// The dead times that commands may have, in s: the interval of the dead time, with two standard deviations of jitter and the longer of
-    /// two dead times; `null` if the recording excludes no long dead time.
+    /// two dead times; `null` if the recording excludes no long dead time, or the verdict is not good.
     pub delay_range: Option<[f64; 2]>,
     /// The plant behind the dead time, with its gain.
     pub state_space: StateSpace,
@@ -112,6 +117,16 @@ impl Identification {
         };
         let jitter = 2.0 * value("jitter");
         Some([(low - jitter).max(0.0), (high + jitter).max(value("second_dead_time"))])
+    }
+
+    /// Whether the residuals contradict the model.
+    pub(crate) fn contradicts_model(&self) -> bool {
+        self.residuals.contradict() || self.linearity.contradict()
+    }
+
+    /// Whether there is a loop with a dead time that the recording decides.
+    pub fn has_loop(&self) -> bool {
+        self.depends_on_command && self.other_dead_times.is_empty()
     }
 
     /// The parameter of this key.

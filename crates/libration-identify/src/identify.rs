@@ -15,10 +15,12 @@ use crate::identification::{FitSeries, Identification, StateSpace};
 use crate::information::{Information, information};
 use crate::interval::{Functional, profile_interval};
 use crate::likelihood_map::{LikelihoodMap, likelihood_map};
+use crate::linearity::LinearityTests;
 use crate::parameters::{Estimated, certain_parameters};
 use crate::recording::Recording;
 use crate::request::{IdentifyError, Request};
 use crate::residuals::ResidualTests;
+use crate::rival_dead_times::rival_dead_times;
 use crate::selection::{Selection, select};
 use crate::start::{Start, likely_start};
 use crate::task::Task;
@@ -65,6 +67,8 @@ pub fn identify(
         .as_ref()
         .and_then(|fit| Some((fit, ArrivalSearch::new(fit.law, &unlimited, recording)?)));
     let information = information(&estimate, recording);
+    let scores = search.as_ref().map(|(fit, search)| search.scores(fit));
+    let linearity = LinearityTests::of(&estimate, recording, scores.as_deref());
     let (parameters, residuals, correlation, bootstrap) = match &search {
         Some((fit, search)) => {
             let covariance = search.covariance(fit);
@@ -93,16 +97,17 @@ pub fn identify(
         arrivals: arrivals.as_ref().map_or(ArrivalLaw::Certain, |fit| fit.law).name(),
         start: estimate.model.assumed_start(),
         correlation,
-        is_contradicted: residuals.contradict() || lacks_commands(recording),
+        is_contradicted: residuals.contradict()
+            || linearity.contradict()
+            || lacks_commands(recording),
         residuals,
+        linearity,
+        other_dead_times: Vec::new(),
         candidates,
         bootstrap,
         excitations: if is_detailed { excitations(&estimate, recording) } else { Vec::new() },
         likelihood: is_detailed.then(|| map(&estimate, recording, &parameters)).flatten(),
-        fit: match &search {
-            None => fit(&estimate, recording, None),
-            Some((fit, search)) => self::fit(&estimate, recording, Some(&search.scores(fit))),
-        },
+        fit: fit(&estimate, recording, scores.as_deref()),
         parameters,
         commands: recording.commands.len(),
         responses: estimate.regression.residuals.len(),
@@ -121,12 +126,18 @@ pub fn identify(
         _ => None,
     };
     let lead = lead(&estimate, recording);
+    let interval = found.parameter("dead_time").and_then(|parameter| parameter.interval);
+    let rivals = match found.depends_on_command {
+        true => rival_dead_times(&estimate, interval, recording),
+        false => Some(Vec::new()),
+    };
+    if rivals.is_none() {
+        not_examined.push(format!("other dead times (budget of {evaluations} evaluations)"));
+    }
+    found.other_dead_times = rivals.unwrap_or_default();
     work.check()?;
     let context = warnings::Context { estimate: &estimate, recording, all, longest_lag, lead };
     found.warnings = warnings::warnings(&found, &context);
-    if found.depends_on_command {
-        found.delay_range = found.dead_times(estimate.model.known[0]);
-    }
     let unprofiled = found.parameters.iter().filter(|parameter| parameter.is_unprofiled);
     not_examined.extend(unprofiled.map(|parameter| {
         let name = &parameter.name;
@@ -138,7 +149,24 @@ pub fn identify(
         not_examined
             .push(format!("the first {dropped}, up to the largest dead time of {dead_time}"));
     }
+    let period = warnings::period(recording).filter(|&period| period > largest);
+    if let Some(period) = period.filter(|_| estimate.model.known[0].is_none()) {
+        let period = summary::seconds(period);
+        not_examined.push(format!(
+            "dead times above {}, of which the command repeats itself every {period}",
+            summary::seconds(largest)
+        ));
+    }
+    if found.depends_on_command && found.linearity.command_levels.is_none() {
+        not_examined.push(
+            "whether the response is proportional to the command, which has too few levels"
+                .to_owned(),
+        );
+    }
     found.verdict = verdict(&found, &dependence, &context, not_examined);
+    let is_good = found.verdict.is_good();
+    found.parameters.iter_mut().for_each(|parameter| parameter.judge(is_good));
+    found.delay_range = found.dead_times(estimate.model.known[0]).filter(|_| is_good);
     found.answer = summary::answer(&found);
     Ok(found)
 }

@@ -26,7 +26,7 @@ impl Interval {
 }
 
 /// The effort of a profile, over that of the search of a model.
-const EFFORTS: u64 = 3;
+pub(crate) const EFFORTS: u64 = 3;
 
 /// What an interval is of.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,6 +15,9 @@ pub fn loop_file(found: &Identification) -> String {
         "# Identified by `libration identify` from {} responses. Edit the controller.\n",
         found.responses
     );
+    if !found.verdict.is_good() {
+        let _ = writeln!(file, "# Verdict: {}.", printable(&found.verdict.to_string()));
+    }
     for warning in &found.warnings {
         // Warnings have names of the recording; a new line would end the comment.
         let _ = writeln!(file, "# Warning: {}.", printable(warning));

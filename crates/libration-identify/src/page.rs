@@ -28,6 +28,8 @@ pub fn page(found: &Identification) -> String {
     candidates(&mut page, found);
     if found.depends_on_command {
         repeats(&mut page, found);
+    }
+    if found.has_loop() {
         page.heading("How is it used?");
         page.paragraph(
             "`libration advise --config loop.toml` computes what this loop tolerates. The file `loop.toml`, as `--save-loop` writes it:",

@@ -21,8 +21,10 @@ pub struct Estimated {
     pub unit: String,
     /// The estimate of greatest likelihood.
     pub value: f64,
-    /// The 95 % interval; `null` for a number that was given.
+    /// The 95 % interval; `null` for a number that was given, and where the verdict is not good.
     pub interval: Option<Interval>,
+    /// The interval of the likelihood, which has this level only if the model is the right one.
+    pub likelihood_interval: Option<Interval>,
     /// The standard error by Fisher's information; `null` if it has none.
     pub standard_error: Option<f64>,
     /// Whether the interval is no profile of the likelihood, since its effort ended before.
@@ -31,6 +33,12 @@ pub struct Estimated {
 }
 
 impl Estimated {
+    /// States the interval at its level only with a good verdict.
+    pub(crate) fn judge(&mut self, is_good: bool) {
+        self.likelihood_interval = self.interval;
+        self.interval = self.interval.filter(|_| is_good);
+    }
+
     /// A number without an interval.
     pub(crate) fn plain(key: &str, name: &str, unit: &str, value: f64) -> Self {
         Estimated {
@@ -39,6 +47,7 @@ impl Estimated {
             unit: unit.to_owned(),
             value,
             interval: None,
+            likelihood_interval: None,
             standard_error: None,
             is_unprofiled: false,
         }

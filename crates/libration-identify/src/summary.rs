@@ -68,10 +68,12 @@ pub(crate) fn answer(found: &Identification) -> String {
     }
     let judgement = match found.verdict.outcome {
         Outcome::NoFault => "The residuals do not contradict the model.".to_owned(),
-        _ if found.residuals.contradict() => {
-            "The residuals contradict the model: its intervals cannot be trusted.".to_owned()
+        Outcome::Unknown => {
+            format!(
+                "Whether these numbers are right is unknown: {evidence}. They have no intervals."
+            )
         }
-        _ => format!("{}: the intervals cannot be trusted.", capitalised(evidence)),
+        _ => format!("{}. The numbers have no intervals.", capitalised(evidence)),
     };
     let start = match found.start {
         Start::Rest => " It starts from rest under the first command.",

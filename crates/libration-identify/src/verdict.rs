@@ -7,7 +7,7 @@ use crate::dependence::Dependence;
 use crate::identification::Identification;
 use crate::residuals::CONTRADICTION;
 use crate::summary::seconds;
-use crate::warnings::{Context, is_controller};
+use crate::warnings::{Context, is_controller, other_dead_times};
 
 /// Fewest responses behind the first change of a command that tell a form of response from others.
 const FEWEST_FOLLOWERS: usize = 10;
@@ -52,10 +52,11 @@ fn judged(found: &Identification, dependence: &Dependence, context: &Context<'_>
         number(tests.whiteness, 2),
         number(tests.command, 2)
     );
-    if tests.contradict() {
+    if found.contradicts_model() {
+        let what = [vec![String::new()], found.linearity.contradictions()].concat().join("; ");
         return Verdict::new(
             Outcome::Fault,
-            format!("the residuals contradict the model ({probabilities})"),
+            format!("the residuals contradict the model ({probabilities}){what}"),
         );
     }
     if let Some(lead) = context.lead {
@@ -69,6 +70,9 @@ fn judged(found: &Identification, dependence: &Dependence, context: &Context<'_>
             "{} seem to be missing from the log",
             plural(context.recording.missing_commands(), "command")
         ));
+    }
+    if !found.other_dead_times.is_empty() {
+        return Verdict::unknown(other_dead_times(found, context.recording));
     }
     if is_controller(context.recording) {
         return Verdict::unknown("the command is a function of the response");

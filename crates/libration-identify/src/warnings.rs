@@ -42,7 +42,9 @@ pub(crate) fn warnings(found: &Identification, context: &Context<'_>) -> Vec<Str
             seconds(lead)
         ));
     }
-    warnings.extend(periodic(recording, found.largest_dead_time));
+    if !found.other_dead_times.is_empty() {
+        warnings.push(other_dead_times(found, recording));
+    }
     let missing = recording.missing_commands();
     if missing > 0 {
         warnings.push(format!(
@@ -197,13 +199,27 @@ pub(crate) fn is_controller(recording: &Recording) -> bool {
     left < 1e-4 * spread(&commands).powi(2)
 }
 
-/// A warning if the command repeats itself within the largest dead time.
-fn periodic(recording: &Recording, largest: f64) -> Option<String> {
+/// Which dead times fit as well, and what would decide.
+pub(crate) fn other_dead_times(found: &Identification, recording: &Recording) -> String {
+    let own = found.parameter("dead_time").map(|dead_time| seconds(dead_time.value));
+    let mut all: Vec<String> = own.into_iter().collect();
+    all.extend(found.other_dead_times.iter().map(|&dead_time| seconds(dead_time)));
+    let why = period(recording).map_or_else(String::new, |period| {
+        format!(", since the command repeats itself every {}", seconds(period))
+    });
+    format!(
+        "dead times of {} fit alike{why}; help: command random steps, or state --dead-time or a lower --largest-dead-time",
+        all.join(", ")
+    )
+}
+
+/// The time after which the command repeats itself, in s; `None` if it does not.
+pub(crate) fn period(recording: &Recording) -> Option<f64> {
     let count = recording.commands.len();
     let period = recording.command_times[count - 1] / (count - 1).max(1) as f64;
     let mean = recording.commands.iter().sum::<f64>() / count as f64;
     let centred: Vec<f64> = recording.commands.iter().map(|u| u - mean).collect();
-    let longest = ((largest / period) as usize).min(count / 2).min(4000);
+    let longest = (count / 2).min(4000);
     let correlation = |lag: usize| {
         let square = |part: &[f64]| part.iter().map(|x| x * x).sum::<f64>();
         let (early, late) = (&centred[..count - lag], &centred[lag..]);
@@ -213,10 +229,7 @@ fn periodic(recording: &Recording, largest: f64) -> Option<String> {
     // Behind the first fall: a slow command resembles itself at first.
     let fall = (1..=longest).find(|&lag| correlation(lag) < 0.5)?;
     let lag = (fall..=longest).find(|&lag| correlation(lag) > 0.99)?;
-    Some(format!(
-        "the command repeats itself every {}: the dead time is known except for multiples of it; help: lower the largest dead time, or random steps",
-        seconds(lag as f64 * period)
-    ))
+    Some(lag as f64 * period)
 }
 
 /// A warning if steps of an encoder are wider than the noise.

@@ -3,6 +3,7 @@
 //! [`probe()`] calls a [`BlackBox`] and measures: the matrices of its step and of the flow that it approximates, modes with their numerical
 //! damping, the longest stable step, hidden latency, order, integrator, defects and bits. A [`Subject`] names states and actions.
 
+mod action_response;
 mod audit;
 mod bits;
 mod black_box;

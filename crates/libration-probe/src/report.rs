@@ -4,6 +4,7 @@ use libration::analysis::positions_and_velocities;
 use libration_report::verdict::Verdict;
 use serde::Serialize;
 
+use crate::action_response::uneven_response;
 use crate::driven_velocity::{DrivenVelocity, driven_velocities};
 use crate::finding::Finding;
 use crate::flow::Flow;
@@ -69,6 +70,8 @@ pub struct ProbeReport {
     pub(crate) state_error: f64,
     /// Inputs by which the step has no derivative at the action.
     pub unclear_inputs: Vec<String>,
+    /// Why the effects of inputs are not known: the step does not respond to them, or not in proportion.
+    pub uneven_responses: Vec<String>,
     /// The rates in the limit of small steps; none if the step has one length only.
     pub flow: Option<Matrices>,
     /// The system in continuous time whose exact flow the step is, with all its numerical damping: the logarithm of the step. None if a
@@ -139,6 +142,7 @@ impl ProbeReport {
             jacobian_error: f64::INFINITY,
             state_error: f64::INFINITY,
             unclear_inputs: Vec::new(),
+            uneven_responses: Vec::new(),
             flow: None,
             modified_flow: None,
             confirmation: None,
@@ -180,6 +184,9 @@ impl ProbeReport {
         }
         let unclear = step.unclear_inputs(subject).into_iter();
         self.unclear_inputs = unclear.map(|j| subject.inputs[j].name.clone()).collect();
+        for j in 0..subject.inputs.len() {
+            self.uneven_responses.extend(uneven_response(prober, &step, j)?);
+        }
         for (j, input) in memory.inputs.iter().enumerate().take(subject.inputs.len()) {
             let is_late = input.last.unwrap_or(0) > 0;
             let audit = DelayAudit::run(prober, &step, j, is_late)?;

@@ -119,6 +119,15 @@ impl ProbeReport {
                 text += " (refsafe: contacts give way where dt exceeds half the time constant of solref)";
             }
         }
+        let is_stable = text.contains("the step is stable at this state");
+        if is_stable {
+            let unseen = self.unseen_growth();
+            text += &format!(
+                "; growth below {} per step ({} 1/s) is not measurable",
+                number(unseen, 2),
+                number(unseen / self.dt, 2)
+            );
+        }
         Some(text + ".")
     }
 

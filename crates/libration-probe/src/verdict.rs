@@ -59,6 +59,9 @@ impl ProbeReport {
                 number(self.spectral_radius, 6)
             ));
         }
+        if let Some(reason) = self.uneven_responses.first() {
+            return Verdict::unknown(reason.clone());
+        }
         let energy = self.defects.as_ref().and_then(|defects| defects.energy.as_ref());
         if self.is_conservative && energy.is_some_and(|energy| energy.is_unexamined()) {
             return Verdict::unknown(
@@ -67,9 +70,23 @@ impl ProbeReport {
         }
         let checks = match self.modes.is_empty() {
             true => String::new(),
-            false => format!("spectral radius {}", number(self.spectral_radius, 7)),
+            false => {
+                let unseen = self.unseen_growth();
+                format!(
+                    "spectral radius {}, growth below {} per step ({} 1/s) is not measurable",
+                    number(self.spectral_radius, 7),
+                    number(unseen, 2),
+                    number(unseen / self.dt, 2)
+                )
+            }
         };
         Verdict::new(Outcome::NoFault, checks)
+    }
+
+    /// Growth per step that the audit cannot tell from none.
+    pub(crate) fn unseen_growth(&self) -> f64 {
+        let errors = self.modes.iter().map(|mode| 10.0 * mode.error * self.dt * mode.radius);
+        errors.fold(GROWTH, f64::max)
     }
 
     /// What the fastest mode says.

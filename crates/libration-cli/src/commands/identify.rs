@@ -40,11 +40,15 @@ pub(crate) fn run(args: &IdentifyArgs, quiet: bool) -> Result<(), Failure> {
         false => text,
     };
     terminal::print(&text)?;
-    if found.depends_on_command {
+    if found.has_loop() {
         saved.write(|| loop_file(&found))?;
     } else if let Some(path) = &args.save_loop {
         let path = path.display();
-        terminal::warn(&format!("`{path}` (--save-loop) is not written: there is no model"));
+        let why = match found.depends_on_command {
+            true => "the dead time is unknown",
+            false => "there is no model",
+        };
+        terminal::warn(&format!("`{path}` (--save-loop) is not written: {why}"));
     }
     page_file.write(|| page(&found))?;
     match verdict::exit_code([&found.verdict]) {

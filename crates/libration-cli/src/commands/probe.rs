@@ -56,6 +56,14 @@ pub(crate) fn run(args: &ProbeArgs, quiet: bool) -> Result<(), Failure> {
         let plant = report.modified_flow.as_ref().ok_or_else(|| {
             Failure::run("--save-plant: the step is no exact step of a plant in continuous time: a mode changes its sign from step to step, or the step was not linearised")
         })?;
+        let silent =
+            (0..plant.b.columns()).find(|&j| (0..plant.b.rows()).all(|i| plant.b[(i, j)] == 0.0));
+        if let Some(j) = silent {
+            return Err(Failure::run(format!(
+                "--save-plant: the effect of `{}` is zero in the matrices of the step; expected an action to which a small step responds",
+                report.inputs[j]
+            )));
+        }
         let neutral = report.neutral_states();
         if !neutral.is_empty() && !args.without_neutral && !quiet {
             terminal::say(&format!(

@@ -32,7 +32,7 @@ fn tried(
             Recording::new(&times, &commands, &times, &responses).expect("a valid recording");
         let found = identified(&recording, &request);
         for (i, (key, truth)) in [("dead_time", dead_time), ("lag", 0.05)].into_iter().enumerate() {
-            let interval = found.parameter(key).and_then(|parameter| parameter.interval);
+            let interval = found.parameter(key).and_then(|found| found.likelihood_interval);
             counts[i] += usize::from(interval.is_some_and(|interval| interval.contains(truth)));
         }
         counts[2] += usize::from(found.is_contradicted);

@@ -5,6 +5,7 @@ mod coverage;
 mod errors;
 mod imperfections;
 mod loops;
+mod plants_with_levels;
 mod robustness;
 mod step_tests;
 mod unstable;

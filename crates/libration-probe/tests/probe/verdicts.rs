@@ -203,3 +203,45 @@ fn a_step_without_a_derivative_has_no_good_verdict() {
     assert!(kinds(&report).contains(&"not-differentiable"), "{}", report.answer);
     assert_eq!(report.verdict.outcome, Outcome::Unknown, "{}", report.answer);
 }
+
+/// An action that the simulator reads through `read`.
+fn audit_of_action(read: fn(f64) -> f64) -> ProbeReport {
+    let step = |x: &[f64], u: &[f64], dt: f64| pendulum(x, &[read(u[0])], dt);
+    Simulator::new(step).audit(&pendulum_subject())
+}
+
+#[test]
+fn an_action_without_a_proportional_effect_has_no_good_verdict() {
+    // A quantised action, a dead zone, two limits, a switch, an action that is not used, and one of its sides only.
+    let readings: [fn(f64) -> f64; 7] = [
+        |u| (127.0 * u).round() / 127.0,
+        |u| u - u.clamp(-0.05, 0.05),
+        |u| u.clamp(-0.1, 0.1),
+        |u| u.clamp(-0.02, 0.02),
+        |u| if u == 0.0 { 0.0 } else { u.signum() },
+        |_| 0.0,
+        |u| u.max(0.0),
+    ];
+    for (i, read) in readings.into_iter().enumerate() {
+        let report = audit_of_action(read);
+        assert!(!report.verdict.is_good(), "{i}: {}", report.answer);
+    }
+    // Weak, strong and slightly curved actions are good.
+    let readings: [fn(f64) -> f64; 3] = [|u| 1e-3 * u, |u| 30.0 * u, |u| u + 0.2 * u * u];
+    for (i, read) in readings.into_iter().enumerate() {
+        let report = audit_of_action(read);
+        assert!(report.verdict.is_good(), "{i}: {}", report.answer);
+    }
+}
+
+#[test]
+fn growth_that_is_not_measurable_is_stated_as_a_bound() {
+    // Explicit Euler at ωh = 10⁻⁷ grows by (ωh)²/2 = 5·10⁻¹⁵ per step: below any difference of results.
+    let euler = |x: &[f64], _: &[f64], dt: f64| vec![x[0] + dt * x[1], x[1] - dt * 1e-4 * x[0]];
+    let mut subject = motion([0.0, 0.0], 1e-5, false);
+    subject.equilibrium = None;
+    let report = Simulator::new(euler).audit(&subject);
+    let is_bound = |text: &str| text.contains("per step") && text.contains("is not measurable");
+    assert!(!report.verdict.is_good() || is_bound(&report.verdict.evidence), "{}", report.verdict);
+    assert!(!report.verdict.is_good() || is_bound(&report.answer), "{}", report.answer);
+}
