@@ -88,7 +88,8 @@ impl LinearRequest {
         let period = self.period();
         let longest = (period / STEPS).min(TURN / self.timed.rate());
         let periods = (MEMORIES / -growth).ceil();
-        if !(periods * (period / longest) <= MOST_STEPS) {
+        let steps = periods * (period / longest);
+        if steps.is_nan() || steps > MOST_STEPS {
             return Ok(None);
         }
         let plant = self.timed.linear.plant();
