@@ -188,14 +188,14 @@ impl Advice {
         }
         sort_by_cost(&mut choices);
         self.runner_up = match &choices[..] {
-            [first, second, ..] => first.evaluations.zip(second.evaluations).map(|(a, b)| {
-                format!(
-                    "{} would take {:.3} times as many force evaluations, in steps of {:.4e} s",
-                    second.integrator,
-                    b / a,
-                    second.dt.unwrap_or(f64::NAN)
-                )
-            }),
+            [
+                IntegratorChoice { evaluations: Some(first), .. },
+                IntegratorChoice { integrator, evaluations: Some(second), dt: Some(dt), .. },
+                ..,
+            ] => Some(format!(
+                "{integrator} would take {:.3} times as many force evaluations, in steps of {dt:.4e} s",
+                second / first
+            )),
             _ => None,
         };
         if choices.first().is_some_and(|best| best.dt.is_none()) {
@@ -214,13 +214,16 @@ impl Advice {
                     request.tolerance.most
                 ));
             } else if let Some(least) = least {
+                let most = request.tolerance.most;
+                let best = match least.best_dt.filter(|_| least.lost.is_finite()) {
+                    Some(dt) => format!(
+                        "the best possible is {:.3e}, with {} in steps of {dt:.4e} s",
+                        least.lost, least.integrator
+                    ),
+                    None => "each tried step loses the motion".to_owned(),
+                };
                 self.warnings.push(format!(
-                    "no integrator meets the tolerance of {:e} with any tried step; the best possible is {:.3e}, with {} in \
-                     steps of {:.4e} s",
-                    request.tolerance.most,
-                    least.lost,
-                    least.integrator,
-                    least.best_dt.unwrap_or(f64::NAN)
+                    "no integrator meets the tolerance of {most:e} with any tried step; {best}"
                 ));
             }
         }

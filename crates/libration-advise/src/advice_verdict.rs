@@ -27,10 +27,13 @@ impl Advice {
             (None, None) => {
                 let least =
                     self.integrators.iter().map(|choice| choice.lost).fold(f64::INFINITY, f64::min);
-                Verdict::new(
-                    Outcome::Exceeds,
-                    format!("the least error of a tried step is {least:.3e}, above {most:e}"),
-                )
+                let evidence = match least.is_finite() {
+                    true => {
+                        format!("the least error of a tried step is {least:.3e}, above {most:e}")
+                    }
+                    false => format!("no tried step follows the motion, tolerance {most:e}"),
+                };
+                Verdict::new(Outcome::Exceeds, evidence)
             }
         };
         let not_tried = self.search.iter().flat_map(|search| &search.not_tried);

@@ -1,12 +1,17 @@
 //! Advice on simulations and loops.
 
+use std::sync::atomic::AtomicBool;
+
 use libration::analysis::Imperfections;
 use libration::linear::GROWTH_ROUNDING;
 use libration::{Float, Method, State, System};
+use libration_analyze::comparison::missed_force;
+use libration_analyze::motion::narrow_force;
 use libration_report::verdict::{Outcome, Verdict};
 use libration_work::Work;
 
 use super::advice::{Advice, FloatChoice, LoopAdvice};
+use super::advised_system::AdvisedSystem;
 use super::combined_effect::CombinedEffect;
 use super::control::Control;
 use super::free_motion::FreeMotion;
@@ -101,6 +106,14 @@ pub(super) fn advise_simulation(
         advice.throughput = Some(Throughput::measure(work, request, method, dt, narrow)?);
     }
     advice.verdict = advice.judge_integrators();
+    if let AdvisedSystem::Equations { system, .. } = &request.system {
+        let dynamics = system.equations.dynamics();
+        let never = AtomicBool::new(false);
+        let missed = narrow_force(dynamics, &free.start, request.horizon, &never);
+        if let Some(time) = missed.ok().flatten().filter(|_| advice.verdict.is_good()) {
+            advice.verdict = missed_force(time);
+        }
+    }
     let answer = describe_integrator(&advice, request);
     advice.finish(request, answer);
     Ok(advice)

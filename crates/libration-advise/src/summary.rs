@@ -1,6 +1,7 @@
 //! Summaries in sentences.
 
 use libration_report::notation::{cut_off, plural};
+use libration_report::verdict::Outcome;
 
 use super::advice::{Advice, LoopAdvice, ToleranceAnswer};
 use super::budget::Budget;
@@ -48,6 +49,13 @@ pub(super) fn describe_integrator(advice: &Advice, request: &Request) -> String 
                 of.title()
             )
         }
+        Some((choice, dt)) if advice.verdict.outcome == Outcome::Unknown => format!(
+            "Whether {} in steps of {:.4e} s keeps the {} below {most:e}{over} is not known: {}.{not_tried}",
+            choice.integrator,
+            cut_off(dt, 5),
+            of.title(),
+            advice.verdict.evidence
+        ),
         Some((choice, dt)) => {
             let float = advice.float().map_or("no float type", |float| float.float);
             format!(

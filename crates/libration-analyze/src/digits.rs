@@ -9,7 +9,7 @@ pub(crate) fn significant(x: f64, digits: usize) -> String {
 }
 
 /// A number by its difference from one: `1 + 0.05`.
-pub(crate) fn beside_one(difference: f64) -> String {
+pub fn beside_one(difference: f64) -> String {
     match difference {
         // Rounding of eigenvalues.
         x if x.abs() < 1e-15 => "1".to_owned(),

@@ -17,13 +17,15 @@ mod program_simulation;
 pub mod program_stepper;
 mod recording;
 pub mod reference_flow;
+mod stable_steps;
 mod step;
 mod step_verdict;
 pub mod temperature;
 pub mod trajectory;
 
-pub use digits::change_per_step;
+pub use digits::{beside_one, change_per_step};
 pub use motion::DEFAULT_STEPS;
+pub use stable_steps::{is_at_limit, is_within};
 pub use step::{
     Analysis, AnalyzeError, Criteria, Drift, LargestDt, LatencyOption, LoopAnalysis, LoopCost,
     LoopGrowth, ModifiedHamiltonian, OrderOfWord, Request, RequestSummary, StableLatencies,

@@ -1,14 +1,15 @@
 //! Whether a step lets deviations grow more than exact steps do.
 
+use libration::linear::Complex64;
 use libration_report::verdict::{Outcome, Verdict};
 
 use crate::digits::{beside_one, change_per_step};
-use crate::linear_analysis::ModeUnderSteps;
+use crate::stable_steps::{is_at_limit, is_within};
 
 /// Growth per step of a matrix of simple eigenvalues that is rounding.
 const ROUNDING: f64 = 1e-11;
 
-/// The same of a plant with eigenvalues at zero, which rounding parts by their root.
+/// The same of a plant with eigenvalues at zero or multiple ones, which rounding parts by their root.
 const ROUNDING_OF_ZEROS: f64 = 1e-7;
 
 /// Growth per step that is visible in `f64` where exact windows say that there is some: a method of order 12 has less in short steps.
@@ -21,6 +22,28 @@ const DEFECTIVE: f64 = 1e-6;
 /// A mode of the plant that grows may grow by this part faster in steps: they are inaccurate then, not unstable.
 const FASTER: f64 = 1.5;
 
+/// Distance of eigenvalues, relative to their size, up to which they may be one that rounding parted.
+const PARTED: f64 = 1e-6;
+
+/// Whether two of these eigenvalues, of each pair of complex ones the upper one or both, may be one that rounding parted.
+pub(crate) fn has_multiple(values: impl Iterator<Item = Complex64>) -> bool {
+    let upper: Vec<Complex64> = values.filter(|value| value.im >= 0.0).collect();
+    let is_near = |a: &Complex64, b: &Complex64| (a - b).norm() <= PARTED * a.norm();
+    upper.iter().enumerate().any(|(i, a)| upper[i + 1..].iter().any(|b| is_near(a, b)))
+}
+
+/// A mode of a plant in an exact step and in a step of an integrator.
+pub(crate) struct ModeGrowth {
+    /// The size of the multiplier of the step.
+    pub(crate) growth: f64,
+    /// The angle of the multiplier of the step in rad.
+    pub(crate) angle: f64,
+    /// The size of the multiplier of the exact step.
+    pub(crate) exact_growth: f64,
+    /// The angle of the multiplier of the exact step in rad.
+    pub(crate) exact_angle: f64,
+}
+
 /// The growth of deviations in steps of an integrator on a linear system, or about an equilibrium.
 pub(crate) struct StepGrowth<'a> {
     /// The time step in s.
@@ -29,28 +52,27 @@ pub(crate) struct StepGrowth<'a> {
     pub(crate) radius: Option<f64>,
     /// The largest growth rate of an exact mode in 1/s.
     pub(crate) exact_rate: f64,
-    /// Whether the system has eigenvalues at zero.
-    pub(crate) has_zeros: bool,
+    /// Whether the system has eigenvalues at zero, or multiple ones.
+    pub(crate) has_parted: bool,
     /// The time steps at which no mode grows that does not grow in exact steps, if they are known.
     pub(crate) stable_dt: Option<&'a [[Option<f64>; 2]]>,
+    /// Whether the integrator has a stability function: a step of it has the shapes of the modes of the plant.
+    pub(crate) has_stability_function: bool,
     /// The modes, if it is known which multiplier belongs to which.
-    pub(crate) modes: &'a [ModeUnderSteps],
+    pub(crate) modes: Vec<ModeGrowth>,
 }
 
 impl StepGrowth<'_> {
     /// The verdict on the step.
     pub(crate) fn verdict(&self) -> Verdict {
-        let is_in = |&[from, to]: &[Option<f64>; 2]| {
-            from.is_none_or(|from| from <= self.dt) && to.is_none_or(|to| self.dt <= to)
-        };
-        let inside = self.stable_dt.map(|windows| windows.iter().any(is_in));
+        let inside = self.stable_dt.map(|windows| is_within(windows, self.dt));
         let Some(radius) = self.radius else {
             return match inside {
                 Some(false) => Verdict::new(Outcome::Unstable, "multipliers of the step overflow"),
                 _ => Verdict::unknown("multipliers of the step overflow"),
             };
         };
-        let rounding = if self.has_zeros { ROUNDING_OF_ZEROS } else { ROUNDING };
+        let rounding = if self.has_parted { ROUNDING_OF_ZEROS } else { ROUNDING };
         let exact = (self.exact_rate * self.dt).exp_m1();
         let is_growing = exact > rounding;
         let excess = radius - 1.0;
@@ -71,15 +93,42 @@ impl StepGrowth<'_> {
             false => evidence,
         };
         let decays = excess < -ROUNDING_OF_ZEROS && spurious <= 0.0;
+        if added <= DEFECTIVE && self.stable_dt.is_some_and(|windows| is_at_limit(windows, self.dt))
+        {
+            return self.verdict_at_limit();
+        }
+        if inside == Some(false) && !decays && added <= VISIBLE {
+            return Verdict::unknown(format!(
+                "motions grow in such steps, but by less per step than the rounding of f64: {evidence}"
+            ));
+        }
         let outcome = match inside {
             Some(true) if added <= DEFECTIVE => Outcome::Stable,
-            Some(false) if !decays && added.max(excess - exact.max(0.0)) > VISIBLE => {
-                Outcome::Unstable
-            }
+            Some(false) if !decays => Outcome::Unstable,
             _ if added <= ROUNDING => Outcome::Stable,
             _ if added <= rounding => Outcome::Unknown,
             _ => Outcome::Unstable,
         };
         Verdict::new(outcome, evidence)
+    }
+
+    /// Without damping, the two multipliers of a mode leave the unit circle where they meet, at ±1. If steps have other shapes than the plant,
+    /// both have one shape there, and deviations grow with the number of steps. Steps by a stability function keep the shapes of the plant.
+    fn verdict_at_limit(&self) -> Verdict {
+        let is_double = |mode: &ModeGrowth| {
+            (mode.growth - 1.0).abs() <= DEFECTIVE
+                && (mode.exact_growth - 1.0).abs() <= ROUNDING
+                && mode.exact_angle.abs() > ROUNDING
+                && mode.angle.sin().abs() <= DEFECTIVE
+        };
+        match !self.has_stability_function && self.modes.iter().any(is_double) {
+            true => Verdict::new(
+                Outcome::Unstable,
+                "at the limit of stability, motions grow without bound, but not exponentially",
+            ),
+            false => Verdict::unknown(
+                "at the limit of stability, a motion neither grows nor decays beyond rounding",
+            ),
+        }
     }
 }

@@ -5,6 +5,7 @@
 mod definitions;
 mod derivative_programs;
 mod dynamics;
+mod enclosure;
 mod equation_error;
 mod equations;
 mod error;
@@ -29,6 +30,7 @@ mod vector_step;
 
 pub use definitions::{Definitions, MAX_DEFINITIONS, MAX_DEGREES, MAX_EXPRESSIONS};
 pub use dynamics::Dynamics;
+pub use enclosure::{Enclosure, Interval};
 pub use equation_error::{EquationError, EquationErrorKind};
 pub use equations::{Degree, Equations};
 pub use error::{ExpressionError, ExpressionErrorKind};

@@ -131,6 +131,19 @@ impl Program {
         self.outputs.iter().map(|&output| degrees[output]).collect()
     }
 
+    /// The first function that has no value for finite arguments, with the first of these; none if all have values.
+    pub fn undefined_function(&self, inputs: &[f64]) -> Option<(Function, f64)> {
+        let mut run = self.on::<f64>();
+        let _ = run.run(inputs).count();
+        self.values.iter().zip(&run.values).find_map(|(operation, value)| match operation {
+            Operation::Call(function, operands) if !value.is_finite() => {
+                let [a, b] = operands.map(|a| run.values[a]);
+                (value.is_nan() && a.is_finite() && b.is_finite()).then_some((*function, a))
+            }
+            _ => None,
+        })
+    }
+
     /// Whether output `i` is the constant zero.
     pub(crate) fn is_zero(&self, i: usize) -> bool {
         self.outputs.get(i).is_some_and(|&id| self.values[id] == Operation::Constant(0.0))

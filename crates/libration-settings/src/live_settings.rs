@@ -1,30 +1,16 @@
 //! Settings of live pages.
 
-use std::path::Path;
-
 use libration::catalog;
 use libration::live::Setting;
 
 use crate::EquationExample;
 use crate::equations::EquationSystem;
-use crate::linear_loop::PlantTable;
 
 /// Free motion of a system by its equations, from its start.
 pub fn of_equations(system: &EquationSystem) -> Setting {
     let start = system.states.iter().filter(|state| state.start != 0.0 || system.states.len() <= 4);
     let start = start.map(|state| (state.name.clone(), state.start)).collect();
     Setting::of_equations(&system.name, system.definitions.clone(), start)
-}
-
-/// The system of equations that a plant is linearised from, near its start; none of other plants.
-pub fn of_plant_table(table: &PlantTable) -> Option<Setting> {
-    let PlantTable { of: Some(file), parameters, at: None, command: None, .. } = table else {
-        return None;
-    };
-    let text = crate::read_text(Path::new(file)).ok()?;
-    let set: Vec<(String, f64)> =
-        parameters.iter().map(|(name, value)| (name.clone(), value.0)).collect();
-    EquationSystem::parse(&text, file, &set).ok().as_ref().map(of_equations)
 }
 
 /// The systems of the catalogue and the example files, without those that are too large for a page.

@@ -7,7 +7,7 @@ use libration_report::verdict::{Outcome, Verdict};
 use libration_settings::linear_loop::OperatingPoint;
 use serde::{Serialize, Serializer};
 
-use super::{ChainLink, DeadlineMisses, InputMargins, Mode, Redesign};
+use super::{ChainLink, DeadlineMisses, InputMargins, Mode, Redesign, SystemMotion};
 use crate::budget::{Budget, FirstFailure};
 use crate::combined_effect::SimulatedCost;
 use crate::stabilising_changes::StabilisingChanges;
@@ -79,6 +79,9 @@ pub struct LinearAdvice {
     pub deviations: Vec<Deviation>,
     /// The cost measured by a simulation; none if the loop is unstable, or decays too slowly to simulate.
     pub simulated: Option<SimulatedCost>,
+    /// The motion of a system by equations under a stable loop around its linearisation; none of other plants, and if it was not simulated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<SystemMotion>,
     /// Missed deadlines; none if the request states none.
     pub deadline_misses: Option<DeadlineMisses>,
     /// Changes that stabilise an unstable loop; none if it is stable.
@@ -90,6 +93,9 @@ pub struct LinearAdvice {
     /// The stability map, if the request asks for it.
     #[serde(skip)]
     pub map: Option<StabilityMap>,
+    /// Whether the plant is the linearisation of a nonlinear system.
+    #[serde(skip)]
+    pub(super) is_linearised: bool,
     /// The setting of the live section of the page; none where the loop has none.
     #[serde(skip)]
     pub live: Option<Setting>,
@@ -165,6 +171,7 @@ impl LinearAdvice {
                 ),
             },
             () if !of_loop.is_good() => of_loop,
+            () if let Some(verdict) = self.motion_contradiction() => verdict,
             () if let Some(simulated) = self.simulated.filter(|own| !own.agrees()) => {
                 Verdict::unknown(format!(
                     "the simulated cost is {:.5e} ± {:.1e}, the predicted one {:.5e}",
@@ -183,12 +190,32 @@ impl LinearAdvice {
                     percent(self.cost_tolerance.unwrap_or_default())
                 ),
             ),
-            () => of_loop,
+            () => match &self.motion {
+                Some(motion) => {
+                    let evidence = format!("{}; {}", of_loop.evidence, motion.in_words());
+                    Verdict { evidence, ..of_loop }
+                }
+                None => of_loop,
+            },
         };
-        match self.simulated {
-            None if verdict.is_good() => verdict.without("a simulation of the loop"),
-            _ => verdict,
-        }
+        let is_good = verdict.is_good();
+        let missing = [
+            (self.simulated.is_none(), "a simulation of the loop"),
+            (self.is_linearised_only(), "the motion of the nonlinear system"),
+            (self.motion.is_some() && misses.is_some(), "the motion of the system with misses"),
+        ];
+        let missing = missing.into_iter().filter(|(is_missing, _)| is_good && *is_missing);
+        missing.fold(verdict, |verdict, (_, part)| verdict.without(part))
+    }
+
+    /// The verdict on a motion of the system that does not return; none if it returns or was not simulated.
+    pub(super) fn motion_contradiction(&self) -> Option<Verdict> {
+        self.motion.as_ref().and_then(SystemMotion::contradiction)
+    }
+
+    /// Whether all results are about a linearisation, as the motion of the system was not simulated.
+    pub(super) fn is_linearised_only(&self) -> bool {
+        self.is_linearised && self.motion.is_none()
     }
 
     /// Whether a controller that is designed for the stated timing is worth its work: the imperfections cost more than 1 %.

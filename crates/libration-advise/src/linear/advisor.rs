@@ -55,6 +55,7 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
     };
     let growth = stability.growth;
     let simulated = if stable { request.simulated_cost(work, growth)? } else { None };
+    let motion = if stable { request.system_motion(work, growth)? } else { None };
     let map = request.stability_map(work, &budgets)?;
     let redesign = redesign.map(|design| request.evaluated(work, &design, cost)).transpose()?;
     let mut advice = LinearAdvice {
@@ -70,6 +71,7 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
         cost_increase: cost.map(|cost| cost / ideal_cost - 1.0),
         deviations: request.deviations(stable)?,
         simulated,
+        motion,
         deadline_misses: request.deadline_misses(&stated)?,
         remedies: (!stable).then(|| timed.stabilising_changes(&stated)),
         redesign,
@@ -140,11 +142,13 @@ impl LinearAdvice {
             cost_tolerance: request.cost_tolerance,
             deviations: Vec::new(),
             simulated: None,
+            motion: None,
             deadline_misses: None,
             remedies: None,
             redesign: None,
             repeat_command: request.invocation.clone(),
             map: None,
+            is_linearised: request.is_linearised,
             live: live_setting(request),
         }
     }

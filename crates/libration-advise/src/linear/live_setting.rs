@@ -2,6 +2,7 @@
 
 use libration::linear::MissingCommand;
 use libration::live::{Control, Setting};
+use libration_settings::live_settings;
 
 use super::LinearRequest;
 use crate::live_setting::gaussian;
@@ -26,8 +27,8 @@ pub(super) fn live_setting(request: &LinearRequest) -> Option<Setting> {
     };
     let names = [names(&plant.states), names(&plant.inputs)];
     // A loop around the system itself where its equations are known.
-    let mut setting = match &request.equations {
-        Some(equations) => equations.clone(),
+    let mut setting = match request.system.as_ref().filter(|_| !request.has_stated_point) {
+        Some(system) => live_settings::of_equations(system),
         None => Setting::of_plant("plant", &plant.a, &plant.b, names),
     };
     if setting.definitions.inputs.len() != plant.inputs.len() {

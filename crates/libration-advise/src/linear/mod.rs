@@ -22,6 +22,7 @@ mod simulated_cost;
 mod stated_deadlines;
 mod stiffness;
 mod summary;
+mod system_motion;
 mod timing_fault;
 
 pub use advice::{ControllerMatrices, Deviation, LinearAdvice, SignalName};
@@ -36,3 +37,4 @@ pub use redesign::Redesign;
 pub use redesign_limits::{RedesignLimit, StableRange};
 pub use request::{LinearRequest, is_linear, parse, parse_changed};
 pub use request_file::RequestFile;
+pub use system_motion::{MotionEnd, SystemMotion};

@@ -8,10 +8,10 @@ use libration::control::clock::{Recorded, RecordedError};
 use libration::linear::{
     CostWeights, LinearLoop, LinearLoopError, LinearPlant, Matrix, MissingCommand,
 };
-use libration::live::Setting;
 use libration_logs::{StampOptions, read_time_stamps};
+use libration_settings::equations::EquationSystem;
 use libration_settings::linear_loop::{Design, LinearLoopTable, OperatingPoint, Part};
-use libration_settings::{Document, Fault, Number, SettingsError, live_settings, suggestions};
+use libration_settings::{Document, Fault, Number, SettingsError, suggestions};
 
 use super::clock::clocked;
 use super::redesign_toml::RedesignToml;
@@ -28,8 +28,12 @@ pub struct LinearRequest {
     pub(super) plant: LinearPlant,
     /// The equilibrium at which a system of the catalogue was linearised.
     pub(super) operating_point: Option<OperatingPoint>,
-    /// The equations that the plant is linearised from.
-    pub(super) equations: Option<Setting>,
+    /// The system of equations that was linearised.
+    pub(super) system: Option<EquationSystem>,
+    /// Whether the plant is the linearisation of a nonlinear system.
+    pub(super) is_linearised: bool,
+    /// Whether the request states where it is linearised, in place of the start of the system.
+    pub(super) has_stated_point: bool,
     pub(super) parts: Vec<Part>,
     pub(super) design: Design,
     pub(super) timed: TimedLoop,
@@ -89,7 +93,10 @@ impl LinearRequest {
     pub fn new(file: RequestFile) -> Result<Self, Fault> {
         let plant = file.system.linear.plant()?;
         let operating_point = file.system.linear.operating_point()?;
-        let equations = live_settings::of_plant_table(&file.system.linear);
+        let table = &file.system.linear;
+        let system = table.equations()?;
+        let is_linearised = operating_point.is_some() && !table.is_linear_system();
+        let has_stated_point = table.at.is_some() || table.command.is_some();
         let period = file.period();
         let Some(controller) = file.controller else {
             let message = "there is no controller; expected a table, as [controller.lqr]";
@@ -142,7 +149,9 @@ impl LinearRequest {
         Ok(LinearRequest {
             plant,
             operating_point,
-            equations,
+            system,
+            is_linearised,
+            has_stated_point,
             parts,
             design,
             timed,

@@ -54,27 +54,43 @@ impl LinearAdvice {
                 remedies.unwrap_or_default()
             );
         }
+        if let Some(motion) = self.motion.as_ref().filter(|motion| motion.contradiction().is_some())
+        {
+            return format!(
+                "The loop is {}: {}. Its linearisation is stable, and all limits are those of it.",
+                match self.verdict.outcome {
+                    Outcome::Unstable => "unstable",
+                    _ => "not known to be stable",
+                },
+                motion.in_words()
+            );
+        }
+        let of_loop = match self.is_linearised_only() {
+            true => "The linearised loop",
+            false => "The loop",
+        };
         let regained = self.budgets.iter().find_map(|budget| Some((budget, budget.regained?)));
         let mut text = match (self.margin, self.margin_tried_up_to) {
             _ if self.simulated.is_some_and(|simulated| !simulated.agrees()) => {
                 "The simulation contradicts the theory of the loop: see the warnings.".to_owned()
             }
             _ if self.exceeds_tolerated_cost() => {
-                "The loop is stable with the stated imperfections, but its cost exceeds the tolerance."
-                    .to_owned()
+                format!(
+                    "{of_loop} is stable with the stated imperfections, but its cost exceeds the tolerance."
+                )
             }
             _ if let Some((budget, window)) = regained => describe_window(budget, window),
             (Some(margin), _) => format!(
-                "The loop is stable with the stated imperfections, also if all of them are {} times as large.",
+                "{of_loop} is stable with the stated imperfections, also if all of them are {} times as large.",
                 cut_off(margin, 4)
             ),
             (None, Some(tried)) => format!(
-                "The loop is stable with the stated imperfections, also if all of them are at least {} times as large, the most that was tried.",
+                "{of_loop} is stable with the stated imperfections, also if all of them are at least {} times as large, the most that was tried.",
                 cut_off(tried, 4)
             ),
-            (None, None) if self.deadline_misses.is_some() => "The loop is stable.".to_owned(),
+            (None, None) if self.deadline_misses.is_some() => format!("{of_loop} is stable."),
             (None, None) => {
-                "The loop is stable. The request states no imperfections.".to_owned()
+                format!("{of_loop} is stable. The request states no imperfections.")
             }
         };
         if let Some(failing) = &self.fails_first {
@@ -99,6 +115,9 @@ impl LinearAdvice {
         }
         if let Some(increase) = self.cost_increase.filter(|_| self.margin_tried_up_to.is_some()) {
             text += &format!(" Its cost is {}.", beside_ideal(increase));
+        }
+        if self.is_linearised_only() {
+            text += " The motion of the nonlinear system was not simulated.";
         }
         text
     }

@@ -6,6 +6,8 @@ mod motion;
 mod prediction;
 mod search;
 
+use std::sync::atomic::AtomicBool;
+
 use libration::Method;
 use libration::equations::Dynamics;
 use libration_report::notation::cut_off;
@@ -17,6 +19,8 @@ pub use error::{ComparisonError, TOLERANCES};
 use motion::Motion;
 use prediction::Yardsticks;
 use search::Search;
+
+use crate::motion::narrow_force;
 pub use search::{MOST_EVALUATIONS, MOST_OF_BEST};
 
 /// Version of the JSON format.
@@ -106,6 +110,13 @@ fn judge(integrators: &[ComparedIntegrator], tolerance: f64, most: f64) -> Verdi
     verdict.without("implicit integrators").without("steps of variable length")
 }
 
+/// The verdict where a force acts between the evaluations of a reference.
+pub fn missed_force(time: f64) -> Verdict {
+    Verdict::unknown(format!(
+        "a force acts before {time:.4e} s for less time than the evaluations of the reference are apart, so errors are not known"
+    ))
+}
+
 /// Compares all explicit integrators on a motion.
 ///
 /// # Errors
@@ -125,6 +136,12 @@ pub fn compare(
     let cost = |one: &ComparedIntegrator| one.evaluations.unwrap_or(f64::INFINITY);
     integrators.sort_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.order.cmp(&b.order)));
     let verdict = judge(&integrators, request.tolerance, search.most_evaluations());
+    let never = AtomicBool::new(false);
+    let missed = narrow_force(&request.dynamics, &request.start, request.horizon, &never);
+    let verdict = match missed.ok().flatten() {
+        Some(time) if verdict.is_good() => missed_force(time),
+        _ => verdict,
+    };
     Ok(Comparison {
         verdict,
         most_evaluations: search.most_evaluations(),

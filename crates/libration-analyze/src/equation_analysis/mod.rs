@@ -104,8 +104,14 @@ pub fn analyze(
     let motion = EquationMotion::new(system, method, dt, steps, equilibrium.as_deref(), stop)?;
     let horizon = motion.error_steps as f64 * dt;
     let steps_along_motion = MotionSteps::new(system, method, horizon, stop)?;
-    let verdicts =
-        EquationVerdicts::new(system, method, &motion, equilibrium.as_deref(), linear.as_ref());
+    let verdicts = EquationVerdicts::new(
+        system,
+        method,
+        &motion,
+        equilibrium.as_deref(),
+        linear.as_ref(),
+        &steps_along_motion,
+    );
     let places = system.states.iter().map(|state| state.place).collect();
     let dynamics = system.equations.dynamics();
     let newton_residual =

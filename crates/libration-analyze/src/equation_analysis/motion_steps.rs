@@ -80,6 +80,11 @@ impl MotionSteps {
         }
         Ok(found)
     }
+
+    /// Whether steps of `dt` seconds are stable at all examined states.
+    pub(super) fn allows(&self, dt: f64) -> bool {
+        self.unknown_states == 0 && self.largest_stable_dt.is_none_or(|limit| dt < limit)
+    }
 }
 
 /// The end of the stable steps that begin at 0, of the linearisation at a state; zero if there are none. None if it is not known.

@@ -3,22 +3,23 @@
 use libration::AnyMethod;
 use libration::analysis::jacobian;
 use libration::equations::StepProgram;
-use libration::linear::eigenvalues;
+use libration::linear::{Complex64, eigenvalues};
 use libration_report::verdict::{Outcome, Verdict};
 use libration_settings::equations::EquationSystem;
 use serde::Serialize;
 
-use super::EquationMotion;
 use super::motion::is_affine;
 use super::step::spectral_radius;
+use super::{EquationMotion, MotionSteps};
 use crate::linear_analysis::LinearAnalysis;
-use crate::step_verdict::StepGrowth;
+use crate::step_verdict::{StepGrowth, has_multiple};
 
 /// The verdicts on a system by equations.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EquationVerdicts {
     /// Whether the step lets deviations from the equilibrium, or of a linear system from any motion, grow more than exact steps do. None
-    /// without an equilibrium near the motion, and where rounding hides the growth.
+    /// without an equilibrium near the motion, where rounding hides the growth, and where the step is stable along a motion that stays away
+    /// from the equilibrium.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub step: Option<Verdict>,
     /// Whether the steps resolve the motion.
@@ -32,10 +33,13 @@ impl EquationVerdicts {
         motion: &EquationMotion,
         equilibrium: Option<&[f64]>,
         linear: Option<&LinearAnalysis>,
+        along: &MotionSteps,
     ) -> Self {
         let places = system.states.iter().map(|state| state.place);
-        let is_relevant =
-            |at: &[f64]| is_affine(system) || motion.examination.is_near(at, places.clone());
+        let is_relevant = |at: &[f64]| {
+            is_affine(system)
+                || (motion.examination.is_near(at, places.clone()) && !along.allows(motion.dt))
+        };
         let step = match (equilibrium.filter(|at| is_relevant(at)), linear) {
             (Some(_), Some(linear)) => about_equilibrium(motion, linear),
             _ if is_affine(system) => of_affine(system, method, motion.dt),
@@ -66,9 +70,16 @@ fn about_equilibrium(motion: &EquationMotion, linear: &LinearAnalysis) -> Option
         dt: motion.dt,
         radius: Some(motion.spectral_radius?),
         exact_rate: linear.modes.first()?.growth_rate,
-        has_zeros: linear.modes.iter().any(|mode| mode.natural_frequency == 0.0),
+        has_parted: linear.modes.iter().any(|mode| mode.natural_frequency == 0.0)
+            || has_multiple(
+                linear
+                    .modes
+                    .iter()
+                    .map(|mode| Complex64::new(mode.eigenvalue[0], mode.eigenvalue[1])),
+            ),
         stable_dt: None,
-        modes: &[],
+        has_stability_function: false,
+        modes: Vec::new(),
     };
     Some(growth.verdict())
 }
@@ -84,9 +95,10 @@ fn of_affine(system: &EquationSystem, method: AnyMethod, dt: f64) -> Option<Verd
         radius: Some(spectral_radius(&step, system, &start, dt)?),
         exact_rate: values.iter().map(|value| value.re).fold(f64::NEG_INFINITY, f64::max),
         // Without an equilibrium there is one.
-        has_zeros: true,
+        has_parted: true,
         stable_dt: None,
-        modes: &[],
+        has_stability_function: false,
+        modes: Vec::new(),
     };
     Some(growth.verdict())
 }

@@ -4,6 +4,7 @@ use libration::equations::StepProgram;
 
 use super::EquationRequest;
 use crate::export::{Number, Rows};
+use crate::motion::undefined_function;
 use crate::newton_residual::{NewtonCheck, refined};
 use crate::trajectory::{
     Divergence, EnsembleFloat, EnsembleOptions, EnsembleRun, Monitor, Outcome, TrajectoryError,
@@ -74,7 +75,11 @@ pub(super) fn run<S: Number>(
         next.extend(step_of.run(&inputs));
         step += 1;
         if !next.iter().all(|x| x.is_finite()) {
+            let state: Vec<f64> = inputs.iter().map(|x| x.to_f64()).collect();
+            let why = undefined_function(&program, &state[..state.len() - 1], dt.to_f64());
             let reason = "the state stopped being finite".to_owned();
+            let reason = why.map_or(reason.clone(), |why| format!("{reason}: {why}"));
+            let reason = reason.trim_end_matches(',').to_owned();
             let t = step as f64 * dt.to_f64();
             let outcome = Outcome::Diverged(Divergence { step, t, reason, newton_residual: None });
             return Ok(outcome.with_residual(check.and_then(|check| check.found())));

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::SimulatedMode;
 use crate::Stepping;
-use crate::step_verdict::StepGrowth;
+use crate::step_verdict::{ModeGrowth, StepGrowth, has_multiple};
 
 /// Steps of an integrator on a plant.
 #[derive(Clone, Debug, Serialize)]
@@ -144,9 +144,11 @@ impl Subject<'_> {
             dt,
             radius: analysis.predicted_spectral_radius.or(analysis.spectral_radius),
             exact_rate: rates.fold(f64::NEG_INFINITY, f64::max),
-            has_zeros: self.shapes.iter().any(|(value, _)| value.norm() == 0.0),
+            has_parted: self.shapes.iter().any(|(value, _)| value.norm() == 0.0)
+                || has_multiple(self.shapes.iter().map(|(value, _)| *value)),
             stable_dt: analysis.stable_dt.as_deref(),
-            modes: &analysis.modes,
+            has_stability_function: analysis.stability_function.is_some(),
+            modes: analysis.modes.iter().map(ModeUnderSteps::in_a_step).collect(),
         }
     }
 
@@ -228,6 +230,11 @@ impl StepAnalysis {
 }
 
 impl ModeUnderSteps {
+    fn in_a_step(&self) -> ModeGrowth {
+        let &ModeUnderSteps { growth, angle, exact_growth, exact_angle, .. } = self;
+        ModeGrowth { growth, angle, exact_growth, exact_angle }
+    }
+
     fn new(mode: &StepMode) -> Self {
         let error = mode.phase_error();
         ModeUnderSteps {

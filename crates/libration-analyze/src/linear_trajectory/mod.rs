@@ -5,6 +5,7 @@
 
 mod request;
 mod run;
+mod system_motion;
 
 use std::io::Write;
 

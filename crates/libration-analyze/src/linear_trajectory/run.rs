@@ -1,7 +1,6 @@
 //! Rows of loops around a linear plant.
 
 use libration::ensemble::Execution;
-use libration::linear_loops::LinearLoops;
 
 use super::LinearRequest;
 use crate::export::Rows;
@@ -22,21 +21,8 @@ pub(super) fn run(
         None => Execution::serial(),
     };
     let count = ensemble.map_or(1, |ensemble| ensemble.count);
-    let scale = |n| ensemble.map_or(1.0, |ensemble| ensemble.scale(n));
-    let mut all = LinearLoops::new(
-        &request.linear,
-        &request.timing,
-        request.record.as_deref(),
-        count,
-        execution,
-    )?;
-    if let Some(motion) = &request.motion {
-        all = all.with_motion(&request.linear, motion.clone())?;
-    }
+    let mut all = request.loops(execution)?;
     let [states_at, outputs_at, inputs_at] = request.operating_point();
-    all.set_reference(&request.reference)?;
-    all.set_disturbance(&request.disturbance)?;
-    all.reset(request.seed, |n, i| scale(n) * request.start[i]);
     let mut values = Vec::with_capacity(request.columns().len());
     let at_once = (CHUNK / count as u64).max(1);
     loop {

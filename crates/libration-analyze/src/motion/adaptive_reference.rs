@@ -6,6 +6,7 @@ use libration::Method;
 use libration::equations::{Evaluation, StepProgram};
 
 use super::reference::{End, Samples};
+use super::unseen::Unseen;
 use super::{MotionState, MotionSubject};
 use crate::AnalyzeError;
 
@@ -18,16 +19,21 @@ const CHANGES: [f64; 2] = [0.1, 4.0];
 /// A step that is shorter than this part of the motion shows that the motion ends, or that forces jump all the time.
 const SHORTEST: f64 = 1e-15;
 
+/// Steps are shortened to this part for what forces may do between their evaluations.
+const LEAST_LOOK: f64 = 1e-12;
+
 /// Steps between two checks of the stop flag.
 const CHUNK: u64 = 1 << 10;
 
 /// Follows the exact motion to each of `times` by steps, each of which is compared with two of half the length. The difference is at
-/// most `tolerance` of the range of each state so far; the better of the two is kept, whose own error is about 1/255 of it.
+/// most `tolerance` of the range of each state so far; the better of the two is kept, whose own error is about 1/255 of it. With
+/// `looks_between` a step is shortened until its evaluations show what forces may do in it.
 pub(super) fn follow(
     subject: &MotionSubject<'_>,
     times: &[f64],
     tolerance: f64,
     most_operations: u64,
+    looks_between: bool,
     stop: &AtomicBool,
 ) -> Result<Samples, AnalyzeError> {
     let mut samples = Samples::new(subject);
@@ -39,6 +45,9 @@ pub(super) fn follow(
     let mut stepper = Stepper::new(subject, &step, tolerance, expected(subject, first));
     let horizon = times.last().copied().unwrap_or(0.0);
     let (mut length, mut trials, mut before) = (first, 0, 0.0);
+    // The time up to which steps are not shortened, and the length of the first step that was.
+    let mut seen_from = if looks_between { 0.0 } else { f64::INFINITY };
+    let mut shortened: Option<f64> = None;
     for &time in times {
         let (span, mut done) = (time - before, 0.0);
         while done < span {
@@ -53,7 +62,23 @@ pub(super) fn follow(
             let is_last = done + length >= span;
             let own = if is_last { span - done } else { length };
             let off = stepper.attempt(own);
-            let change = (0.9 * off.powf(-1.0 / 9.0)).clamp(CHANGES[0], CHANGES[1]);
+            let mut change = (0.9 * off.powf(-1.0 / 9.0)).clamp(CHANGES[0], CHANGES[1]);
+            let now = before + done;
+            if off <= 1.0 && now >= seen_from {
+                let unseen = stepper.unseen(own);
+                // What smooth forces do between evaluations falls with the square of the step.
+                let shorter = 0.9 * unseen.sqrt().recip();
+                if unseen > 1.0 {
+                    let longest = *shortened.get_or_insert(own);
+                    length = own * shorter.clamp(CHANGES[0], 0.5);
+                    if length < LEAST_LOOK * longest {
+                        samples.unseen.get_or_insert(now);
+                        (seen_from, length, shortened) = (now + longest, longest, None);
+                    }
+                    continue;
+                }
+                (change, shortened) = (change.min(shorter.max(1.0)), None);
+            }
             if off <= 1.0 {
                 stepper.accept();
                 done = if is_last { span } else { done + own };
@@ -86,6 +111,7 @@ fn expected(subject: &MotionSubject<'_>, dt: f64) -> Vec<f64> {
 /// Steps with their errors.
 struct Stepper<'a> {
     states: &'a [MotionState],
+    between: Unseen<'a>,
     step: Evaluation<'a, f64>,
     tolerance: f64,
     /// Positions, velocities, inputs and the length of a step.
@@ -110,6 +136,7 @@ impl<'a> Stepper<'a> {
         inputs.push(0.0);
         Stepper {
             states: subject.states,
+            between: Unseen::new(subject),
             step: step.program().on(),
             tolerance,
             trial: inputs.clone(),
@@ -157,6 +184,17 @@ impl<'a> Stepper<'a> {
             true => worst,
             false => f64::INFINITY,
         }
+    }
+
+    /// The largest change by forces that the evaluations of the attempted step do not show, where 1 is allowed.
+    fn unseen(&mut self, length: f64) -> f64 {
+        let Stepper { inputs, middle, end, ranges, expected, .. } = self;
+        let range = |place: usize| {
+            let [low, high] = ranges[place];
+            (high.max(end[place]) - low.min(end[place])).max(expected[place])
+        };
+        let start = &inputs[..inputs.len() - 1];
+        self.between.largest(start, [middle, end], length, range)
     }
 
     fn accept(&mut self) {

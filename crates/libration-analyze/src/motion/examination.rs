@@ -7,10 +7,11 @@ use libration_report::verdict::Verdict;
 use serde::Serialize;
 
 use super::energy::EnergyOf;
-use super::judgement::{Excess, SMALL};
+use super::judgement::Excess;
 use super::reference::Reference;
 use super::sample_steps::sample_steps;
-use super::{EnergyChange, MotionState, MotionSubject, StepRun, most_steps};
+use super::undefined_function::undefined_function;
+use super::{EnergyChange, MotionState, MotionSubject, SMALL, StepRun, most_steps};
 use crate::AnalyzeError;
 
 /// An error counts where the exact motion is known to this part of it.
@@ -41,6 +42,9 @@ pub struct MotionExamination {
     pub energy: Option<EnergyChange>,
     /// The first step after which a state is not finite; none if there is none.
     pub diverged_at_step: Option<u64>,
+    /// The function without a value that ends the steps, with its argument; none if none does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub undefined: Option<String>,
     /// Whether the steps resolve the motion.
     pub verdict: Verdict,
     /// The least and the largest value of each position and velocity, in the exact motion where that is known.
@@ -83,6 +87,7 @@ pub(crate) fn examine(
     let mut energy_of = EnergyOf::new(subject);
     let mut energy = energy_of.as_mut().map(|of| EnergyChange::new(of, subject, steps));
     let (mut samples, mut diverged) = (Vec::with_capacity(numbers.len()), None);
+    let (mut before, mut undefined) = (subject.start.to_vec(), None);
     run.follow(steps, stop, |number, state| {
         if let (Some(change), Some(of)) = (&mut energy, &mut energy_of) {
             change.add(number, of.total(state));
@@ -92,7 +97,9 @@ pub(crate) fn examine(
         }
         if state.iter().any(|x| !x.is_finite()) {
             diverged = Some(number);
+            undefined = undefined_function(step, &before, dt);
         }
+        before.copy_from_slice(state);
     })?;
     let times: Vec<f64> = numbers.iter().map(|&number| number as f64 * dt).collect();
     let reference = Reference::new(subject, &times, stop)?;
@@ -114,6 +121,7 @@ pub(crate) fn examine(
         states: Vec::new(),
         energy,
         diverged_at_step: diverged,
+        undefined,
         verdict: Verdict::unknown(""),
         ranges,
     };
@@ -142,7 +150,7 @@ pub(crate) fn examine(
     if let (Some(change), Some(of)) = (&mut found.energy, &mut energy_of) {
         change.compare(of, subject.start, &samples, &reference);
     }
-    found.verdict = found.judge(dt, excess, unsure, steps, reference.end());
+    found.verdict = found.judge(dt, excess, unsure, steps, &reference);
     Ok(found)
 }
 
@@ -191,6 +199,12 @@ impl StateExamination {
 }
 
 impl MotionExamination {
+    /// Whether nothing moves.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        let moves = |&[low, high]: &[f64; 2]| high > low;
+        self.examined_steps > 0 && !self.ranges.iter().any(moves)
+    }
+
     /// Whether a state, of positions and velocities, is within the motion or as near to it as the motion is wide.
     pub(crate) fn is_near(&self, at: &[f64], places: impl IntoIterator<Item = usize>) -> bool {
         places.into_iter().all(|place| {

@@ -2,13 +2,9 @@
 
 use libration_report::verdict::{Outcome, Verdict};
 
-use super::reference::End;
-use super::{MotionExamination, StateExamination};
+use super::reference::{End, Reference};
+use super::{MotionExamination, SMALL, StateExamination};
 use crate::digits::significant;
-
-/// The part of the range of a state up to which an error is small beside its motion: the width of a line in a plot. Twice as much of an
-/// amplitude.
-pub(super) const SMALL: f64 = 0.01;
 
 /// Fewer samples of the exact motion than up to this step decide nothing, unless fewer steps are examined.
 const LEAST_STEPS: u64 = 1000;
@@ -29,9 +25,12 @@ impl MotionExamination {
         excess: Option<Excess>,
         unsure: Option<u64>,
         steps: u64,
-        end: Option<End>,
+        reference: &Reference,
     ) -> Verdict {
         let time = |step: u64| significant(step as f64 * dt, 6);
+        if let (Some(step), Some(why)) = (self.diverged_at_step, &self.undefined) {
+            return Verdict::unknown(format!("{why} in step {step}, the first that fails"));
+        }
         if let Some(step) = self.diverged_at_step {
             return Verdict::new(
                 Outcome::NotResolved,
@@ -57,7 +56,13 @@ impl MotionExamination {
                 time(step)
             ));
         }
-        if let Some(End::Motion(at)) = end {
+        if let Some(at) = reference.unseen() {
+            return Verdict::unknown(format!(
+                "the forces have no bound near {} s, or may change the motion between their evaluations there",
+                significant(at, 6)
+            ));
+        }
+        if let Some(End::Motion(at)) = reference.end() {
             return Verdict::unknown(format!(
                 "the exact motion cannot be followed beyond {} s: it ends there, or its forces jump",
                 significant(at, 6)
@@ -80,14 +85,15 @@ impl MotionExamination {
                 format!("the largest error is {percent} % of the motion of {}", worst.name)
             },
         );
-        let verdict = Verdict::new(Outcome::Resolved, evidence);
-        match self.examined_steps < self.requested_steps {
-            true => verdict.without(format!(
-                "steps {} to {}",
-                self.examined_steps + 1,
-                self.requested_steps
-            )),
-            false => verdict,
+        let (examined, requested) = (self.examined_steps, self.requested_steps);
+        if examined < requested {
+            return Verdict::unknown(format!(
+                "only the first {examined} of {requested} steps ({} s) were compared with the exact motion, and in these {evidence}; \
+                 `--steps {examined}` asks for no more than these",
+                time(examined)
+            ))
+            .without(format!("steps {} to {requested}", examined + 1));
         }
+        Verdict::new(Outcome::Resolved, evidence)
     }
 }

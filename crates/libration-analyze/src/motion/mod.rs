@@ -4,19 +4,28 @@ mod adaptive_reference;
 mod energy;
 mod examination;
 mod judgement;
+mod narrow_force;
 mod reference;
 mod sample_steps;
 mod step_run;
+mod undefined_function;
+mod unseen;
 
 use libration::equations::{Dynamics, StepProgram};
 
 pub use energy::EnergyChange;
 pub(crate) use examination::examine;
 pub use examination::{MotionExamination, StateExamination};
+pub use narrow_force::narrow_force;
 pub(crate) use step_run::StepRun;
+pub(crate) use undefined_function::undefined_function;
 
 /// Steps of a nonlinear motion without a number in the request: more are a choice of the user, since errors of most motions grow.
 pub const DEFAULT_STEPS: u64 = 1000;
+
+/// The part of the range of a state up to which an error is small beside its motion: the width of a line in a plot. Twice as much of an
+/// amplitude.
+const SMALL: f64 = 0.01;
 
 /// A system with the start of its motion.
 pub(crate) struct MotionSubject<'a> {

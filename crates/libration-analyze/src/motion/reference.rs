@@ -36,12 +36,14 @@ pub(super) struct Samples {
     pub(super) ranges: Vec<[f64; 2]>,
     /// Why later ones are missing.
     pub(super) end: Option<End>,
+    /// The first time in s about which forces may do more than evaluations show.
+    pub(super) unseen: Option<f64>,
 }
 
 impl Samples {
     pub(super) fn new(subject: &MotionSubject<'_>) -> Self {
         let ranges = subject.start.iter().map(|&x| [x; 2]).collect();
-        Samples { states: Vec::new(), ranges, end: None }
+        Samples { states: Vec::new(), ranges, end: None, unseen: None }
     }
 
     pub(super) fn push(&mut self, state: &[f64]) {
@@ -69,7 +71,7 @@ impl Reference {
             return Ok(Reference { kind: "exponential", coarse: exact.clone(), exact });
         }
         let follow = |tolerance, times, operations| {
-            adaptive_reference::follow(subject, times, tolerance, operations, stop)
+            adaptive_reference::follow(subject, times, tolerance, operations, true, stop)
         };
         let coarse = follow(TOLERANCES[0], times, MOST_OPERATIONS)?;
         let times = &times[..coarse.states.len()];
@@ -85,6 +87,11 @@ impl Reference {
     /// Why later samples are missing.
     pub(super) fn end(&self) -> Option<End> {
         self.exact.end.or(self.coarse.end)
+    }
+
+    /// The first time in s about which forces may do more than evaluations show.
+    pub(super) fn unseen(&self) -> Option<f64> {
+        self.exact.unseen.or(self.coarse.unseen)
     }
 }
 

@@ -3,10 +3,12 @@
 use libration::Scalar;
 use libration::analysis::{Imperfections, Plant};
 use libration::control::{Feedback, Latency};
+use libration::linear::GROWTH_ROUNDING;
 use libration::number::Wide;
 use serde::Serialize;
 
 use super::Timing;
+use super::modes::unless_rounding;
 
 /// The growth of a loop per step with its latency, jitter and losses, for a clock at its nominal rate.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -34,7 +36,7 @@ impl LoopGrowth {
         // A loop that waits for no command is a product of matrices of two rows.
         let ([radius, growth], exponent) = if latency == Latency::NONE && loss == 0.0 {
             let radius = plant.mean_square(feedback, jitter).radius;
-            let moments = [radius, radius - Wide::one()].map(Wide::to_f64);
+            let moments = [radius, unless_rounding(radius - Wide::one())].map(Wide::to_f64);
             // Of steps that are all alike second moments grow by the square of the spectral radius.
             let exponent = match jitter.rms() {
                 0.0 => Some(0.5 * radius.ln().to_f64()),
@@ -44,6 +46,7 @@ impl LoopGrowth {
         } else {
             let drawn = Imperfections { latency, jitter, loss, ..none };
             let rate = plant.mean_square_growth(&feedback.into(), &drawn).unwrap_or(f64::NAN);
+            let rate = if rate.abs() <= GROWTH_ROUNDING { 0.0 } else { rate };
             ([rate.exp(), rate.exp_m1()], None)
         };
         let finite = |x: f64| Some(x).filter(|x| x.is_finite());

@@ -7,6 +7,7 @@ use libration::{AnySystem, Model, Scalar, State};
 use libration_settings::units;
 use serde::Serialize;
 
+use super::modes::unless_rounding;
 use super::timing::Timing;
 use super::{AnalyzeError, LoopCost, LoopGrowth, Request, Stepping};
 
@@ -145,7 +146,8 @@ impl ClosedLoop {
             feedback_units: closed.then_some([of_position, of_velocity]),
             latency_steps: closed.then(|| latency.steps()),
             closed_loop_spectral_radius: radius.map(Wide::to_f64),
-            closed_loop_spectral_radius_minus_one: radius.map(|r| (r - Wide::one()).to_f64()),
+            closed_loop_spectral_radius_minus_one: radius
+                .map(|r| unless_rounding(r - Wide::one()).to_f64()),
             critical: closed.then(|| self.critical(request.dt)),
             jitter_clips: timing.jitter.map(Jitter::clips),
             growth: self.growth(),

@@ -133,7 +133,8 @@ fn difference_of(a: Wide, b: Wide) -> Wide {
     }
 }
 
-fn unless_rounding(x: Wide) -> Wide {
+/// A difference from one, or zero if it is rounding.
+pub(super) fn unless_rounding(x: Wide) -> Wide {
     if x.abs().to_f64() < ROUNDING { Wide::ZERO } else { x }
 }
 

@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 use libration::AnySystem;
 use libration::ensemble::dynamics_of;
 use libration::equations::StepProgram;
+use libration::linear::GROWTH_ROUNDING;
 use libration_report::verdict::{Outcome, Verdict};
 use libration_settings::units;
 use serde::Serialize;
@@ -12,6 +13,7 @@ use serde::Serialize;
 use super::{Analysis, AnalyzeError, LoopAnalysis, Request};
 use crate::digits::change_per_step;
 use crate::motion::{MotionExamination, MotionState, MotionSubject, examine};
+use crate::step_verdict::StepGrowth;
 
 /// The verdicts on a step of a system of the catalogue. Of a loop there is that of the loop alone.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -19,7 +21,7 @@ pub struct StepVerdicts {
     /// Whether the loop is stable; none without a loop.
     #[serde(rename = "loop", skip_serializing_if = "Option::is_none")]
     pub closed_loop: Option<Verdict>,
-    /// Whether the step lets deviations grow more than exact steps do; none of nonlinear systems.
+    /// Whether the step lets deviations grow more than exact steps do; of nonlinear systems only at an equilibrium at which they rest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub step: Option<Verdict>,
     /// Whether the steps resolve the motion of a nonlinear system.
@@ -33,7 +35,12 @@ impl StepVerdicts {
         let is_loop = closed_loop.is_some();
         StepVerdicts {
             closed_loop,
-            step: (!is_loop && request.system.is_linear()).then(|| of_step(analysis, request)),
+            step: match &analysis.motion {
+                _ if is_loop => None,
+                _ if request.system.is_linear() => Some(of_step(analysis, request)),
+                Some(motion) if motion.is_at_rest() => Some(at_rest(analysis)),
+                _ => None,
+            },
             motion: analysis.motion.as_ref().map(|motion| motion.verdict.clone()),
         }
     }
@@ -44,6 +51,21 @@ impl StepVerdicts {
     }
 }
 
+/// The step at an equilibrium of a nonlinear system, by the rule of systems by equations.
+fn at_rest(analysis: &Analysis) -> Verdict {
+    let dt = analysis.request.dt;
+    let growth = StepGrowth {
+        dt,
+        radius: Some(1.0 + analysis.spectral_radius_minus_one),
+        exact_rate: analysis.flow_spectral_radius_minus_one.ln_1p() / dt,
+        has_parted: false,
+        stable_dt: None,
+        has_stability_function: false,
+        modes: Vec::new(),
+    };
+    growth.verdict()
+}
+
 fn of_step(analysis: &Analysis, request: &Request) -> Verdict {
     let excess = analysis.spectral_radius_minus_one;
     let exact = analysis.flow_spectral_radius_minus_one;
@@ -51,7 +73,7 @@ fn of_step(analysis: &Analysis, request: &Request) -> Verdict {
     let rounding = 0.5 * f64::EPSILON * exact.abs();
     let motions = format!("motions {}", change_per_step(excess));
     let moments = analysis.timing.as_ref().and_then(|timing| timing.growth?.mean_square_growth);
-    if let Some(growth) = moments.filter(|growth| *growth > ROUNDING) {
+    if let Some(growth) = moments.filter(|growth| *growth > GROWTH_ROUNDING) {
         let moments = change_per_step(growth);
         return Verdict::new(
             Outcome::Unstable,
@@ -61,6 +83,15 @@ fn of_step(analysis: &Analysis, request: &Request) -> Verdict {
     if excess != 0.0 && excess.abs() <= rounding {
         return Verdict::unknown(
             "at the limit of stability, motions neither grow nor decay beyond the rounding of its parameters",
+        );
+    }
+    let turn = match request.system {
+        AnySystem::Oscillator(model) => model.omega2 * request.dt * request.dt,
+        _ => 0.0,
+    };
+    if excess > 0.0 && excess <= COEFFICIENTS * turn {
+        return Verdict::unknown(
+            "motions grow by less than the rounding of the coefficients of the integrator",
         );
     }
     match analysis.bounded {
@@ -82,8 +113,8 @@ fn of_step(analysis: &Analysis, request: &Request) -> Verdict {
     }
 }
 
-/// Growth of second moments per step that is rounding.
-const ROUNDING: f64 = 1e-12;
+/// Growth per step, for each squared radian of it, that roundings of a dozen coefficients of an integrator may cause.
+const COEFFICIENTS: f64 = 8.0 * f64::EPSILON;
 
 /// A motion that grows in exact steps may grow by this part faster: the step is inaccurate then, not unstable.
 const FASTER: f64 = 1.5;

@@ -9,6 +9,7 @@ mod thermal_system;
 
 use libration::analysis::covariance_formulas;
 use libration::thermostat::LangevinMethod;
+use libration_report::verdict::Verdict;
 use libration_work::Work;
 use serde::Serialize;
 
@@ -87,6 +88,8 @@ pub struct TemperatureReport {
     /// The method with the least bias of positions: of several, that with the fewest force evaluations, then with the least bias of
     /// velocities. None if none is stable and stays finite.
     pub recommended: Option<String>,
+    /// Whether the recommended method is stable at the time step; unstable if none is.
+    pub verdict: Verdict,
     /// The methods in the order of the request.
     pub thermostats: Vec<ThermostatReport>,
 }
@@ -194,6 +197,7 @@ pub fn analyze_temperature(
         mass: rows.map(|i| system.mass.row(i).to_vec()).collect(),
         frequencies: system.frequencies.clone(),
         bias_limit: BIAS_LIMIT,
+        verdict: recommendation::judge(&thermostats, dt),
         recommended: recommended(&thermostats),
         thermostats,
     })

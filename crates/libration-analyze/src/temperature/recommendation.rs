@@ -1,6 +1,8 @@
 //! The thermostat with the least bias of positions.
 
-use super::{TemperatureBias, ThermostatReport};
+use libration_report::verdict::{Outcome, Verdict};
+
+use super::{TemperatureBias, ThermostatReport, significant};
 
 /// Biases below this count as none.
 const ROUNDING: f64 = 1e-12;
@@ -40,4 +42,33 @@ pub(super) fn recommended(thermostats: &[ThermostatReport]) -> Option<String> {
         of_positions.then(a.evaluations.cmp(&b.evaluations)).then(of_velocities)
     });
     best.map(|one| one.thermostat.clone())
+}
+
+/// Whether the recommended method is stable in steps of `dt` seconds.
+pub(super) fn judge(thermostats: &[ThermostatReport], dt: f64) -> Verdict {
+    let best = recommended(thermostats);
+    let best = thermostats.iter().find(|one| Some(&one.thermostat) == best.as_ref());
+    let left_out: Vec<String> = thermostats
+        .iter()
+        .filter(|one| one.stable && one.configuration.measured_bias.is_none())
+        .map(|one| format!("a measurement of {}", one.thermostat))
+        .collect();
+    let verdict = match best {
+        Some(one) => Verdict::new(
+            Outcome::Stable,
+            format!(
+                "all modes with {} are stable up to steps of {} s",
+                one.thermostat,
+                significant(one.stable_dt)
+            ),
+        ),
+        None if thermostats.iter().any(|one| one.stable) => {
+            Verdict::unknown("measured trajectories of each stable method became infinite")
+        }
+        None => Verdict::new(
+            Outcome::Unstable,
+            format!("no method is stable in steps of {} s", significant(dt)),
+        ),
+    };
+    left_out.into_iter().fold(verdict, Verdict::without)
 }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod narrow_forces;
 mod verdicts;
 
 use std::fs;

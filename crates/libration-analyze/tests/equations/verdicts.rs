@@ -15,13 +15,18 @@ fn system(lines: &str) -> EquationSystem {
     EquationSystem::parse(&text, "case", &[]).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn examined(system: &EquationSystem, method: &str, dt: f64, steps: u64) -> EquationAnalysis {
+pub(crate) fn examined(
+    system: &EquationSystem,
+    method: &str,
+    dt: f64,
+    steps: u64,
+) -> EquationAnalysis {
     let method = AnyMethod::from_name(method).unwrap();
     analyze(system, method, dt, steps, &AtomicBool::new(false)).unwrap()
 }
 
 /// One coordinate `q0` from 1 at rest.
-fn force(acceleration: &str) -> EquationSystem {
+pub(crate) fn force(acceleration: &str) -> EquationSystem {
     system(&format!(
         "coordinates = [\"q0\"]\nacceleration.q0 = \"{acceleration}\"\nstart = {{ q0 = 1.0 }}\n"
     ))
@@ -33,7 +38,7 @@ fn rate(rate: &str, start: f64) -> EquationSystem {
 }
 
 /// A system in the plane, with `more` lines of its table.
-fn plane(accelerations: [&str; 2], start: &str, more: &str) -> EquationSystem {
+pub(crate) fn plane(accelerations: [&str; 2], start: &str, more: &str) -> EquationSystem {
     let [x, y] = accelerations;
     system(&format!(
         "coordinates = [\"x\", \"y\"]\nacceleration.x = \"{x}\"\nacceleration.y = \"{y}\"\nstart = {{ {start} }}\n{more}"

@@ -32,7 +32,8 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
         return Err(Failure::usage(format!("{flag} requires --compare")));
     }
     if let Some(temperature) = args.temperature {
-        return print(&temperature::run(args, temperature)?);
+        let (text, code) = temperature::run(args, temperature)?;
+        return judged(&text, code, None);
     }
     if let Some(failure) = temperature::option_without_temperature(args) {
         return Err(failure);

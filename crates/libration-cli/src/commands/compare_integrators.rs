@@ -67,6 +67,12 @@ pub(super) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
 fn verdict(comparison: &Comparison) -> String {
     let Comparison { system, horizon, tolerance, integrators, .. } = comparison;
     match integrators.iter().find(|one| one.evaluations.is_some()) {
+        Some(best) if !comparison.verdict.is_good() => format!(
+            "Whether {} in steps of {} s keeps an error of {tolerance:e} over {horizon} s of {system} is not known: {}.",
+            best.integrator,
+            step(best.dt),
+            comparison.verdict.evidence,
+        ),
         Some(best) => format!(
             "{}: the cheapest of {} that were tried for an error of {tolerance:e} of the largest size of each state over {horizon} s of {system}, with steps of {} s",
             best.integrator,

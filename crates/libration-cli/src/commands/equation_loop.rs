@@ -1,7 +1,5 @@
 //! Loops around systems by equations.
 
-use libration::equations::StepProgram;
-use libration::linear_loops::ProgramMotion;
 use libration::{AnyMethod, Method};
 use libration_analyze::linear_trajectory::LinearRequest;
 use libration_analyze::trajectory::FloatType;
@@ -40,10 +38,9 @@ fn of_file(
             "{flag} cannot be combined with --system FILE and --lqr or --gain: the loop runs from the `start` of the file, in f64, on an even clock or with --jitter"
         )));
     }
-    let (looped, mut request) = args.loop_around(path, options)?;
+    let (looped, request) = args.loop_around(path, options)?;
     let system = equation_file::read(path, &options.set)?;
-    let point = looped.operating_point().map(|point| point.state_of(&system));
-    let Some(mut at) = point else {
+    let Some(point) = looped.operating_point() else {
         return Err(Failure::usage("the plant of the file has no operating point"));
     };
     let (method, longest_step) = match &args.step {
@@ -58,23 +55,5 @@ fn of_file(
             }
         },
     };
-    let equations = &system.equations;
-    let dynamics = match equations.inputs().is_empty() {
-        true => equations.dynamics().with_added_accelerations(),
-        false => equations.dynamics().clone(),
-    };
-    at.resize(2 * dynamics.degrees() + dynamics.inputs(), 0.0);
-    let places: Vec<usize> = system.states.iter().map(|state| state.place).collect();
-    let start = system.start();
-    request.start = places.iter().map(|&place| start[place] - at[place]).collect();
-    let (degrees, most) = (dynamics.degrees(), StepProgram::most_degrees(method));
-    if degrees > most {
-        return Err(Failure::usage(format!(
-            "--integrator {}: the system has {degrees} degrees of freedom; expected an explicit integrator for more than {most}",
-            method.name()
-        )));
-    }
-    let step = StepProgram::of(method, &dynamics);
-    request.motion = Some(ProgramMotion { step, operating_point: at, places, longest_step });
-    Ok(request)
+    request.around_system(&system, point, method, longest_step).map_err(Failure::usage)
 }

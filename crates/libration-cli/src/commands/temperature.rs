@@ -7,6 +7,7 @@ use libration_analyze::temperature::{
     TemperatureBias, TemperatureError, TemperatureReport, TemperatureRequest, ThermalSystem,
     ThermostatReport, analyze_temperature, significant,
 };
+use libration_report::verdict::{Outcome, Verdict, exit_code};
 use libration_work::Work;
 
 use super::{equation_file, summary};
@@ -15,8 +16,8 @@ use crate::error::Failure;
 use crate::interrupt;
 use crate::progress::Reporter;
 
-/// Returns the temperatures as text or as JSON.
-pub(super) fn run(args: &AnalyzeArgs, temperature: f64) -> Result<String, Failure> {
+/// Returns the temperatures as text or as JSON, and their exit code.
+pub(super) fn run(args: &AnalyzeArgs, temperature: f64) -> Result<(String, u8), Failure> {
     let (Some(system), Some(friction)) = (&args.system, args.friction) else {
         return Err(Failure::usage("--temperature requires --system and --friction"));
     };
@@ -37,11 +38,12 @@ pub(super) fn run(args: &AnalyzeArgs, temperature: f64) -> Result<String, Failur
     let found = analyze_temperature(&Work::new(&reporter, interrupt::listen()), &request);
     reporter.clear();
     let found = found.map_err(failure)?;
-    match (args.json, args.verbose) {
-        (true, _) => Ok(serde_json::to_string_pretty(&found).map_err(Failure::run)? + "\n"),
-        (false, true) => Ok(describe(&found)),
-        (false, false) => Ok(summary::of_temperatures(&found, &verdict(&found), &setting(&found))),
-    }
+    let text = match (args.json, args.verbose) {
+        (true, _) => serde_json::to_string_pretty(&found).map_err(Failure::run)? + "\n",
+        (false, true) => describe(&found),
+        (false, false) => summary::of_temperatures(&found, &verdict(&found), &setting(&found)),
+    };
+    Ok((text, exit_code([&found.verdict])))
 }
 
 fn failure(error: TemperatureError) -> Failure {
@@ -76,10 +78,14 @@ type BiasOf = fn(&ThermostatReport) -> &TemperatureBias;
 /// The recommended thermostat in a sentence.
 fn verdict(report: &TemperatureReport) -> String {
     let (system, dt) = (&report.system, significant(report.dt));
+    let Verdict { outcome, evidence, .. } = &report.verdict;
     match &report.recommended {
-        Some(best) => {
-            format!("{best}: the least bias of positions for {system} with steps of {dt} s")
-        }
+        Some(best) => format!(
+            "{best} is {outcome} and has the least bias of positions for {system} with steps of {dt} s"
+        ),
+        None if *outcome == Outcome::Unknown => format!(
+            "Whether a thermostat is stable for {system} with steps of {dt} s is not known: {evidence}."
+        ),
         None => format!("No thermostat is stable for {system} with steps of {dt} s."),
     }
 }

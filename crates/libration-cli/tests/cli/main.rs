@@ -33,6 +33,7 @@ mod interrupt;
 mod join;
 mod kills;
 mod lab;
+mod limits_of_stability;
 mod linear;
 mod linear_analysis;
 mod linear_errors;
@@ -45,6 +46,7 @@ mod log_warnings;
 mod logs;
 mod long_files;
 mod loop_verdicts;
+mod loops_from_starts;
 #[cfg(target_os = "linux")]
 mod memory;
 mod operating_points;

@@ -3,6 +3,7 @@
 use core::time::Duration;
 use std::time::Instant;
 
+use libration_report::verdict::Outcome;
 use serde::Serialize;
 
 use super::ServoGain;
@@ -141,6 +142,10 @@ impl MeasuredGains {
             let none = vec![0.0; servos.len()];
             let passive = search.step(&(none.clone(), none), subject.dt)?;
             report.unstable_without_servos = by_step_alone(&passive, outside);
+        }
+        // Limits beside gains of which nothing is known would be read as gains that hold.
+        if report.verdict().outcome == Outcome::Unknown {
+            return Ok(report);
         }
         report.limits(&mut search, servos, start)?;
         report.fewest_substeps = search.fewest_substeps(substeps)?;

@@ -8,7 +8,7 @@ use super::gain_limits::GainLimits;
 use super::limit_in_json::limit;
 use super::measured::MeasuredGains;
 use super::servo_mode::{ServoMode, modes};
-use super::stable_factors::{StableFactors, growth, is_stable};
+use super::stable_factors::{StableFactors, growth, holds, is_stable};
 use super::{ServoIntegrator, Servos, Torque};
 
 /// Most substeps that are tried.
@@ -119,12 +119,11 @@ pub fn gains(
 ) -> GainReport {
     let row = |integrator: ServoIntegrator| {
         let step = |servos: &Servos| servos.period(integrator, dt, substeps);
-        let holds = is_stable(step(servos));
         let factor = StableFactors::search(|factor| step(&servos.with_factor(factor)));
         IntegratorRow {
             name: integrator.name(),
             title: integrator.title(),
-            holds,
+            holds: holds(|dt| servos.period(integrator, dt, substeps), dt),
             largest_factor: factor.most,
             least_factor: factor.least,
             fewest_substeps: fewest_substeps(servos, dt, integrator),
@@ -178,7 +177,7 @@ fn continuous_growth(servos: &Servos) -> Option<f64> {
 }
 
 fn fewest_substeps(servos: &Servos, dt: f64, integrator: ServoIntegrator) -> Option<u32> {
-    let holds = |substeps: u32| is_stable(servos.period(integrator, dt, substeps));
+    let holds = |substeps: u32| holds(|dt| servos.period(integrator, dt, substeps), dt);
     // Doubling finds a number that holds, bisection the fewest.
     let mut high = 1;
     while !holds(high) {

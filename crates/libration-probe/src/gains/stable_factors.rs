@@ -3,7 +3,7 @@
 use libration::linear::{Matrix, is_schur_stable, log_spectral_radius};
 
 /// Growth per step that is no rounding: the two factors of a free joint, both 1, are off by the root of a rounding.
-const OUTSIDE: f64 = 1e-7;
+pub(super) const OUTSIDE: f64 = 1e-7;
 /// Smallest and largest factor that is tried.
 const RANGE: [f64; 2] = [1e-6, 1e9];
 const RATIO: f64 = 1.5;
@@ -12,11 +12,20 @@ const LARGEST: f64 = 1e100;
 const BISECTIONS: usize = 60;
 const RESOLUTION: f64 = 1e-9;
 
-/// Whether a mode grows.
+/// Part by which a step is longer that must be stable, too, for gains to hold: at a limit, where factors leave the unit circle at −1, a
+/// motion does not decay, or grows with the number of steps. Just beyond the limit a factor exceeds 1 by more than [`OUTSIDE`].
+const LONGER: f64 = 2e-7;
+
+/// Whether no mode grows.
 pub(super) fn is_stable(step: Option<Matrix>) -> bool {
     step.is_some_and(|step| {
         step.largest() < LARGEST && is_schur_stable(&step.scaled((-OUTSIDE).exp()))
     })
+}
+
+/// Whether no mode grows in steps of `length`, nor in slightly longer ones.
+pub(super) fn holds(step: impl Fn(f64) -> Option<Matrix>, length: f64) -> bool {
+    [length, length * (1.0 + LONGER)].into_iter().all(|length| is_stable(step(length)))
 }
 
 /// The logarithm of the growth per step; infinite without a step.

@@ -5,6 +5,7 @@ use libration_report::verdict::{Outcome, Verdict};
 
 use super::measured::MeasuredGains;
 use super::report::MOST_SUBSTEPS;
+use super::stable_factors::OUTSIDE;
 use super::{GainReport, ServoIntegrator, Torque};
 
 /// What the servo model does not have.
@@ -65,10 +66,18 @@ impl GainReport {
             ),
             None => Verdict::new(
                 Outcome::Unstable,
-                format!("spectral radius {radius} of the servo model"),
+                match self.is_at_limit() {
+                    true => format!("the servo model is at its limit: spectral radius {radius}"),
+                    false => format!("spectral radius {radius} of the servo model"),
+                },
             ),
         };
         verdict.without(NOT_MODELLED)
+    }
+
+    /// Whether gains do not hold because slightly longer steps are unstable.
+    fn is_at_limit(&self) -> bool {
+        !self.holds && self.spectral_radius.ln() <= OUTSIDE
     }
 
     /// The steps in words.
@@ -105,6 +114,7 @@ impl GainReport {
     /// The largest common factor of gains of position, as the end of a sentence.
     pub(super) fn factor(&self) -> String {
         match self.largest_factor {
+            _ if self.is_at_limit() => ".".to_owned(),
             x if x.is_nan() => ".".to_owned(),
             f64::INFINITY if self.holds => {
                 "; no larger gain of position was found that does not.".to_owned()
@@ -143,6 +153,10 @@ impl GainReport {
         }
         let mut text = if self.holds {
             format!("The gains hold with {integrator} and {of}")
+        } else if self.is_at_limit() {
+            format!(
+                "The gains do not hold with {integrator} and {of}: they are at the limit of stability, where a motion does not decay or grows with the number of steps"
+            )
         } else {
             format!(
                 "The gains do not hold with {integrator} and {of}: a mode grows by a factor {} per step",
@@ -175,7 +189,7 @@ impl GainReport {
         if let Some(joint) = of_kp {
             let most = match joint.largest_kp {
                 0.0 => "no gain of it holds".to_owned(),
-                most => format!("its gain is at most {}", number(cut_off(most, 5), 5)),
+                most => format!("its gain must stay below {}", number(cut_off(most, 5), 5)),
             };
             text += &format!(
                 " The joint with the least margin is {}: {most}, with all others as they are.",
@@ -187,7 +201,7 @@ impl GainReport {
         let of_kv = of_kv.min_by(|a, b| (a.largest_kv / a.kv).total_cmp(&(b.largest_kv / b.kv)));
         if let Some(joint) = of_kv {
             text += &format!(
-                " The gain of velocity of {} is at most {}; given {}.",
+                " The gain of velocity of {} must stay below {}; given {}.",
                 joint.name,
                 number(cut_off(joint.largest_kv, 5), 5),
                 number(joint.kv, 5)

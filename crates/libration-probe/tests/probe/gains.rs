@@ -215,7 +215,11 @@ fn the_largest_kv_is_that_of_its_characteristic_polynomial() {
     let beyond = report(r#"{"mass": [2], "kp": [0], "kv": [500]}"#, h, 1, "symplectic-euler");
     assert!(!beyond.holds && beyond.joints[0].largest_kp == 0.0);
     assert!(!beyond.answer.contains("no larger gain"), "{}", beyond.answer);
-    assert!(beyond.answer.contains("of velocity of joint 1 is at most 400;"), "{}", beyond.answer);
+    assert!(
+        beyond.answer.contains("of velocity of joint 1 must stay below 400;"),
+        "{}",
+        beyond.answer
+    );
 }
 
 #[test]

@@ -1,12 +1,11 @@
 //! Systems, linearised at an equilibrium.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use libration::analysis::{ConservedSum, Equilibrium, rate_derivative};
 use libration::linear::{LinearPlant, Matrix};
 
-use super::subject::Subject;
+use super::subject::{Subject, is_file};
 use super::{ConservedValue, Coordinates, OperatingPoint, OperatingValue};
 use crate::equations::EquationSystem;
 use crate::{Fault, Number};
@@ -23,8 +22,7 @@ pub(super) fn linearise(
     command: Option<&Coordinates>,
 ) -> Result<(LinearPlant, OperatingPoint), Fault> {
     let parameters: Vec<(String, f64)> = parameters.iter().map(|(k, v)| (k.clone(), v.0)).collect();
-    let is_file = Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
-    match is_file {
+    match is_file(name) {
         true => {
             let subject = Subject::of_file(name, &parameters)?;
             match (at, command) {

@@ -10,6 +10,7 @@ mod operating_point;
 mod part;
 mod part_table;
 mod pid_table;
+mod plant_equations;
 mod plant_file;
 mod plant_keys;
 mod plant_table;

@@ -10,6 +10,11 @@ use libration::{AnySystem, catalog, with_system};
 use crate::equations::EquationSystem;
 use crate::{Fault, suggestions, units};
 
+/// Whether a name is that of a file of equations.
+pub(super) fn is_file(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"))
+}
+
 /// A system that can be linearised.
 pub(super) struct Subject {
     pub(super) name: String,
@@ -79,12 +84,17 @@ impl Subject {
     }
 
     pub(super) fn of_file(path: &str, parameters: &[(String, f64)]) -> Result<Self, Fault> {
+        Subject::of_equations(&Subject::system_of_file(path, parameters)?)
+    }
+
+    pub(super) fn system_of_file(
+        path: &str,
+        parameters: &[(String, f64)],
+    ) -> Result<EquationSystem, Fault> {
         let wrong =
             |why: String| Fault::new("system.linear.of", format!("cannot use `{path}`: {why}"));
         let text = crate::read_text(Path::new(path)).map_err(|error| wrong(error.to_string()))?;
-        let system = EquationSystem::parse(&text, path, parameters)
-            .map_err(|error| wrong(error.sentence()))?;
-        Subject::of_equations(&system)
+        EquationSystem::parse(&text, path, parameters).map_err(|error| wrong(error.sentence()))
     }
 
     pub(super) fn of_equations(system: &EquationSystem) -> Result<Self, Fault> {

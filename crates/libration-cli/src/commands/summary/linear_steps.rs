@@ -1,6 +1,7 @@
 //! Steps of integrators on a linear plant.
 
 use libration_analyze::linear_analysis::{LinearAnalysis, StepAnalysis};
+use libration_analyze::{beside_one, is_at_limit, is_within};
 
 use super::super::digits::{least, limit, significant};
 use super::Summary;
@@ -34,16 +35,20 @@ pub(super) fn append_steps(analysis: &LinearAnalysis, is_one: bool, summary: &mu
         names.into_iter().map(|name| (name, Vec::new())).collect();
     for step in &analysis.steps {
         let name = step.integrator;
+        let mut group_of = |title: String| {
+            let known = groups.iter().position(|(name, _)| *name == title);
+            known.unwrap_or_else(|| {
+                groups.push((title, Vec::new()));
+                groups.len() - 1
+            })
+        };
         let (group, text) = match step.stable_dt.as_deref() {
             None => {
                 let reason = step.unknown_stable_dt.map_or(String::new(), |why| format!(", {why}"));
-                let title = format!("not known{reason}");
-                let known = groups.iter().position(|(name, _)| *name == title);
-                let group = known.unwrap_or_else(|| {
-                    groups.push((title, Vec::new()));
-                    groups.len() - 1
-                });
-                (group, name.to_owned())
+                (group_of(format!("not known{reason}")), name.to_owned())
+            }
+            Some(windows) if analysis.dt.is_some_and(|dt| is_at_limit(windows, dt)) => {
+                (group_of("at the limit of stability".to_owned()), name.to_owned())
             }
             Some([]) => (2, name.to_owned()),
             Some(windows) => {
@@ -56,12 +61,7 @@ pub(super) fn append_steps(analysis: &LinearAnalysis, is_one: bool, summary: &mu
                     }
                 };
                 let limits = format!("{name} ({first}{again})");
-                let holds = analysis.dt.map(|dt| {
-                    let is_in = |&[from, to]: &[Option<f64>; 2]| {
-                        from.is_none_or(|from| from <= dt) && to.is_none_or(|to| dt <= to)
-                    };
-                    windows.iter().any(is_in)
-                });
+                let holds = analysis.dt.map(|dt| is_within(windows, dt));
                 let is_unlimited = matches!(windows, [[Some(0.0), None]]);
                 match (holds, is_unlimited) {
                     (Some(true) | None, true) => (0, name.to_owned()),
@@ -78,12 +78,8 @@ pub(super) fn append_steps(analysis: &LinearAnalysis, is_one: bool, summary: &mu
     }
     append_predictions(&analysis.steps, summary);
     if is_one && let Some(radius) = first.predicted_spectral_radius {
-        summary.row("spectral radius", &format!("1 {}, predicted", signed(radius - 1.0)));
+        summary.row("spectral radius", &format!("{}, predicted", beside_one(radius - 1.0)));
     }
-}
-
-fn signed(x: f64) -> String {
-    format!("{} {}", if x < 0.0 { "−" } else { "+" }, significant(x.abs(), 5))
 }
 
 /// Relative difference of a simulated growth from the prediction that is rounding.

@@ -12,7 +12,7 @@ pub(super) fn sentence(
     motion: &MotionExamination,
     dt: f64,
 ) -> String {
-    if let Some(step_number) = motion.diverged_at_step {
+    if let (Some(step_number), None) = (motion.diverged_at_step, &motion.undefined) {
         return format!("{step} diverges: a state is not finite after step {step_number}.");
     }
     let evidence = &verdict.evidence;

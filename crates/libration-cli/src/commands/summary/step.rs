@@ -63,6 +63,18 @@ fn first_sentence(analysis: &Analysis) -> String {
         .collect();
     let system = format!("{} ({})", about.system, parameters.join(", "));
     match (&analysis.verdicts.step, &analysis.verdicts.motion, &analysis.motion) {
+        (Some(verdict), Some(own), Some(motion)) => {
+            let of_motion = |subject: &str| sentence(subject, own, motion, about.dt);
+            let on = format!(" on {system}");
+            match verdict.outcome {
+                Outcome::Unstable => {
+                    in_words(&step, &step, &on, verdict)
+                        + " "
+                        + &of_motion("It").replace("Whether It", "Whether it")
+                }
+                _ => of_motion(&(step + &on)),
+            }
+        }
         (Some(verdict), ..) => in_words(&step, &step, &format!(" on {system}"), verdict),
         (None, Some(verdict), Some(motion)) => {
             sentence(&format!("{step} on {system}"), verdict, motion, about.dt)
