@@ -43,6 +43,7 @@ pub(super) fn follow(
     let operations = 3 * step.program().operations().max(1) as u64;
     let first = times.first().copied().unwrap_or(0.0);
     let mut stepper = Stepper::new(subject, &step, tolerance, expected(subject, first));
+    stepper.expect(first);
     let horizon = times.last().copied().unwrap_or(0.0);
     let (mut length, mut trials, mut before) = (first, 0, 0.0);
     // The time up to which steps are not shortened, and the length of the first step that was.
@@ -145,6 +146,15 @@ impl<'a> Stepper<'a> {
             ranges: subject.start.iter().map(|&x| [x; 2]).collect(),
             expected,
             inputs,
+        }
+    }
+
+    /// Expects no less than the change in a step of this length, if its error is allowed: rates of a start at rest say nothing.
+    fn expect(&mut self, length: f64) {
+        if self.attempt(length) <= 1.0 {
+            for (place, expected) in self.expected.iter_mut().enumerate() {
+                *expected = expected.max((self.end[place] - self.inputs[place]).abs());
+            }
         }
     }
 

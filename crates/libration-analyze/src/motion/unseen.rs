@@ -10,8 +10,9 @@ const GAP: f64 = 0.125;
 /// The part of the largest range of states of its kind from which the own range of a state counts. Below it, it may be rounding.
 const LEAST_RANGE: f64 = 1e-6;
 
-/// A motion between states whose ends are this near, as a part of their distance, stays within a parabola through three of its states.
-const BEYOND: f64 = 0.125;
+/// How far a motion leaves the hull of a step's three states, as a part of their second difference. A parabola through them leaves it by at
+/// most an eighth; a clock does not leave it.
+const BEYOND: f64 = 0.25;
 
 /// A change that is no change.
 const NOTHING: f64 = 1e-200;
@@ -62,8 +63,9 @@ impl<'a> Unseen<'a> {
                 *own = [own[0].min(x), own[1].max(x)];
             }
         }
-        for [low, high] in &mut self.boxes[..count] {
-            let beyond = BEYOND * (*high - *low);
+        let [middle, end] = states;
+        for (place, [low, high]) in self.boxes[..count].iter_mut().enumerate() {
+            let beyond = BEYOND * (inputs[place] - 2.0 * middle[place] + end[place]).abs();
             (*low, *high) = (*low - beyond, *high + beyond);
         }
         let all: Vec<Interval> = self.enclosure.run(&self.boxes).collect();
