@@ -7,6 +7,7 @@ use libration::ensemble::{All, EnsembleError, Loops, MeanCost, Setup};
 use libration::integrator::{Exact, Rk4, Substeps};
 
 use libration::{Integrator, Model, State};
+pub(super) use libration_analyze::linear_analysis::MEMORIES;
 use libration_work::Work;
 
 use super::AdviseError;
@@ -17,9 +18,6 @@ const SEED: u64 = 8;
 
 /// Largest number of simulated periods.
 pub(super) const MOST_PERIODS: f64 = 100_000.0;
-
-/// Number of time constants of the decay after which the start is forgotten.
-pub(super) const MEMORIES: f64 = 20.0;
 
 /// Part of the memory that passes before costs are measured: the cost lacks `e⁻¹⁰` of its value then, less than 1/200 of its standard error.
 pub(super) const FORGOTTEN: f64 = 0.5;

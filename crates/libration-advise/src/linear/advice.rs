@@ -2,12 +2,12 @@
 
 use libration::linear::{DiscreteController, LoopStability, Matrix, Signal, StabilityOutcome};
 use libration::live::Setting;
-use libration_analyze::linear_analysis::loop_verdict;
+use libration_analyze::linear_analysis::{NOT_SIMULATED, SystemMotion, loop_verdict};
 use libration_report::verdict::{Outcome, Verdict};
 use libration_settings::linear_loop::OperatingPoint;
 use serde::{Serialize, Serializer};
 
-use super::{ChainLink, DeadlineMisses, InputMargins, Mode, Redesign, SystemMotion};
+use super::{ChainLink, DeadlineMisses, InputMargins, Mode, Redesign};
 use crate::budget::{Budget, FirstFailure};
 use crate::combined_effect::SimulatedCost;
 use crate::stabilising_changes::StabilisingChanges;
@@ -191,17 +191,14 @@ impl LinearAdvice {
                 ),
             ),
             () => match &self.motion {
-                Some(motion) => {
-                    let evidence = format!("{}; {}", of_loop.evidence, motion.in_words());
-                    Verdict { evidence, ..of_loop }
-                }
+                Some(motion) => motion.judged(of_loop),
                 None => of_loop,
             },
         };
         let is_good = verdict.is_good();
         let missing = [
             (self.simulated.is_none(), "a simulation of the loop"),
-            (self.is_linearised_only(), "the motion of the nonlinear system"),
+            (self.is_linearised_only(), NOT_SIMULATED),
             (self.motion.is_some() && misses.is_some(), "the motion of the system with misses"),
         ];
         let missing = missing.into_iter().filter(|(is_missing, _)| is_good && *is_missing);

@@ -55,7 +55,10 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
     };
     let growth = stability.growth;
     let simulated = if stable { request.simulated_cost(work, growth)? } else { None };
-    let motion = if stable { request.system_motion(work, growth)? } else { None };
+    let motion = match request.system_loop() {
+        Some(system) if stable => system.motion(&timed.linear, &stated, growth, work)?,
+        _ => None,
+    };
     let map = request.stability_map(work, &budgets)?;
     let redesign = redesign.map(|design| request.evaluated(work, &design, cost)).transpose()?;
     let mut advice = LinearAdvice {

@@ -54,6 +54,8 @@ impl AnalysisFile {
             dt,
             integrator,
             operating_point: request.operating_point().cloned(),
+            is_linearised: request.is_linearised,
+            system: request.system_loop(),
             note,
         })
     }

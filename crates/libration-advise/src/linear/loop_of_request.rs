@@ -1,7 +1,7 @@
 //! The loop that a request describes, for simulations.
 
 use libration::linear::{LinearLoop, LinearLoopError, LoopTiming};
-
+use libration_analyze::linear_analysis::SystemLoop;
 use libration_settings::linear_loop::OperatingPoint;
 
 use super::LinearRequest;
@@ -33,5 +33,16 @@ impl LinearRequest {
     /// The lengths of recorded periods, as multiples of their mean; none without time stamps.
     pub fn recorded_periods(&self) -> Option<&[f64]> {
         self.timed.timing.record.as_deref()
+    }
+
+    /// The system by equations under the loop; none of other plants.
+    pub(super) fn system_loop(&self) -> Option<SystemLoop> {
+        Some(SystemLoop {
+            system: self.system.clone()?,
+            point: self.operating_point.clone()?,
+            has_stated_point: self.has_stated_point,
+            record: self.recorded_periods().map(<[f64]>::to_vec),
+            rate: self.timed.rate(),
+        })
     }
 }

@@ -22,7 +22,6 @@ mod simulated_cost;
 mod stated_deadlines;
 mod stiffness;
 mod summary;
-mod system_motion;
 mod timing_fault;
 
 pub use advice::{ControllerMatrices, Deviation, LinearAdvice, SignalName};
@@ -37,4 +36,3 @@ pub use redesign::Redesign;
 pub use redesign_limits::{RedesignLimit, StableRange};
 pub use request::{LinearRequest, is_linear, parse, parse_changed};
 pub use request_file::RequestFile;
-pub use system_motion::{MotionEnd, SystemMotion};

@@ -2,12 +2,13 @@
 
 use core::f64::consts::{PI, TAU};
 
-use libration::linear::{
-    GROWTH_ROUNDING, LinearLoop, LinearLoopError, LoopStability, LoopTiming, StabilityOutcome,
-};
+use libration::linear::{GROWTH_ROUNDING, LoopStability, LoopTiming, StabilityOutcome};
 use libration_report::notation::number;
 use libration_report::verdict::{Outcome, Verdict};
+use libration_work::Work;
 use serde::Serialize;
+
+use super::{LinearAnalysisError, LinearRequest, SystemMotion};
 
 /// A loop around a linear plant.
 #[derive(Clone, Debug, Serialize)]
@@ -27,6 +28,9 @@ pub struct ClosedLoop {
     pub stable: bool,
     /// Whether the loop is stable.
     pub verdict: Verdict,
+    /// The motion of the nonlinear system under the loop; none where it was not simulated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<SystemMotion>,
     /// The modes, the one that grows fastest first; of a pair one. They belong to periods of mean length without losses.
     pub modes: Vec<LoopMode>,
     /// Number of modes that vanish within a period, which `modes` leaves out.
@@ -73,8 +77,16 @@ pub struct StateDeviation {
 /// parts by roots.
 const VANISHED: f64 = 1e-3;
 
+/// What no linearisation shows.
+pub const NOT_SIMULATED: &str = "the motion of the nonlinear system";
+
 impl ClosedLoop {
-    pub(super) fn new(linear: &LinearLoop, timing: &LoopTiming) -> Result<Self, LinearLoopError> {
+    pub(super) fn new(
+        request: &LinearRequest,
+        timing: &LoopTiming,
+        work: &Work<'_>,
+    ) -> Result<Self, LinearAnalysisError> {
+        let linear = &request.linear;
         let period = linear.period();
         let mean_period = period * (1.0 + timing.skew);
         let all = linear.modes(timing, usize::MAX)?;
@@ -104,6 +116,18 @@ impl ClosedLoop {
             .collect();
         let stability = linear.stability(timing)?;
         let mean_square_growth = stability.growth;
+        let motion = match &request.system {
+            Some(system) if stability.is_stable() => {
+                system.motion(linear, timing, mean_square_growth, work)?
+            }
+            _ => None,
+        };
+        let mut verdict = loop_verdict(&stability);
+        if let Some(motion) = &motion {
+            verdict = motion.judged(verdict);
+        } else if request.is_linearised && verdict.is_good() {
+            verdict = verdict.without(NOT_SIMULATED);
+        }
         let stationary = linear.stationary(timing)?;
         let deviations = stationary.as_ref().map(|own| own.deviations.as_slice());
         let signals = linear.plant().states.iter();
@@ -118,7 +142,8 @@ impl ClosedLoop {
             spectral_radius,
             mean_square_growth,
             stable: stability.is_stable(),
-            verdict: loop_verdict(&stability),
+            verdict,
+            motion,
             vanishing_modes: count - modes.len(),
             modes,
             deviations: deviations.collect(),

@@ -1,6 +1,7 @@
 //! Errors of an analysis of a linear plant.
 
 use libration::linear::LinearLoopError;
+use libration_work::Interrupted;
 use thiserror::Error;
 
 /// Error of an analysis of a linear plant.
@@ -39,4 +40,10 @@ pub enum LinearAnalysisError {
     /// The caller stopped the analysis.
     #[error("interrupted")]
     Interrupted,
+}
+
+impl From<Interrupted> for LinearAnalysisError {
+    fn from(_: Interrupted) -> Self {
+        LinearAnalysisError::Interrupted
+    }
 }

@@ -6,6 +6,7 @@ mod mode;
 mod plant_verdict;
 mod simulated_mode;
 mod step;
+mod system_motion;
 mod verdicts;
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,14 +17,16 @@ use libration::linear::{
     Complex64, DiscreteController, LinearLoop, LinearPlant, LoopTiming, Matrix, ModeDetails, Signal,
 };
 use libration_settings::linear_loop::OperatingPoint;
+use libration_work::{Silent, Work};
 use serde::Serialize;
 
 use crate::Stepping;
-pub use closed_loop::{ClosedLoop, LoopMode, StateDeviation, loop_verdict};
+pub use closed_loop::{ClosedLoop, LoopMode, NOT_SIMULATED, StateDeviation, loop_verdict};
 pub use error::LinearAnalysisError;
 pub use mode::Mode;
 pub use simulated_mode::SimulatedMode;
 pub use step::{ModeUnderSteps, StepAnalysis};
+pub use system_motion::{MEMORIES, MotionEnd, SystemLoop, SystemMotion};
 pub use verdicts::LinearVerdicts;
 
 /// Version of the JSON format.
@@ -42,6 +45,10 @@ pub struct LinearRequest {
     pub integrator: Option<Stepping>,
     /// The operating point, if the plant is a linearisation.
     pub operating_point: Option<OperatingPoint>,
+    /// Whether the plant is the linearisation of a nonlinear system.
+    pub is_linearised: bool,
+    /// The system by equations that the plant is the linearisation of.
+    pub system: Option<SystemLoop>,
     /// A restriction of the numbers.
     pub note: Option<String>,
 }
@@ -150,7 +157,7 @@ pub fn analyze(
         Some(_) => Vec::new(),
     };
     let closed_loop = match &request.timing {
-        Some(timing) => Some(ClosedLoop::new(&request.linear, timing)?),
+        Some(timing) => Some(ClosedLoop::new(request, timing, &Work::new(&Silent, stop))?),
         None => None,
     };
     let verdicts = LinearVerdicts::new(
@@ -204,6 +211,8 @@ impl LinearRequest {
             dt: Some(dt),
             integrator,
             operating_point: None,
+            is_linearised: false,
+            system: None,
             note: None,
         })
     }

@@ -36,6 +36,15 @@ fn a_loop_is_stable_only_from_starts_from_which_its_motion_returns() {
             assert_eq!(advice["verdict"]["outcome"], outcome, "{start}: {shown}");
             assert_eq!(shown.starts_with("The loop is stable"), outcome == "stable", "{shown}");
             assert_eq!(advice["motion"]["deviation"], Value::Null, "{shown}");
+            let file = folder.path().join("system.toml");
+            let words = format!("analyze -q --plant {} {gains}", file.display());
+            let words: Vec<&str> = words.split_whitespace().collect();
+            let analysed = libration(&words).code(i32::from(outcome != "stable"));
+            let analysed = String::from_utf8(analysed.get_output().stdout.clone()).unwrap();
+            assert!(
+                analysed.starts_with(&format!("The loop is {outcome} with a period")),
+                "{analysed}"
+            );
         }
     }
 }

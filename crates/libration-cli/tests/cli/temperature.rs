@@ -12,9 +12,10 @@ fn libration(words: &str) -> assert_cmd::assert::Assert {
 #[test]
 fn temperatures_are_printed_with_their_closed_forms_and_as_json() {
     let words = "analyze --system oscillator --set omega2=1 --temperature 2 --friction 1 --dt 1 --steps 1e5 --seed 3";
-    libration(&format!("{words} --verbose"))
-        .success()
-        .stdout(contains("BAOA is stable and has the least bias of positions").and(contains("1/(1 − z²/4)")));
+    libration(&format!("{words} --verbose")).success().stdout(
+        contains("BAOA is stable and has the least bias of positions")
+            .and(contains("1/(1 − z²/4)")),
+    );
     let output = libration(&format!("{words} --json --thermostat BAOAB --thermostat obabo"))
         .success()
         .get_output()

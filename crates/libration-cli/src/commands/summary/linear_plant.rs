@@ -1,7 +1,7 @@
 //! A linear plant, steps on it and the loop around it.
 
 use libration::linear::GROWTH_ROUNDING;
-use libration_analyze::linear_analysis::{ClosedLoop, LinearAnalysis, Mode};
+use libration_analyze::linear_analysis::{ClosedLoop, LinearAnalysis, Mode, NOT_SIMULATED};
 use libration_report::verdict::{Outcome, Verdict};
 use libration_settings::linear_loop::OperatingPoint;
 
@@ -131,20 +131,30 @@ pub(super) fn verdict(analysis: &LinearAnalysis) -> String {
 
 fn verdict_of_loop(own: &ClosedLoop) -> String {
     let period = significant(own.period, 6);
-    let first = match own.verdict.outcome {
+    let Verdict { outcome, evidence, not_examined } = &own.verdict;
+    let subject = match not_examined.iter().any(|part| part == NOT_SIMULATED) {
+        true => "The linearised loop",
+        false => "The loop",
+    };
+    let first = match outcome {
         Outcome::Stable | Outcome::Unstable => {
-            format!("The loop is {} with a period of {period} s", own.verdict.outcome)
+            format!("{subject} is {outcome} with a period of {period} s")
         }
         _ => format!("It is unknown whether the loop is stable with a period of {period} s"),
     };
+    if own.stable && !own.verdict.is_good() {
+        return format!("{first}: {evidence}. Its linearisation is stable.");
+    }
     let moments = 100.0 * own.mean_square_growth.exp_m1().abs();
     let verb = if own.stable { "fall" } else { "grow" };
-    match own.mean_square_growth.abs() > GROWTH_ROUNDING {
-        true => {
-            format!("{first}: second moments {verb} by {} % per period.", significant(moments, 4))
-        }
-        false => format!("{first}: {}.", own.verdict.evidence),
-    }
+    let second_moments = match own.mean_square_growth.abs() > GROWTH_ROUNDING {
+        true => format!("second moments {verb} by {} % per period", significant(moments, 4)),
+        false => evidence.clone(),
+    };
+    let motion =
+        own.motion.as_ref().map_or_else(String::new, |own| format!("; {}", own.in_words()));
+    let limits = own.verdict.limits();
+    format!("{first}: {second_moments}{motion}. {limits}").trim_end().to_owned()
 }
 
 /// A verdict as a sentence about `subject`, which is `inside` of a sentence.

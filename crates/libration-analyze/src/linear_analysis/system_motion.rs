@@ -1,16 +1,31 @@
 //! The motion of a nonlinear system under the loop around its linearisation.
 
 use libration::ensemble::Execution;
+use libration::linear::{LinearLoop, LoopTiming};
+use libration::linear_loops::LinearLoops;
 use libration::{AnyMethod, Method};
-use libration_analyze::linear_trajectory;
 use libration_report::verdict::{Outcome, Verdict};
-use libration_work::Work;
+use libration_settings::equations::EquationSystem;
+use libration_settings::linear_loop::OperatingPoint;
+use libration_work::{Interrupted, Work};
 use serde::Serialize;
 
-use super::LinearRequest;
-use crate::AdviseError;
-use crate::ensemble::MEMORIES;
-use crate::loops::LoopError;
+use crate::linear_trajectory::LinearRequest;
+
+/// A system by equations under a loop around its linearisation.
+#[derive(Clone, Debug)]
+pub struct SystemLoop {
+    /// The system.
+    pub system: EquationSystem,
+    /// The point of the linearisation.
+    pub point: OperatingPoint,
+    /// Whether a request states this point, in place of the start of the system.
+    pub has_stated_point: bool,
+    /// The lengths of recorded periods, as multiples of their mean; none without time stamps.
+    pub record: Option<Vec<f64>>,
+    /// The rate of the fastest mode of the plant in 1/s.
+    pub rate: f64,
+}
 
 /// The motion of a system by equations under the loop, without noise, from the start of the system.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -50,6 +65,12 @@ pub enum MotionEnd {
     Unresolved,
 }
 
+/// Times in which second moments fall by a factor e until the linearised loop has forgotten its start.
+pub const MEMORIES: f64 = 20.0;
+
+/// Seed of the lengths of periods and of losses.
+const SEED: u64 = 31;
+
 /// Steps in a period.
 const STEPS: f64 = 10.0;
 
@@ -74,29 +95,31 @@ const GROWN: f64 = 1e3;
 /// Roundings of the largest deviation, which other states never lose.
 const ROUNDING: f64 = 1e-9;
 
-impl LinearRequest {
-    /// The motion of the system of equations that the plant is the linearisation of; none of other plants, with lags and filters of
-    /// channels, and if the simulation would take too many steps. Second moments of the linearised loop change by `growth` per period.
-    pub(super) fn system_motion(
+impl SystemLoop {
+    /// The motion of the system under a loop whose second moments change by `growth` per period in its linearisation; none with lags and
+    /// filters of channels, and if the simulation would take too many steps.
+    ///
+    /// # Errors
+    /// [`Interrupted`].
+    pub fn motion(
         &self,
-        work: &Work<'_>,
+        linear: &LinearLoop,
+        timing: &LoopTiming,
         growth: f64,
-    ) -> Result<Option<SystemMotion>, AdviseError> {
-        let (Some(system), Some(point)) = (&self.system, &self.operating_point) else {
-            return Ok(None);
-        };
-        let period = self.period();
-        let longest = (period / STEPS).min(TURN / self.timed.rate());
+        work: &Work<'_>,
+    ) -> Result<Option<SystemMotion>, Interrupted> {
+        let period = linear.period();
+        let longest = (period / STEPS).min(TURN / self.rate);
         let periods = (MEMORIES / -growth).ceil();
         let steps = periods * (period / longest);
         if steps.is_nan() || steps > MOST_STEPS {
             return Ok(None);
         }
-        let plant = self.timed.linear.plant();
-        let request = linear_trajectory::LinearRequest {
-            linear: self.timed.linear.without_noise(),
-            timing: self.loop_timing().map_err(LoopError::from)?,
-            record: self.recorded_periods().map(<[f64]>::to_vec),
+        let plant = linear.plant();
+        let request = LinearRequest {
+            linear: linear.without_noise(),
+            timing: timing.clone(),
+            record: self.record.clone(),
             start: Vec::new(),
             reference: vec![0.0; plant.outputs.len()],
             disturbance: vec![0.0; plant.inputs.len()],
@@ -106,6 +129,7 @@ impl LinearRequest {
             seed: SEED,
             motion: None,
         };
+        let (system, point) = (&self.system, &self.point);
         let around = |longest| {
             request.clone().around_system(system, point, AnyMethod::from(Method::Rk4), longest)
         };
@@ -121,18 +145,18 @@ impl LinearRequest {
         };
         let mut last = None;
         for deviation in deviations {
-            let from = |request: &linear_trajectory::LinearRequest| {
+            let from = |request: &LinearRequest| {
                 let start = match deviation {
                     Some(deviation) => vec![deviation; request.start.len()],
                     None => request.start.clone(),
                 };
-                linear_trajectory::LinearRequest { start, ..request.clone() }
+                LinearRequest { start, ..request.clone() }
             };
-            let Some((mut end, mut duration)) = self.end(work, &from(&coarse))? else {
+            let Some((mut end, mut duration)) = followed(&from(&coarse), work)? else {
                 return Ok(None);
             };
             if end != MotionEnd::Returns {
-                let Some((other, longer)) = self.end(work, &from(&fine))? else { return Ok(None) };
+                let Some((other, longer)) = followed(&from(&fine), work)? else { return Ok(None) };
                 let is_alike = core::mem::discriminant(&other) == core::mem::discriminant(&end);
                 end = if is_alike { other } else { MotionEnd::Unresolved };
                 duration = longer;
@@ -145,59 +169,55 @@ impl LinearRequest {
         }
         Ok(last)
     }
-
-    /// The end of a motion, and its duration in s; none where the loop cannot be simulated.
-    fn end(
-        &self,
-        work: &Work<'_>,
-        request: &linear_trajectory::LinearRequest,
-    ) -> Result<Option<(MotionEnd, f64)>, AdviseError> {
-        let Ok(mut loops) = request.loops(Execution::serial()) else { return Ok(None) };
-        let states = &self.timed.linear.plant().states;
-        let scale = ROUNDING * plant_scale(request);
-        let deviation = |loops: &libration::linear_loops::LinearLoops, i| loops.state(0, i).abs();
-        let mut most: Vec<f64> = request.start.iter().map(|x| x.abs()).collect();
-        let mut before = most.clone();
-        for periods in 1..=PATIENCE * request.steps {
-            work.check()?;
-            loops.advance(1);
-            if !loops.is_finite(0) {
-                return Ok(Some((MotionEnd::NotFinite, loops.time(0))));
-            }
-            for (i, most) in most.iter_mut().enumerate() {
-                *most = most.max(deviation(&loops, i));
-            }
-            if !periods.is_multiple_of(request.steps) {
-                continue;
-            }
-            let grows = (0..states.len()).filter(|&i| most[i] > GROWN * before[i].max(scale));
-            let grows = grows.max_by(|&i, &j| most[i].total_cmp(&most[j]));
-            if let Some(i) = grows.filter(|_| periods > request.steps) {
-                let (state, deviation) = (states[i].name.clone(), loops.state(0, i));
-                return Ok(Some((MotionEnd::Grows { state, deviation }, loops.time(0))));
-            }
-            before.clone_from(&most);
-            let rest = ROUNDING * most.iter().copied().fold(0.0, f64::max);
-            let left = (0..states.len()).map(|i| (deviation(&loops, i) / (most[i] + rest), i));
-            let left = left.max_by(|a, b| a.0.total_cmp(&b.0));
-            match left.filter(|(left, _)| *left > RETURNED) {
-                None => return Ok(Some((MotionEnd::Returns, loops.time(0)))),
-                Some((_, i)) if periods == PATIENCE * request.steps => {
-                    let (state, deviation) = (states[i].name.clone(), loops.state(0, i));
-                    return Ok(Some((MotionEnd::Away { state, deviation }, loops.time(0))));
-                }
-                Some(_) => {}
-            }
-        }
-        Ok(None)
-    }
 }
 
-/// Seed of the lengths of periods and of losses.
-const SEED: u64 = 31;
+/// The end of a motion, and its duration in s; none where the loop cannot be simulated.
+fn followed(
+    request: &LinearRequest,
+    work: &Work<'_>,
+) -> Result<Option<(MotionEnd, f64)>, Interrupted> {
+    let Ok(mut loops) = request.loops(Execution::serial()) else { return Ok(None) };
+    let states = &request.linear.plant().states;
+    let scale = ROUNDING * plant_scale(request);
+    let deviation = |loops: &LinearLoops, i| loops.state(0, i).abs();
+    let mut most: Vec<f64> = request.start.iter().map(|x| x.abs()).collect();
+    let mut before = most.clone();
+    for periods in 1..=PATIENCE * request.steps {
+        work.check()?;
+        loops.advance(1);
+        if !loops.is_finite(0) {
+            return Ok(Some((MotionEnd::NotFinite, loops.time(0))));
+        }
+        for (i, most) in most.iter_mut().enumerate() {
+            *most = most.max(deviation(&loops, i));
+        }
+        if !periods.is_multiple_of(request.steps) {
+            continue;
+        }
+        let grows = (0..states.len()).filter(|&i| most[i] > GROWN * before[i].max(scale));
+        let grows = grows.max_by(|&i, &j| most[i].total_cmp(&most[j]));
+        if let Some(i) = grows.filter(|_| periods > request.steps) {
+            let (state, deviation) = (states[i].name.clone(), loops.state(0, i));
+            return Ok(Some((MotionEnd::Grows { state, deviation }, loops.time(0))));
+        }
+        before.clone_from(&most);
+        let rest = ROUNDING * most.iter().copied().fold(0.0, f64::max);
+        let left = (0..states.len()).map(|i| (deviation(&loops, i) / (most[i] + rest), i));
+        let left = left.max_by(|a, b| a.0.total_cmp(&b.0));
+        match left.filter(|(left, _)| *left > RETURNED) {
+            None => return Ok(Some((MotionEnd::Returns, loops.time(0)))),
+            Some((_, i)) if periods == PATIENCE * request.steps => {
+                let (state, deviation) = (states[i].name.clone(), loops.state(0, i));
+                return Ok(Some((MotionEnd::Away { state, deviation }, loops.time(0))));
+            }
+            Some(_) => {}
+        }
+    }
+    Ok(None)
+}
 
 /// The size of the states at the operating point; 1 where they are zero.
-fn plant_scale(request: &linear_trajectory::LinearRequest) -> f64 {
+fn plant_scale(request: &LinearRequest) -> f64 {
     let motion = request.motion.iter();
     let values = motion.flat_map(|own| own.places.iter().map(|&place| own.operating_point[place]));
     match values.map(f64::abs).fold(0.0, f64::max) {
@@ -208,7 +228,7 @@ fn plant_scale(request: &linear_trajectory::LinearRequest) -> f64 {
 
 impl SystemMotion {
     /// Where the motion begins and how it ends, in words.
-    pub(super) fn in_words(&self) -> String {
+    pub fn in_words(&self) -> String {
         let from = match self.deviation {
             None => "from the start of the system".to_owned(),
             Some(deviation) => format!("from {deviation:e} beside the operating point"),
@@ -229,8 +249,16 @@ impl SystemMotion {
         }
     }
 
+    /// A good verdict on the linearised loop, together with this motion.
+    pub fn judged(&self, of_loop: Verdict) -> Verdict {
+        self.contradiction().unwrap_or_else(|| {
+            let evidence = format!("{}; {}", of_loop.evidence, self.in_words());
+            Verdict { evidence, ..of_loop }
+        })
+    }
+
     /// The verdict on a motion that does not return.
-    pub(super) fn contradiction(&self) -> Option<Verdict> {
+    pub fn contradiction(&self) -> Option<Verdict> {
         let outcome = match self.end {
             MotionEnd::Returns => return None,
             MotionEnd::NotFinite | MotionEnd::Grows { .. } if self.deviation.is_none() => {
