@@ -55,7 +55,7 @@ impl<M: PlantModel> Loop<M> {
         if timed.settles(&stated) {
             let remedies = self.stabilising_changes(&none);
             let help = format!(
-                "It is stable with the stated imperfections, but only in a stability window that less latency leaves: do not rely on it. Without the latency: {}",
+                "It is stable with the stated imperfections, but only in a stability window that less latency leaves: do not rely on it. {}",
                 remedies.sentence(gains)
             );
             return Ok(Some(UnstableLoop { motions, remedies, help }));

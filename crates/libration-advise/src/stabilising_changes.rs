@@ -24,8 +24,15 @@ pub struct StabilisingChanges {
     /// Whether the factor is that of the inner controller of a cascade.
     #[serde(skip)]
     pub(super) inner: bool,
-    /// The largest latency, in s, up to which the loop is stable with the other stated imperfections.
+    /// The largest latency, in s, up to which the loop is stable with the other stated imperfections: of several, the longest one, with all
+    /// times `latency_factor`.
     pub latency: Option<f64>,
+    /// The factor of all latencies, where there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub latency_factor: Option<f64>,
+    /// Whether the changes are those of the loop without imperfections.
+    #[serde(skip)]
+    pub(super) of_ideal: bool,
 }
 
 /// Tried factors per octave.
@@ -95,6 +102,9 @@ impl TimedLoop {
             few.into_iter().find(|factor| amplified(*factor)).unwrap_or(end)
         });
         let inner = self.linear.controllers().periods() > 1;
+        let first = stated.input_latency.first().map(|latency| latency.steps());
+        let is_one = stated.output_latency.iter().all(|latency| latency.steps() == 0.0)
+            && stated.input_latency.iter().all(|latency| Some(latency.steps()) == first);
         StabilisingChanges {
             opposite_factor,
             opposite_gains: None,
@@ -103,6 +113,8 @@ impl TimedLoop {
             gains: None,
             inner,
             latency,
+            latency_factor: latency.filter(|_| !is_one).map(|latency| latency / (step * longest)),
+            of_ideal: self.stated().is_ok_and(|own| own != *stated),
         }
     }
 
@@ -190,8 +202,10 @@ impl StabilisingChanges {
         let gains = self
             .shown_factor
             .map(|factor| format!("all gains{of} times {factor}{}", shown(self.gains)));
-        let latency =
-            self.latency.map(|latency| format!("a latency of at most {} s", rounded_down(latency)));
+        let latency = self.latency.map(|latency| match self.latency_factor {
+            Some(factor) => format!("all latencies times at most {}", rounded_down(factor)),
+            None => format!("a latency of at most {} s", rounded_down(latency)),
+        });
         opposite.into_iter().chain(gains).chain(latency).collect()
     }
 
@@ -220,7 +234,10 @@ impl StabilisingChanges {
                 OCTAVES[0],
                 OCTAVES[1]
             ),
-            false => format!("It is stable with {}{}.", all.join(", or with "), self.caveat()),
+            false => {
+                let of = if self.of_ideal { "Without imperfections it" } else { "It" };
+                format!("{of} is stable with {}{}.", all.join(", or with "), self.caveat())
+            }
         }
     }
 }

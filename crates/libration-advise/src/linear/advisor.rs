@@ -92,12 +92,16 @@ fn advise_unstable(
     unstable_motions: Vec<String>,
 ) -> Result<LinearAdvice, AdviseError> {
     let timed = &request.timed;
-    let ideal = timed.ideal();
+    let (stated, ideal) = (timed.stated().map_err(LoopError::from)?, timed.ideal());
     let stability = timed.stability(&ideal).map_err(LoopError::from)?;
     let mut advice = LinearAdvice {
         growth: stability.growth,
         unstable_motions,
-        remedies: Some(timed.stabilising_changes(&ideal)),
+        remedies: Some(timed.stabilising_changes(match timed.settles(&stated) {
+            // A stability window that less latency leaves is nothing to rely on.
+            true => &ideal,
+            false => &stated,
+        })),
         map: request.stability_map(work, &[])?,
         ..LinearAdvice::of_request(request)
     };
