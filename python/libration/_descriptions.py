@@ -44,7 +44,9 @@ def description_of(host: Host) -> dict[str, Any]:
         if value:
             described[key] = list(value)
     if host.measured_inputs:
-        described["measured_inputs"] = [{"name": name, "late_steps": late, "varies": varies} for name, late, varies in host.measured_inputs]
+        described["measured_inputs"] = [one._asdict() for one in host.measured_inputs]
+    if host.measured_observation is not None:
+        described["measured_observation"] = host.measured_observation._asdict()
     if host.operating_point is not None:
         described["operating_point"] = host.operating_point
     if host.delays:

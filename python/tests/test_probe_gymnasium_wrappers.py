@@ -49,6 +49,26 @@ class Stale(gymnasium.Wrapper):
         return (shown, *rest)
 
 
+class Flaky(gymnasium.Wrapper):
+    """Observations are those of the step before with a probability, or in each n-th step."""
+
+    def __init__(self, env, probability=0.0, every=0):
+        super().__init__(env)
+        self.probability, self.every, self.calls = probability, every, 0
+        self.draw = np.random.default_rng(1)
+
+    def reset(self, **keywords):
+        self.last, info = self.env.reset(**keywords)
+        return self.last, info
+
+    def step(self, action):
+        before = self.last
+        self.last, *rest = self.env.step(action)
+        self.calls += 1
+        is_old = self.draw.random() < self.probability or (self.every and self.calls % self.every == 0)
+        return (before if is_old else self.last, *rest)
+
+
 class Scaled(gymnasium.ActionWrapper):
     """Half of each action."""
 
@@ -187,6 +207,21 @@ def test_old_observations_are_found(name, wrapper, steps):
     assert report.results["memory"]["observation"]["mean"] == steps
 
 
+@pytest.mark.parametrize("name", ["Slider", "Pendulum-v1", "CartPole-v1"])
+@pytest.mark.parametrize("flaky", [{"probability": 0.2}, {"every": 5}])
+def test_observations_that_are_old_now_and_then_are_found(name, flaky):
+    report = audit(name, lambda env: Flaky(env, **flaky))
+    (finding,) = (one for one in report.findings if one["kind"] == "stale-observation")
+    assert "changes from step to step" in finding["text"] or "show in no observation" in finding["text"]
+    assert report.verdict["outcome"] == "fault" and not report.holds
+
+
+@pytest.mark.parametrize("limited", [lambda y: np.clip(y, -0.03, 0.03), lambda y: np.clip(y, -0.003, 0.003), np.sign])
+def test_observations_at_their_limits_are_not_old(limited):
+    report = audit("Pendulum-v1", lambda env: wrappers.TransformObservation(env, limited, env.observation_space))
+    assert kinds(report) == [] and report.results["memory"]["observed"] == "asked"
+
+
 def test_observations_with_noise_are_found():
     draw = np.random.default_rng(1)
     report = audit("Slider", lambda env: wrappers.TransformObservation(env, lambda y: y + 0.01 * draw.normal(size=2), None))
@@ -229,7 +264,7 @@ def test_wrappers_of_rewards_records_and_time_limits_do_not_matter():
 
     report = audit("Slider", many)
     assert report.B == pytest.approx(B, rel=1e-9) and report.holds
-    assert report.verdict["not_examined"] == ["rewards and ends of episodes"]
+    assert report.verdict["not_examined"] == ["rewards and ends of episodes", "delays of fewer than one in 16 steps"]
 
 
 def test_a_memory_of_the_environment_itself_is_found():

@@ -60,7 +60,7 @@ fn examine(
     if is_audited {
         report.audit(prober, &memory)?;
     }
-    of_measured(subject, &mut findings);
+    of_measured(subject, &report.delays, &mut findings);
     if is_repeatable || memory.settling.is_some() {
         of_memory(&memory, &report.delays, subject, &mut findings);
     }

@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use thiserror::Error;
 
-use crate::{MeasuredInput, OperatingPoint, Recording, Reference, Subject, SubjectError};
+use crate::{MeasuredDelay, OperatingPoint, Recording, Reference, Subject, SubjectError};
 
 /// The description of a simulator.
 #[derive(Clone, Debug, Deserialize)]
@@ -45,7 +45,8 @@ pub struct Description {
     #[serde(default)]
     direct_inputs: Vec<String>,
     #[serde(default)]
-    measured_inputs: Vec<MeasuredInput>,
+    measured_inputs: Vec<MeasuredDelay>,
+    measured_observation: Option<MeasuredDelay>,
     #[serde(default)]
     not_examined: Vec<String>,
     #[serde(default)]
@@ -145,6 +146,7 @@ impl Description {
         subject.stated_delays = self.stated_delays;
         subject.direct_inputs = self.direct_inputs;
         subject.measured_inputs = self.measured_inputs;
+        subject.measured_observation = self.measured_observation;
         subject.not_examined = self.not_examined;
         subject.validity = self.validity;
         subject.recordings = self.recordings;

@@ -26,6 +26,11 @@ const CLEAR: f64 = 0.01;
 const GROWN: f64 = 0.1;
 /// A change from which its direction does not matter: the energy itself.
 const WHOLE: f64 = 1.0;
+/// A motion that exchanges more than this times the energy of its start has left the neighbourhood of the equilibrium, whose energy is no
+/// scale of it.
+const LEFT: f64 = 4.0;
+/// States of a trajectory whose energies are examined part by part.
+const SAMPLES: usize = 32;
 /// Parts of a step whose trajectory shows what the system does by itself, and the most steps of it.
 const PARTS: usize = 8;
 const MOST_PARTS: usize = 200_000;
@@ -37,7 +42,8 @@ const LATER: f64 = 1.8;
 #[derive(Clone, Debug, Serialize)]
 pub struct EnergyDrift {
     /// Rate of the energy in 1/s, relative to that of a displacement from an equilibrium; off one to a size that does not depend on the
-    /// zero of the energy: half of its slope along a state times the scale of this state.
+    /// zero of the energy: half of its slope along a state times the scale of this state. Of a motion that leaves its equilibrium, relative to
+    /// the largest energy that a single state of it adds.
     pub rate: f64,
     /// The same with half the step.
     pub rate_halved: Option<f64>,
@@ -114,7 +120,9 @@ impl EnergyDrift {
         let is_short = wanted > 2.0 * steps as f64;
         let size = if is_at_rest { energy - rest } else { energy_size(prober, rest)? };
         let size = size.abs().max(f64::MIN_POSITIVE);
-        let full = Trajectory::run(prober, &start, subject.dt, steps, size)?;
+        let mut full = Trajectory::run(prober, &start, subject.dt, steps, size)?;
+        let exchanged = full.exchanged(prober)?;
+        let size = if exchanged > LEFT * size { full.in_units_of(exchanged, size) } else { size };
         let mut found = EnergyDrift {
             rate: f64::INFINITY,
             rate_halved: None,
@@ -225,6 +233,8 @@ fn energy_size(prober: &mut Prober<'_>, here: f64) -> Result<f64, BlackBoxError>
 struct Trajectory {
     dt: f64,
     energies: Vec<f64>,
+    /// Some of the states.
+    states: Vec<Vec<f64>>,
     /// Whether states and energies are finite to the end.
     is_finite: bool,
 }
@@ -239,8 +249,16 @@ impl Trajectory {
     ) -> Result<Self, BlackBoxError> {
         let action = &prober.subject.action;
         let mut x = start.to_vec();
-        let mut found = Trajectory { dt, energies: Vec::with_capacity(steps), is_finite: false };
-        for _ in 0..steps {
+        let mut found = Trajectory {
+            dt,
+            energies: Vec::with_capacity(steps),
+            states: Vec::with_capacity(SAMPLES),
+            is_finite: false,
+        };
+        for step in 0..steps {
+            if step % steps.div_ceil(SAMPLES) == 0 {
+                found.states.push(x.clone());
+            }
             match prober.advance(&x, action, dt) {
                 Ok(next) => x = next,
                 Err(BlackBoxError::NotFinite { .. }) => return Ok(found),
@@ -252,6 +270,28 @@ impl Trajectory {
         }
         found.is_finite = true;
         Ok(found)
+    }
+
+    /// The largest energy by which a single state of the motion differs from that of the subject.
+    fn exchanged(&self, prober: &mut Prober<'_>) -> Result<f64, BlackBoxError> {
+        let rest = &prober.subject.state;
+        let mut largest = 0.0_f64;
+        for state in &self.states {
+            let Some(energy) = prober.energy(state)? else { continue };
+            for (i, &at_rest) in rest.iter().enumerate() {
+                let mut other = state.clone();
+                other[i] = at_rest;
+                let change = prober.energy(&other)?.map_or(0.0, |other| (energy - other).abs());
+                largest = largest.max(if change.is_finite() { change } else { 0.0 });
+            }
+        }
+        Ok(largest)
+    }
+
+    /// Changes the unit of the energies, and returns it.
+    fn in_units_of(&mut self, size: f64, before: f64) -> f64 {
+        self.energies.iter_mut().for_each(|energy| *energy *= before / size);
+        size
     }
 
     /// The difference of smooth averages over the halves, in 1/s, and how far the rates of parts are apart because the energy oscillates.

@@ -53,7 +53,7 @@ pub(crate) fn hidden_latencies(
             total: late_steps.map(|late| late * step.dt + integrator_delay.unwrap_or(0.0)),
         }
     };
-    let measured = subject.measured_inputs.iter().map(|input| HiddenLatency {
+    let measured = subject.measured_inputs_without(delays).map(|input| HiddenLatency {
         input: input.name.clone(),
         late_steps: Some(input.late_steps),
         late: Some(input.late_steps * step.dt),

@@ -3,7 +3,7 @@
 use libration_report::notation::{number, plural};
 
 use crate::FindingKind::*;
-use crate::{DelayAudit, Finding, Memory, Observed, Subject};
+use crate::{DelayAudit, Finding, MeasuredDelay, Memory, Observed, Subject};
 
 /// Part of a step by which a delay may differ from the stated one.
 const DELAY: f64 = 1e-3;
@@ -101,7 +101,9 @@ pub(crate) fn of_memory(
         )),
         _ => {}
     }
-    if memory.observed == Some(Observed::Asked) && memory.staleness() != 0.0 {
+    // A mean age of one that changes is that of many calls.
+    let is_measured = subject.measured_observation.is_some();
+    if memory.observed == Some(Observed::Asked) && memory.staleness() != 0.0 && !is_measured {
         found.push(Finding::fault(
             StaleObservation,
             format!(
@@ -114,30 +116,64 @@ pub(crate) fn of_memory(
 }
 
 /// Findings about the lateness that the adapter of the simulator has measured.
-pub(crate) fn of_measured(subject: &Subject, found: &mut Vec<Finding>) {
-    for input in &subject.measured_inputs {
-        if input.late_steps.abs() < DELAY && !input.varies {
-            continue;
+pub(crate) fn of_measured(subject: &Subject, delays: &[DelayAudit], found: &mut Vec<Finding>) {
+    for input in subject.measured_inputs_without(delays) {
+        let subject_of = format!("a command of `{}` acts", input.name);
+        if input.varies {
+            found.push(Finding::fault(
+                IrregularDelay,
+                match input.most_steps {
+                    0.0 => format!(
+                        "{} of {} changes of `{}` have no effect",
+                        input.unseen, input.calls, input.name
+                    ),
+                    _ => varying(input, &subject_of, "late", subject.dt),
+                },
+            ));
+        } else if input.late_steps.abs() >= DELAY {
+            found.push(Finding::fault(
+                LateCommand,
+                format!(
+                    "{subject_of} {} late ({} s)",
+                    steps(input.late_steps),
+                    number(input.late_steps * subject.dt, 4)
+                ),
+            ));
         }
-        let (kind, how) = match input.varies {
-            true => (IrregularDelay, ", and its delay changes from step to step"),
-            false => (LateCommand, ""),
-        };
+    }
+    if let Some(observation) = &subject.measured_observation {
         found.push(Finding::fault(
-            kind,
-            format!(
-                "a command of `{}` acts {} late ({} s) on average{how}",
-                input.name,
-                steps(input.late_steps),
-                number(input.late_steps * subject.dt, 4)
-            ),
+            StaleObservation,
+            match observation.most_steps {
+                0.0 => format!(
+                    "{} of {} changes of the state show in no observation",
+                    observation.unseen, observation.calls
+                ),
+                _ => varying(observation, "observations are", "older than the states", subject.dt),
+            },
         ));
     }
 }
 
+/// A delay that changes from step to step, with the error of its mean.
+fn varying(delay: &MeasuredDelay, subject: &str, how: &str, dt: f64) -> String {
+    format!(
+        "{subject} up to {} {how}, which changes from step to step: {} ± {} ({} s) on average over {} calls",
+        steps(delay.most_steps),
+        number(delay.late_steps, 2),
+        steps_in(delay.late_steps_error, 1),
+        number(delay.late_steps * dt, 2),
+        delay.calls
+    )
+}
+
 /// A number of steps, such as `1 step` and `2.4 steps`.
 fn steps(count: f64) -> String {
-    let shown = number(count, 4);
+    steps_in(count, 4)
+}
+
+fn steps_in(count: f64, digits: usize) -> String {
+    let shown = number(count, digits);
     let plural = if shown == "1" { "" } else { "s" };
     format!("{shown} step{plural}")
 }

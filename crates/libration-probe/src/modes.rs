@@ -23,7 +23,7 @@ pub struct ProbedMode {
     pub step: Rates,
     /// The same of the flow; none if it is unknown.
     pub flow: Option<Rates>,
-    /// Damping ratio that the step adds; negative: it takes damping away.
+    /// Damping ratio that the step adds; negative: it takes damping away. None of a mode that changes its sign in each step.
     pub numerical_damping: Option<f64>,
     /// Estimated error of the growth rates in 1/s.
     pub error: f64,
@@ -57,6 +57,9 @@ impl Rates {
     }
 }
 
+/// Relative imaginary part of a factor up to which it is a real one.
+const SPLIT: f64 = 1e-9;
+
 /// The modes of a step, the one that grows fastest first.
 pub(crate) fn modes(
     step: &LinearisedStep,
@@ -81,6 +84,8 @@ pub(crate) fn modes(
         let flow_rates = flow_value.map(Rates::of);
         let numerical_damping = flow_rates
             .and_then(|flow| Some(own.damping_ratio? - flow.damping_ratio?))
+            // A factor that changes its sign in each step is no oscillation of the flow.
+            .filter(|_| z.im.abs() > SPLIT * z.norm() || z.re > 0.0)
             // Of a motion at zero the ratio is that of roundings.
             .filter(|_| s.norm() > 100.0 * own_errors[k] / step.dt);
         let error = own_errors[k] / (z.norm() * step.dt);

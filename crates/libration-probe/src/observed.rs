@@ -24,7 +24,8 @@ impl Observed {
     /// `responds`: whether observations respond to the given states at all.
     ///
     /// An observation that does not depend on the state that is asked for is one that the simulator has stored. That of a returned state
-    /// depends on the length of the step or on the action, as the state does; that of a given state does not.
+    /// depends on the length of the step or on the action, as the state does; that of a given state does not. One at a limit of the
+    /// observations depends on no state nearby, and shows none.
     pub(crate) fn of(prober: &mut Prober<'_>, responds: bool) -> Result<Self, BlackBoxError> {
         let subject = prober.subject;
         if !responds || subject.has_fixed_dt {
@@ -39,11 +40,16 @@ impl Observed {
         let (of_half, seen_of_half) = after(prober, &x, u, dt / 2.0)?;
         let (_, seen_of_changed) = after(prober, &x, &changed, dt)?;
         let (_, seen_later) = after(prober, &next, u, dt)?;
+        let (_, seen_after_other) = after(prober, &other, u, dt)?;
         let value = |of: &Option<Vec<f64>>, i: usize| of.as_ref().map(|of| of[i]);
         let is_of_given = |i: usize| {
             let is = |other: &Option<Vec<f64>>| value(other, i) == value(&seen, i);
             // An observation of what never changes is none of a given state.
-            is(&seen_of_other) && is(&seen_of_half) && is(&seen_of_changed) && !is(&seen_later)
+            is(&seen_of_other)
+                && is(&seen_of_half)
+                && is(&seen_of_changed)
+                && !is(&seen_later)
+                && !is(&seen_after_other)
         };
         let count = seen.as_ref().map_or(0, Vec::len);
         let shows_given = of_half != next && (0..count).any(is_of_given);

@@ -5,7 +5,7 @@ use libration_report::notation::plural;
 use serde::Deserialize;
 use thiserror::Error;
 
-use crate::OperatingPoint;
+use crate::{DelayAudit, OperatingPoint};
 
 /// What is known of a simulator before its first step.
 #[derive(Clone, Debug)]
@@ -53,7 +53,9 @@ pub struct Subject {
     /// Inputs that the audit sets past the way of commands, so that their lateness is not that of commands.
     pub direct_inputs: Vec<String>,
     /// Inputs whose lateness the adapter of the simulator measures: discrete ones, and those whose delay varies at random.
-    pub measured_inputs: Vec<MeasuredInput>,
+    pub measured_inputs: Vec<MeasuredDelay>,
+    /// The age of observations, if it changes from step to step.
+    pub measured_observation: Option<MeasuredDelay>,
     /// The parts of the simulator that are not audited, such as wrappers.
     pub not_examined: Vec<String>,
     /// Recordings of the simulator that should have the same bits.
@@ -64,14 +66,22 @@ pub struct Subject {
     pub invocation: String,
 }
 
-/// The lateness of an input that the adapter of a simulator measures.
+/// A lateness that the adapter of a simulator measures, by single calls that differ from all others.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct MeasuredInput {
-    /// Its name.
+pub struct MeasuredDelay {
+    /// The name of the input, or of the observation.
     pub name: String,
-    /// Steps by which a command is used late, on average.
+    /// Steps by which a command is used late, or by which the observation is older than the state, on average.
     pub late_steps: f64,
+    /// The standard error of this mean.
+    pub late_steps_error: f64,
+    /// The largest number of steps.
+    pub most_steps: f64,
+    /// The number of calls that differed.
+    pub calls: usize,
+    /// The number of these that no result shows.
+    pub unseen: usize,
     /// Whether the delay changes from step to step.
     pub varies: bool,
 }
@@ -142,11 +152,21 @@ impl Subject {
             stated_delays: Vec::new(),
             direct_inputs: Vec::new(),
             measured_inputs: Vec::new(),
+            measured_observation: None,
             not_examined: Vec::new(),
             recordings: Vec::new(),
             operating_point: None,
             invocation: String::new(),
         }
+    }
+
+    /// The inputs that the adapter has measured, unless the audit of many steps knows more of a delay that changes.
+    pub(crate) fn measured_inputs_without(
+        &self,
+        delays: &[DelayAudit],
+    ) -> impl Iterator<Item = &MeasuredDelay> {
+        let is_known = delays.iter().any(|audit| audit.first_change.is_some());
+        self.measured_inputs.iter().filter(move |input| !(is_known && input.varies))
     }
 
     /// Checks all values.

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from .._keywords import check_keywords
 from .._settings import nearest, positive
-from ._gymnasium_steps import Steps
+from ._gymnasium_steps import IMPULSES, Steps
 from ._gymnasium_wrappers import unwrapped_copy
 from .host import Host
+from .measured_delay import MeasuredDelay, measured_delay
 
 Array = NDArray[np.float64]
 
@@ -107,7 +108,7 @@ def gymnasium_host(
     if repeated > 1:
         notes.append(f"a step is {repeated} steps of the environment")
     simulation.settle()
-    not_examined, discrete = _limits(simulation, start, vector, timestep, left_out)
+    not_examined, late_inputs, old_observation = _limits(simulation, start, vector, timestep, left_out)
     if simulation.is_single:
         notes.append("the environment keeps its state in float32: differences have about three digits")
     if angles:
@@ -133,7 +134,8 @@ def gymnasium_host(
         observe=simulation.observe if simulation.is_observed else None,
         not_examined=tuple(not_examined),
         direct_inputs=of_inputs[:count] if action_attribute is not None else (),
-        measured_inputs=discrete,
+        measured_inputs=late_inputs,
+        measured_observation=old_observation,
     )
 
 
@@ -158,9 +160,10 @@ def _memory(simulation: Steps, start: Array, vector: Array, dt: float, is_wrappe
 
 def _limits(
     simulation: Steps, start: Array, vector: Array, dt: float, left_out: Sequence[str]
-) -> tuple[list[str], tuple[tuple[str, float, bool], ...]]:
-    """Return what an audit does not examine, and the lateness of a discrete action, or of actions whose delay varies at random."""
-    names = ["rewards and ends of episodes"]
+) -> tuple[list[str], tuple[MeasuredDelay, ...], MeasuredDelay | None]:
+    """Return what an audit does not examine, the lateness of a discrete action, or of actions whose delay varies at random, and the age of
+    observations if it varies."""
+    names = ["rewards and ends of episodes", f"delays of fewer than one in {IMPULSES} steps"]
     if left_out:
         what = "wrapper" if len(left_out) == 1 else "wrappers"
         names.insert(0, f"{len(left_out)} {what} ({', '.join(left_out)})")
@@ -169,25 +172,30 @@ def _limits(
     if simulation.draws:
         names.append("random numbers of the environment, which are the same in each step")
     if simulation.fixed is None:
-        calls = _calls(simulation, (start, vector, dt), (start, vector + 0.01 * np.maximum(1.0, np.abs(vector)), None))
+        calls = simulation.responses(start, vector, (start, vector + 0.01 * np.maximum(1.0, np.abs(vector)), None), dt) or []
+        late = measured_delay("action", [own for own, _ in calls])
         # A delay that does not vary is found by the audit itself.
-        return names, (("action", _mean(calls), True),) if any(one != calls[0] for one in calls) else ()
+        return names, (late,) if late is not None and late.varies else (), _age(simulation, start, vector, dt)
     vector = vector + np.maximum(1.0, np.abs(vector))
+    age = _age(simulation, start, vector, dt)
     for other in simulation.other_actions():
-        calls = _calls(simulation, (start, vector, dt), (start, vector, other))
-        if any(calls):
-            return names, (("discrete action", _mean(calls), any(one != calls[0] for one in calls)),)
+        calls = simulation.responses(start, vector, (start, vector, other), dt) or []
+        late = measured_delay("discrete action", [own for own, _ in calls])
+        if late is not None:
+            return names, (late,), age
     names.append("lateness of discrete actions")
-    return names, ()
+    return names, (), age
 
 
-def _calls(simulation: Steps, base: tuple[Array, Array, float], changed: tuple[Array, Array, Any]) -> list[set[int]]:
-    """Return the calls whose states respond to each of many changed calls; empty if states vary by themselves."""
-    return [own for own, _ in simulation.responses(*base[:2], changed, base[2]) or []]
-
-
-def _mean(calls: list[set[int]]) -> float:
-    return float(np.mean([call for one in calls for call in one]))
+def _age(simulation: Steps, start: Array, vector: Array, dt: float) -> MeasuredDelay | None:
+    """Return the age of observations of a changed state, if it varies."""
+    moved = start + 0.01 * np.maximum(1.0, np.abs(start))
+    calls = simulation.responses(start, vector, (moved, vector, simulation.fixed), dt) or []
+    # A late state is one of the audit itself.
+    if any(own != {0} for own, _ in calls):
+        return None
+    age = measured_delay("observation", [seen for _, seen in calls])
+    return age if age is not None and age.varies else None
 
 
 def _clock(inner: Any, name: str | None, title: str, is_given: bool) -> str | None:

@@ -8,6 +8,8 @@ from typing import Any, Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from .measured_delay import MeasuredDelay
+
 Array = NDArray[np.float64]
 Step = Callable[[Array, Array, float], Array]
 Recording = tuple[str, Array, Array]
@@ -80,9 +82,10 @@ class Host:
     """What an audit of the host does not examine, such as wrappers that it leaves out."""
     direct_inputs: tuple[str, ...] = ()
     """Actions that are set past the way of commands, so that their lateness is unknown."""
-    measured_inputs: tuple[tuple[str, float, bool], ...] = ()
-    """Inputs whose lateness the host measures, discrete ones and those whose delay varies at random: their names, the steps by which they
-    are late on average, and whether that varies."""
+    measured_inputs: tuple[MeasuredDelay, ...] = ()
+    """Inputs whose lateness the host measures: discrete ones and those whose delay varies at random."""
+    measured_observation: MeasuredDelay | None = None
+    """The age of observations, if it varies."""
     operating_point: dict[str, Any] | None = None
     """Where the point is from a requested one from which it was searched for: its changes, its residual and changed contacts."""
     reset: Callable[[], None] = field(default=lambda: None)
