@@ -121,8 +121,6 @@ impl EnergyDrift {
         let size = if is_at_rest { energy - rest } else { energy_size(prober, rest)? };
         let size = size.abs().max(f64::MIN_POSITIVE);
         let mut full = Trajectory::run(prober, &start, subject.dt, steps, size)?;
-        let exchanged = full.exchanged(prober)?;
-        let size = if exchanged > LEFT * size { full.in_units_of(exchanged, size) } else { size };
         let mut found = EnergyDrift {
             rate: f64::INFINITY,
             rate_halved: None,
@@ -145,10 +143,17 @@ impl EnergyDrift {
             }
             return Ok(Some(found));
         }
+        let mut size = size;
         let halved = match subject.has_fixed_dt {
             true => None,
             false => {
-                let half = Trajectory::run(prober, &start, subject.dt / 2.0, 2 * steps, size)?;
+                let mut half = Trajectory::run(prober, &start, subject.dt / 2.0, 2 * steps, size)?;
+                // What a step adds is no scale: half of it would not.
+                let exchanged = full.exchanged(prober)?.min(half.exchanged(prober)?);
+                if exchanged > LEFT * size && half.is_finite {
+                    [&mut full, &mut half].map(|own| own.change_unit(size, exchanged));
+                    size = exchanged;
+                }
                 half.is_finite.then(|| half.rate().0)
             }
         };
@@ -288,10 +293,8 @@ impl Trajectory {
         Ok(largest)
     }
 
-    /// Changes the unit of the energies, and returns it.
-    fn in_units_of(&mut self, size: f64, before: f64) -> f64 {
-        self.energies.iter_mut().for_each(|energy| *energy *= before / size);
-        size
+    fn change_unit(&mut self, from: f64, to: f64) {
+        self.energies.iter_mut().for_each(|energy| *energy *= from / to);
     }
 
     /// The difference of smooth averages over the halves, in 1/s, and how far the rates of parts are apart because the energy oscillates.

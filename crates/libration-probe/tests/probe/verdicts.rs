@@ -3,7 +3,9 @@
 use libration_probe::{ProbeReport, Subject};
 use libration_report::verdict::Outcome;
 
-use crate::simulators::{Simulator, kinds, pendulum, pendulum_energy, pendulum_subject};
+use crate::simulators::{
+    Simulator, damped_pendulum, kinds, pendulum, pendulum_energy, pendulum_subject,
+};
 
 type Rates = fn(&[f64]) -> [f64; 2];
 
@@ -122,6 +124,29 @@ fn an_energy_that_grows_without_a_direction_is_a_fault_where_it_exceeds_itself()
             .audit(&with_action(motion([1.0, 0.0], 0.8, is_conservative)));
         assert!(kinds(&report).contains(&"energy-drift"), "{}", report.answer);
     }
+}
+
+#[test]
+fn the_energy_of_a_fall_is_compared_with_that_which_the_motion_exchanges() {
+    // From beside the upright, where its energy is 9, a damped pendulum comes to rest at −9; at most 18 is energy of its speed.
+    let mut subject = with_action(motion([core::f64::consts::PI, 0.0], 0.01, true));
+    subject.equilibrium = Some(true);
+    let report = Simulator::new(|x, u, dt| damped_pendulum(0.02, x, u, dt))
+        .with_energy(pendulum_energy)
+        .audit(&subject);
+    assert!((-1.8..=-0.5).contains(&change(&report)), "{}", report.answer);
+}
+
+#[test]
+fn a_mode_that_changes_its_sign_in_each_step_has_no_damping_that_the_step_adds() {
+    // Symplectic Euler with ωh = 2.1: factors z² + 2.41 z + 1 = 0, −0.534 and −1.876.
+    let spring = |x: &[f64], _: &[f64], dt: f64| {
+        let v = x[1] - dt * 441.0 * x[0];
+        vec![x[0] + dt * v, v]
+    };
+    let report = Simulator::new(spring).audit(&Subject::new("spring", vec![0.0, 0.0], vec![], 0.1));
+    assert!(report.modes.iter().all(|mode| mode.numerical_damping.is_none()), "{:?}", report.modes);
+    assert_eq!(report.verdict.outcome, Outcome::Fault, "{}", report.answer);
 }
 
 fn with_action(mut subject: Subject) -> Subject {
