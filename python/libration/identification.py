@@ -30,7 +30,7 @@ class Identification:
     Environments take it as a range of delays: ``libration.VectorEnv(…, action_delay=identified)``.
     """
 
-    def __init__(self, results: dict[str, Any], loop_file: str, page: str) -> None:
+    def __init__(self, results: dict[str, Any], loop_file: str | None, page: str) -> None:
         self.results = results
         self._loop_file = loop_file
         self._page = page
@@ -120,7 +120,7 @@ class Identification:
 
     def save_loop(self, path: str | PathLike[str]) -> None:
         """Write the loop as a file of ``libration advise --config``; fails where the dead time is unknown."""
-        if not self.results["depends_on_command"] or self.results["other_dead_times"]:
+        if self._loop_file is None:
             raise ValueError(f"there is no loop to save: {self.results['verdict']['evidence']}")
         Path(path).write_text(self._loop_file, encoding="utf-8")
 

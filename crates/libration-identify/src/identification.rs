@@ -126,7 +126,14 @@ impl Identification {
 
     /// Whether there is a loop with a dead time that the recording decides.
     pub fn has_loop(&self) -> bool {
-        self.depends_on_command && self.other_dead_times.is_empty()
+        self.depends_on_command && self.other_dead_times.is_empty() && !self.allows_any_delay()
+    }
+
+    /// Whether the likelihood excludes no large dead time.
+    pub(crate) fn allows_any_delay(&self) -> bool {
+        let own = self.parameter("dead_time");
+        let interval = own.and_then(|own| own.interval.or(own.likelihood_interval));
+        interval.is_some_and(|interval| interval.high.is_none())
     }
 
     /// The parameter of this key.

@@ -12,6 +12,9 @@ use crate::warnings::{Context, is_controller, other_dead_times};
 /// Fewest responses behind the first change of a command that tell a form of response from others.
 const FEWEST_FOLLOWERS: usize = 10;
 
+/// Excess kurtosis of residuals from which the likelihood of normal noise says little: that of Student's law with five degrees of freedom.
+const HEAVY: f64 = 6.0;
+
 /// The responses behind the first change of the command, after the dead time.
 fn followers(context: &Context<'_>) -> usize {
     let recording = context.recording;
@@ -93,6 +96,18 @@ fn judged(found: &Identification, dependence: &Dependence, context: &Context<'_>
         return Verdict::unknown(format!(
             "the dead time is at the largest one tried, {}",
             seconds(model.longest)
+        ));
+    }
+    if found.allows_any_delay() {
+        return Verdict::unknown(
+            "the commands do not determine the dead time: no large one is excluded",
+        );
+    }
+    let tests = &found.residuals;
+    if tests.excess_kurtosis > HEAVY && tests.normality < CONTRADICTION {
+        return Verdict::unknown(format!(
+            "single residuals are far larger than the others (excess kurtosis {}): the model does not explain these responses",
+            number(tests.excess_kurtosis, 2)
         ));
     }
     Verdict::new(

@@ -22,7 +22,7 @@ pub(crate) fn _identify(
     py: Python<'_>,
     arrays: Arrays<'_>,
     options: &str,
-) -> PyResult<(String, String, String)> {
+) -> PyResult<(String, Option<String>, String)> {
     let wrong = |error: &dyn core::fmt::Display| value_error(error.to_string());
     let [command_times, commands, response_times, responses] = &arrays;
     let options: Value = serde_json::from_str(options).map_err(|error| wrong(&error))?;
@@ -41,7 +41,7 @@ pub(crate) fn _identify(
     )?;
     let found = found.map_err(|error| wrong(&error))?;
     let json = serde_json::to_string(&found).map_err(|error| wrong(&error))?;
-    Ok((json, loop_file(&found), page(&found)))
+    Ok((json, found.has_loop().then(|| loop_file(&found)), page(&found)))
 }
 
 fn request(options: &Value) -> PyResult<Request> {

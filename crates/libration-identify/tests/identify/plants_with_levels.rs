@@ -65,3 +65,14 @@ fn a_command_that_repeats_itself_leaves_the_dead_time_unknown() {
         assert!(!found.has_loop() && found.delay_range.is_none());
     }
 }
+
+/// Behind its start the response to a ramp is a ramp, whatever part of its lateness is dead time, lag or a constant load.
+#[test]
+fn a_ramp_leaves_the_dead_time_unknown() {
+    let times: Vec<f64> = (0..400).map(|i| f64::from(i) * 0.01).collect();
+    let commands: Vec<f64> = times.iter().map(|time| time / 4.0).collect();
+    let found = found(&commands, &times, |u| u);
+    assert_eq!(found.verdict.outcome, Outcome::Unknown, "{}", found.verdict);
+    assert!(found.verdict.evidence.contains("do not determine the dead time"), "{}", found.verdict);
+    assert!(!found.has_loop());
+}
