@@ -151,7 +151,8 @@ impl EnergyDrift {
                 // What a step adds is no scale: half of it would not.
                 let exchanged = full.exchanged(prober)?.min(half.exchanged(prober)?);
                 if exchanged > LEFT * size && half.is_finite {
-                    [&mut full, &mut half].map(|own| own.change_unit(size, exchanged));
+                    full.change_unit(size, exchanged);
+                    half.change_unit(size, exchanged);
                     size = exchanged;
                 }
                 half.is_finite.then(|| half.rate().0)
