@@ -86,7 +86,7 @@ pub fn gains_page(report: &GainReport) -> String {
         table.push([
             row.name.into(),
             row.title.clone().into(),
-            if row.holds { "yes" } else { "no" }.into(),
+            row.answer().into(),
             limit(row.largest_factor, 5),
             row.fewest_substeps
                 .map_or_else(|| Cell::absent("above 1000"), |n| Cell::rounded(f64::from(n), 4)),
