@@ -1,9 +1,7 @@
 //! Growth of coupled joints.
 
 use libration::Scalar;
-use libration::linear::{
-    Complex64, Matrix, SingularValues, cholesky, eigenvalues, solve_matrix,
-};
+use libration::linear::{Complex64, Matrix, SingularValues, cholesky, eigenvalues, solve_matrix};
 use libration::number::Wide;
 
 use super::Torque;
@@ -38,8 +36,7 @@ pub(super) fn undamped_modes(servos: &Servos) -> Option<Vec<JointNumbers>> {
     let stiffness = servos.kp.plus(&servos.stiffness);
     let n = stiffness.rows();
     let is_damped = servos.kv.largest() != 0.0 || servos.damping.largest() != 0.0;
-    let is_symmetric =
-        (0..n).all(|i| (0..i).all(|j| stiffness[(i, j)] == stiffness[(j, i)]));
+    let is_symmetric = (0..n).all(|i| (0..i).all(|j| stiffness[(i, j)] == stiffness[(j, i)]));
     let is_mixed = servos.torque == Torque::Held && servos.stiffness.largest() != 0.0;
     if is_damped || !is_symmetric || is_mixed || !stiffness.is_finite() {
         return None;
@@ -67,8 +64,7 @@ pub(super) fn undamped_modes(servos: &Servos) -> Option<Vec<JointNumbers>> {
 /// The number of factors that are 1 in each step, since no force depends on some motions: positions without stiffness, and their
 /// velocities where there is no damping either.
 fn factors_of_one(servos: &Servos) -> usize {
-    let (stiffness, damping) =
-        (servos.kp.plus(&servos.stiffness), servos.kv.plus(&servos.damping));
+    let (stiffness, damping) = (servos.kp.plus(&servos.stiffness), servos.kv.plus(&servos.damping));
     let n = stiffness.rows();
     let nullity = |matrix: &Matrix| {
         SingularValues::of(matrix).map_or(0, |found| n - found.rank(ROUNDINGS * n as f64).min(n))

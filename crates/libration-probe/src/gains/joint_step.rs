@@ -8,8 +8,11 @@ use libration::{Scalar, State};
 use super::growth::Growth;
 use super::{ServoIntegrator, Torque};
 
-/// Sizes of a stiffness or a damping in units of the step, as a power of two, below which its growth is lost in 1024 bits.
-const LOST: i64 = -850;
+/// Bits of 1024 that no rounding of a step reaches.
+const ROUNDING: i64 = 1000;
+
+/// Sizes of a stiffness or a damping in units of the step, as powers of two, beyond which its growth is lost in these bits.
+const KNOWN: i64 = 990;
 
 /// A joint alone, or a mode of joints, in units of the step and of its inertia: `q̈ = −(k_p + k) q − (k_v + d) q̇`.
 #[derive(Clone, Copy, Debug)]
@@ -36,9 +39,9 @@ impl JointNumbers {
         [self.kp, self.kv, self.stiffness, self.damping]
     }
 
-    /// Whether a number is so small that 1024 bits beside 1 lose it.
+    /// Whether a number is so small or so large that 1024 bits beside 1 lose it.
     fn is_lost(&self) -> bool {
-        self.all().iter().any(|x| x.exponent().is_some_and(|size| size < LOST))
+        self.all().iter().any(|x| x.exponent().is_some_and(|size| size.abs() > KNOWN))
     }
 }
 
@@ -108,12 +111,31 @@ impl JointSteps {
         if joint.is_free() {
             return Growth::None;
         }
-        let spectrum = Spectrum::new(&self.matrix(joint, parts));
-        match spectrum.is_bounded() {
-            _ if spectrum.trace.is_nan() => Growth::Some,
-            true if joint.is_lost() => Growth::Unknown,
-            true => Growth::None,
-            false => Growth::Some,
+        let step = self.matrix(joint, parts);
+        let (trace, determinant) = (step.trace(), step.determinant());
+        if trace.is_nan() || determinant.is_nan() {
+            return Growth::Some;
+        }
+        let one = Wide::one();
+        let scale = one + trace.abs() + determinant.abs();
+        let sign = |x: Wide| match (x.exponent(), scale.exponent()) {
+            (Some(size), Some(of)) if size >= of - ROUNDING => {
+                if x.is_negative() {
+                    -1
+                } else {
+                    1
+                }
+            }
+            _ => 0,
+        };
+        // Both factors are inside the unit circle if the determinant is below 1 and the polynomial above 0 at 1 and −1.
+        let sides = [one - determinant, one + determinant - trace, one + determinant + trace];
+        match sides.map(sign) {
+            [-1, ..] | [_, -1, _] | [_, _, -1] => Growth::Some,
+            _ if joint.is_lost() => Growth::Unknown,
+            // Of a pair on the circle: one factor twice has but one shape, since a force acts.
+            [0, 0, _] | [0, _, 0] => Growth::Some,
+            _ => Growth::None,
         }
     }
 

@@ -1,8 +1,8 @@
 //! The report on gains.
 
+use libration::Elementary;
 use libration::linear::eigenvalues;
 use libration::number::Wide;
-use libration::Elementary;
 use libration_report::verdict::Verdict;
 use serde::Serialize;
 
@@ -17,7 +17,7 @@ use super::{ServoIntegrator, Servos, Torque};
 /// Most substeps that are tried.
 pub(super) const MOST_SUBSTEPS: u32 = 1000;
 /// Distance from the limit, as part of the gains, up to which they are said to be at it.
-const AT_LIMIT: f64 = 1e-9;
+const AT_LIMIT: f64 = 1e-12;
 /// Part of the fastest rate below which growth is rounding.
 const ROUNDING: f64 = 1e-7;
 /// The results; the fields are the keys of `gains --json`. Infinite limits are `null` there.
@@ -213,8 +213,7 @@ fn continuous_growth(servos: &Servos, h: f64) -> Option<f64> {
 }
 
 fn fewest_substeps(servos: &Servos, dt: f64, step: &ServoStep) -> Option<u32> {
-    let holds =
-        |substeps: u32| step.growth_beside_limit(servos, dt, substeps) == Growth::None;
+    let holds = |substeps: u32| step.growth_beside_limit(servos, dt, substeps) == Growth::None;
     // Doubling finds a number that holds, bisection the fewest.
     let mut high = 1;
     while !holds(high) {
@@ -248,7 +247,9 @@ fn joint_row(servos: &Servos, i: usize, step: &ServoStep, length: f64, parts: u3
     let [kp_in_steps, kv_in_steps] = [in_steps.kp, in_steps.kv].map(|x| x.abs().to_f64());
     // The whole row of a gain that is there; the entry of the joint of one that is not.
     let largest_kp = match kp {
-        0.0 => largest_gain(kp, 0.0, inertia / length / length, |kp| growth(&servos.with_kp(i, kp))),
+        0.0 => {
+            largest_gain(kp, 0.0, inertia / length / length, |kp| growth(&servos.with_kp(i, kp)))
+        }
         kp => {
             let of = |factor: f64| growth(&servos.with_joint_factor(i, factor));
             kp * StableFactors::search(kp_in_steps.max(f64::MIN_POSITIVE), of).most

@@ -90,7 +90,8 @@ fn upper_end(from: f64, size: f64, growth: &impl Fn(f64) -> Growth) -> Option<f6
     loop {
         // Not far into the range of small steps.
         let most = (NEAR[0] / (size * inside)).max(1.5);
-        let outside = inside * ratio(size * inside).min(if size * inside < NEAR[0] { most } else { 10.0 });
+        let outside =
+            inside * ratio(size * inside).min(if size * inside < NEAR[0] { most } else { 10.0 });
         if outside * size.min(1.0) > RANGE[1] || !outside.is_finite() {
             return None;
         }
