@@ -1,8 +1,10 @@
 //! Growth of coupled joints.
 
 use libration::Scalar;
-use libration::linear::{Complex64, Matrix, SingularValues, cholesky, eigenvalues, solve_matrix};
-use libration::number::Wide;
+use libration::linear::{
+    Complex64, Matrix, SingularValues, cholesky, eigenvalues, is_schur_stable, solve_matrix,
+};
+use libration::number::{TwoFloat, Wide};
 
 use super::Torque;
 use super::growth::Growth;
@@ -11,6 +13,9 @@ use super::{ServoIntegrator, Servos};
 
 /// Roundings of the largest eigenvalue, for each state, that an eigenvalue may be off, and a stiffness that is none.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+
+/// Growth or decay per step that no rounding of `f64` hides.
+const CLEAR: f64 = 1e-5;
 
 /// Entries of a step of which products would overflow: no stable step has them.
 const LARGEST: f64 = 1e100;
@@ -25,9 +30,18 @@ pub(super) fn growth(
     if let Some(modes) = undamped_modes(servos) {
         return Growth::of_parts(modes.iter().map(|mode| steps.growth(mode, parts)));
     }
-    match servos.deviation(integrator, parts).filter(|step| step.largest() < LARGEST) {
-        None => Growth::Some,
-        Some(deviation) => of_deviation(&deviation, factors_of_one(servos)),
+    let rough = servos.deviation::<f64>(integrator, parts);
+    let Some(rough) = rough.filter(|step| step.largest() < LARGEST) else { return Growth::Some };
+    let step = Matrix::identity(rough.rows()).plus(&rough);
+    if is_schur_stable(&step.scaled(CLEAR.exp())) {
+        return Growth::None;
+    }
+    if !is_schur_stable(&step.scaled((-CLEAR).exp())) {
+        return Growth::Some;
+    }
+    match servos.deviation::<TwoFloat>(integrator, parts) {
+        None => Growth::Unknown,
+        Some(deviation) => of_deviation(&deviation, || factors_of_one(servos)),
     }
 }
 
@@ -76,14 +90,15 @@ fn factors_of_one(servos: &Servos) -> usize {
 }
 
 /// The growth of a step from the eigenvalues `z − 1` of its deviation from the identity, of which so many are zero.
-fn of_deviation(deviation: &Matrix, zeros: usize) -> Growth {
+fn of_deviation(deviation: &Matrix, zeros: impl Fn() -> usize) -> Growth {
     let Some(mut values) = eigenvalues(deviation) else { return Growth::Unknown };
     let largest = values.iter().map(|value| value.norm()).fold(0.0, f64::max);
     let rounding = ROUNDINGS * values.len() as f64 * largest;
     // Of a double eigenvalue.
     let parted = (rounding * largest).sqrt();
     values.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
-    let is_known_zero = |i: usize| i < zeros && values[i].norm() <= 10.0 * parted;
+    let near_zero = values.iter().filter(|value| value.norm() <= 10.0 * parted).count();
+    let known_zeros = if near_zero > 0 { near_zero.min(zeros()) } else { 0 };
     let own = |i: usize| {
         let others = values.iter().enumerate().filter(|(j, _)| *j != i);
         let gap = others.map(|(_, other)| (values[i] - other).norm()).fold(f64::INFINITY, f64::min);
@@ -98,5 +113,5 @@ fn of_deviation(deviation: &Matrix, zeros: usize) -> Growth {
             _ => Growth::Unknown,
         }
     };
-    Growth::of_parts((0..values.len()).filter(|i| !is_known_zero(*i)).map(own))
+    Growth::of_parts((known_zeros..values.len()).map(own))
 }

@@ -1,10 +1,10 @@
 //! Servos on joints as matrices.
 
+use libration::Float;
 use libration::analysis::LinearStepper;
 use libration::linear::{
     LinearPlant, MOST_STATES, Matrix, PlantError, Signal, cholesky, eigenvalues, solve_matrix,
 };
-use libration::number::TwoFloat;
 use libration_report::notation::plural;
 use serde::Deserialize;
 use thiserror::Error;
@@ -245,14 +245,14 @@ impl Servos {
         LinearPlant::mechanical([&self.mass, &damping, &stiffness], &force, &self.joints)
     }
 
-    /// The matrix of a step of 1 s less the identity; none if it is not finite.
-    pub(super) fn step_deviation(&self, integrator: ServoIntegrator) -> Option<Matrix> {
+    /// The matrix of a step of 1 s less the identity, in floats of type `S`; none if it is not finite.
+    pub(super) fn step_deviation<S: Float>(&self, integrator: ServoIntegrator) -> Option<Matrix> {
         match integrator {
             ServoIntegrator::JointDampingImplicit => self.joint_damping_step(),
             ServoIntegrator::Method(method) => {
                 let plant = self.plant().ok()?;
                 let stepper = LinearStepper::new(&plant.a)?;
-                Some(stepper.with_step::<TwoFloat>(method, 1.0)?.deviation_matrix())
+                Some(stepper.with_step::<S>(method, 1.0)?.deviation_matrix())
             }
         }
         .filter(Matrix::is_finite)
