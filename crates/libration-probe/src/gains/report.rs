@@ -11,7 +11,7 @@ use super::limit_in_json::limit;
 use super::measured::MeasuredGains;
 use super::servo_mode::{ServoMode, modes};
 use super::servo_step::ServoStep;
-use super::stable_factors::{StableFactors, largest_gain};
+use super::stable_factors::{StableFactors, largest_gain, resolution_of};
 use super::{ServoIntegrator, Servos, Torque};
 
 /// Most substeps that are tried.
@@ -144,10 +144,11 @@ pub fn gains(
     notes: Vec<String>,
 ) -> GainReport {
     let size = servos.size_of_gains(dt / f64::from(substeps));
+    let resolution = resolution_of(servos.parts().iter().map(Vec::len).max().unwrap_or(1));
     let row = |integrator: ServoIntegrator| {
         let step = ServoStep::new(integrator);
         let growth = |factor: f64| step.growth(&servos.with_factor(factor), dt, substeps);
-        let factor = StableFactors::search(size, growth);
+        let factor = StableFactors::search(size, resolution, growth);
         let own = step.growth_beside_limit(servos, dt, substeps);
         let excess = step.radius_minus_one(servos, dt, substeps);
         IntegratorRow {
@@ -240,19 +241,21 @@ fn joint_row(servos: &Servos, i: usize, step: &ServoStep, length: f64, parts: u3
     let turn = squared.sqrt().to_f64();
     let damping = (in_steps.kv + in_steps.damping).to_f64();
     // Longer steps change ωh at the same damping ratio.
-    let longest = StableFactors::search(turn.max(damping.abs()), |factor| {
+    let longest = StableFactors::search(turn.max(damping.abs()), resolution_of(1), |factor| {
         step.growth(&alone, length * factor, parts)
     });
     let growth = |servos: &Servos| step.growth(servos, length, parts);
+    let resolution = resolution_of(servos.parts().iter().map(Vec::len).max().unwrap_or(1));
     let [kp_in_steps, kv_in_steps] = [in_steps.kp, in_steps.kv].map(|x| x.abs().to_f64());
     // The whole row of a gain that is there; the entry of the joint of one that is not.
     let largest_kp = match kp {
         0.0 => {
-            largest_gain(kp, 0.0, inertia / length / length, |kp| growth(&servos.with_kp(i, kp)))
+            let unit = inertia / length / length;
+            largest_gain(kp, [0.0, unit], resolution, |kp| growth(&servos.with_kp(i, kp)))
         }
         kp => {
             let of = |factor: f64| growth(&servos.with_joint_factor(i, factor));
-            kp * StableFactors::search(kp_in_steps.max(f64::MIN_POSITIVE), of).most
+            kp * StableFactors::search(kp_in_steps.max(f64::MIN_POSITIVE), resolution, of).most
         }
     };
     let of_kv = |kv: f64| growth(&servos.with_kv(i, kv));
@@ -265,6 +268,6 @@ fn joint_row(servos: &Servos, i: usize, step: &ServoStep, length: f64, parts: u3
         damping_ratio: (turn > 0.0).then(|| damping / (2.0 * turn)),
         largest_turn: if turn == 0.0 { f64::NAN } else { turn * longest.most },
         largest_kp: largest_kp.max(0.0),
-        largest_kv: largest_gain(kv, kv_in_steps, inertia / length, of_kv),
+        largest_kv: largest_gain(kv, [kv_in_steps, inertia / length], resolution, of_kv),
     }
 }

@@ -7,7 +7,15 @@ const NEAR: [f64; 2] = [1e-3, 1e3];
 /// The least and the largest ones that are tried.
 const RANGE: [f64; 2] = [1e-30, 1e9];
 const BISECTIONS: usize = 100;
-const RESOLUTION: f64 = 1e-13;
+/// Relative accuracy of limits, and of those of many coupled joints, whose steps take long.
+const RESOLUTION: [f64; 2] = [1e-13, 1e-10];
+/// Joints that are not many.
+const FEW: usize = 4;
+
+/// The relative accuracy of limits of joints whose largest coupled part has this size.
+pub(super) fn resolution_of(coupled: usize) -> f64 {
+    RESOLUTION[usize::from(coupled > FEW)]
+}
 
 /// The factors with which steps are stable: those around 1, or the next ones if a step with 1 is unstable.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,24 +30,28 @@ impl StableFactors {
     const NONE: Self = StableFactors { least: 0.0, most: 0.0 };
 
     /// Those of a gain whose given value has this `size`, in units of the gain at which a step is about unstable.
-    pub(super) fn search(size: f64, growth: impl Fn(f64) -> Growth) -> Self {
+    pub(super) fn search(size: f64, resolution: f64, growth: impl Fn(f64) -> Growth) -> Self {
         if size == 0.0 {
             let most = if growth(1.0) == Growth::Some { 0.0 } else { f64::INFINITY };
             return StableFactors { least: 0.0, most };
         }
         let size = size.clamp(f64::MIN_POSITIVE, f64::MAX);
-        let upper = |from: f64| upper_end(from, size, &growth).unwrap_or(f64::INFINITY);
+        let upper =
+            |from: f64| upper_end(from, [size, resolution], &growth).unwrap_or(f64::INFINITY);
         if growth(1.0) != Growth::Some {
             return StableFactors { least: 0.0, most: upper(1.0) };
         }
         // Gains that are too large, or too small beside a negative stiffness.
         let holds = |factor: f64| growth(factor) == Growth::None;
         if let Some((inside, outside)) = first_below(size, &holds) {
-            return StableFactors { least: 0.0, most: bisected(inside, outside, holds) };
+            return StableFactors {
+                least: 0.0,
+                most: bisected([inside, outside], resolution, holds),
+            };
         }
         match first_above(size, &holds) {
             Some((outside, inside)) => {
-                let least = bisected(inside, outside, holds);
+                let least = bisected([inside, outside], resolution, holds);
                 StableFactors { least, most: upper(least) }
             }
             None => Self::NONE,
@@ -50,13 +62,14 @@ impl StableFactors {
 /// The largest gain with which a step is stable; `unit` is one that is about the limit, and `size` the given one in this unit.
 pub(super) fn largest_gain(
     given: f64,
-    size: f64,
-    unit: f64,
+    [size, unit]: [f64; 2],
+    resolution: f64,
     growth: impl Fn(f64) -> Growth,
 ) -> f64 {
     if given > 0.0 {
         let size = size.max(f64::MIN_POSITIVE);
-        return given * StableFactors::search(size, |factor| growth(given * factor)).most;
+        return given
+            * StableFactors::search(size, resolution, |factor| growth(given * factor)).most;
     }
     // Beyond the range of floats no gain is as large as the limit.
     if !unit.is_finite() {
@@ -66,12 +79,15 @@ pub(super) fn largest_gain(
     let first = NEAR[0];
     if growth(0.0) == Growth::Some || growth(first) == Growth::Some {
         let most = match growth(0.0) {
-            Growth::Some => StableFactors::search(1.0, growth).most,
-            _ => StableFactors::search(first, |factor| growth(factor * first)).most * first,
+            Growth::Some => StableFactors::search(1.0, resolution, growth).most,
+            _ => {
+                StableFactors::search(first, resolution, |factor| growth(factor * first)).most
+                    * first
+            }
         };
         return unit * most;
     }
-    unit * upper_end(first, 1.0, &growth).unwrap_or(f64::INFINITY)
+    unit * upper_end(first, [1.0, resolution], &growth).unwrap_or(f64::INFINITY)
 }
 
 /// The ratio of the next trial to one of this size, or of this one to the next.
@@ -84,7 +100,11 @@ fn ratio(size: f64) -> f64 {
 }
 
 /// The factor up to which no motion grows from one at which none does; none within the range.
-fn upper_end(from: f64, size: f64, growth: &impl Fn(f64) -> Growth) -> Option<f64> {
+fn upper_end(
+    from: f64,
+    [size, resolution]: [f64; 2],
+    growth: &impl Fn(f64) -> Growth,
+) -> Option<f64> {
     let is_known = growth(from) == Growth::None;
     let mut inside = from;
     loop {
@@ -101,7 +121,7 @@ fn upper_end(from: f64, size: f64, growth: &impl Fn(f64) -> Growth) -> Option<f6
                 Growth::Some => false,
                 Growth::Unknown => !is_known,
             };
-            return Some(bisected(inside, outside, holds));
+            return Some(bisected([inside, outside], resolution, holds));
         }
         inside = outside;
     }
@@ -138,9 +158,13 @@ fn first_above(size: f64, holds: &impl Fn(f64) -> bool) -> Option<(f64, f64)> {
 }
 
 /// The last factor that holds between one that does and one that does not.
-fn bisected(mut inside: f64, mut outside: f64, holds: impl Fn(f64) -> bool) -> f64 {
+fn bisected(
+    [mut inside, mut outside]: [f64; 2],
+    resolution: f64,
+    holds: impl Fn(f64) -> bool,
+) -> f64 {
     for _ in 0..BISECTIONS {
-        if (outside - inside).abs() <= RESOLUTION * inside {
+        if (outside - inside).abs() <= resolution * inside {
             break;
         }
         let middle = match outside / inside {

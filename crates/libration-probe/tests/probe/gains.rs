@@ -162,6 +162,9 @@ fn coupled_joints_without_damping_grow_as_their_modes_do() {
     // The reduced mass 3/4 of their relative motion: kp h² < 4 m − 2 kv h.
     let found = report(free, 0.01, 1, "symplectic-euler");
     close(found.largest_factor * 6.0, (4.0 * 0.75 - 2.0 * 0.01) / 1e-4, 1e-6);
+    for unlimited in ["implicit-midpoint", "trapezoid", "backward-euler", "gauss-legendre-4"] {
+        assert_eq!(report(free, 0.01, 1, unlimited).largest_factor, f64::INFINITY, "{unlimited}");
+    }
     let undamped = report(&free.replace("[1, -1], [-1, 1]", "[0, 0], [0, 0]"), 0.01, 1, "rk4");
     assert!(undamped.holds, "{}", undamped.answer);
 }
