@@ -133,8 +133,8 @@ impl JointSteps {
         match sides.map(sign) {
             [-1, ..] | [_, -1, _] | [_, _, -1] => Growth::Some,
             _ if joint.is_lost() => Growth::Unknown,
-            // Of a pair on the circle: one factor twice has but one shape, since a force acts.
-            [0, 0, _] | [0, _, 0] => Growth::Some,
+            // At −1, or a pair on the circle: one factor twice has but one shape, since a force acts.
+            [_, _, 0] | [0, 0, _] => Growth::Some,
             _ => Growth::None,
         }
     }
