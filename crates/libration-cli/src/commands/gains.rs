@@ -186,7 +186,7 @@ fn describe(report: &GainReport) -> String {
             row.name,
             row.answer(),
             limit(row.largest_factor),
-            row.fewest_substeps.map_or_else(|| "above 1000".to_owned(), |n| n.to_string())
+            row.substeps()
         );
     }
     let _ = writeln!(text, "repeat with: {}", report.repeat_command);

@@ -125,6 +125,15 @@ pub struct IntegratorRow {
 }
 
 impl IntegratorRow {
+    /// The fewest substeps in words.
+    pub fn substeps(&self) -> String {
+        match self.fewest_substeps {
+            Some(count) => count.to_string(),
+            None if !self.is_known => "unknown".into(),
+            None => format!("above {MOST_SUBSTEPS}"),
+        }
+    }
+
     /// Whether the gains hold, in a word.
     pub fn answer(&self) -> &'static str {
         match (self.is_known, self.holds) {
@@ -156,7 +165,7 @@ pub fn gains(
             title: integrator.title(),
             holds: own == Growth::None,
             is_known: own != Growth::Unknown,
-            largest_factor: factor.most,
+            largest_factor: if own == Growth::Unknown { f64::NAN } else { factor.most },
             least_factor: factor.least,
             fewest_substeps: fewest_substeps(servos, dt, &step),
             spectral_radius: 1.0 + excess,
@@ -172,7 +181,9 @@ pub fn gains(
     };
     let parts = if servos.torque == Torque::Held { substeps } else { 1 };
     let step = ServoStep::new(integrator);
-    let passive = step.growth(&servos.passive(), dt, substeps) != Growth::Some;
+    // Servos may hold what grows without them in continuous time.
+    let passive = step.growth(&servos.passive(), dt, substeps) != Growth::Some
+        || continuous_growth(&servos.passive(), length).is_some();
     let shorter = step.growth(servos, dt * (1.0 - AT_LIMIT), substeps);
     let mut report = GainReport {
         answer: String::new(),
@@ -183,7 +194,7 @@ pub fn gains(
         substeps,
         torque: servos.torque,
         measured: None,
-        unstable_without_servos: !own.holds && !passive,
+        unstable_without_servos: !own.holds && own.is_known && !passive,
         integrator: own.name,
         integrator_title: own.title,
         spectral_radius: own.spectral_radius,
@@ -201,6 +212,13 @@ pub fn gains(
         notes,
         repeat_command: String::new(),
     };
+    if !report.is_known {
+        // Limits beside gains of which nothing is known would be read as gains that hold.
+        (report.largest_factor, report.fewest_substeps) = (f64::NAN, None);
+        for joint in &mut report.joints {
+            (joint.largest_kp, joint.largest_kv) = (f64::NAN, f64::NAN);
+        }
+    }
     report.conclude();
     report
 }

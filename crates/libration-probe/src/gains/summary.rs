@@ -153,11 +153,13 @@ impl GainReport {
                 self.substeps_in_words()
             );
         }
-        let mut text = if !self.is_known {
-            format!(
-                "Whether the gains hold with {integrator} and {of} is unknown: rounding may hide growth of a mode"
-            )
-        } else if self.holds {
+        if !self.is_known {
+            return format!(
+                "Whether the gains hold with {integrator} and {of} is unknown: rounding may hide growth of a mode.{} {limits}",
+                self.others_in_words()
+            );
+        }
+        let mut text = if self.holds {
             format!("The gains hold with {integrator} and {of}")
         } else if self.is_at_limit {
             format!(
@@ -173,17 +175,19 @@ impl GainReport {
         text += &self.tightest();
         if !self.holds {
             text += &self.substeps_in_words();
-            let others: Vec<String> = self
-                .integrators
-                .iter()
-                .filter(|row| row.holds)
-                .map(|row| ServoIntegrator::label(row.name))
-                .collect();
-            if !others.is_empty() {
-                text += &format!(" They hold with {}.", others.join(", "));
-            }
+            text += &self.others_in_words();
         }
         format!("{text} {limits}")
+    }
+
+    /// The integrators with which the gains hold, as a sentence.
+    fn others_in_words(&self) -> String {
+        let others = self.integrators.iter().filter(|row| row.holds);
+        let others: Vec<String> = others.map(|row| ServoIntegrator::label(row.name)).collect();
+        match others.is_empty() {
+            true => String::new(),
+            false => format!(" They hold with {}.", others.join(", ")),
+        }
     }
 
     /// The gains with the least margin, in sentences.

@@ -143,5 +143,17 @@ fn growth_of_coupled_joints_that_rounding_may_hide_is_unknown() {
     assert!(!found.verdict.is_good() && !found.holds);
     assert!(found.answer.starts_with("Whether the gains hold"), "{}", found.answer);
     assert_eq!(row(&found, "symplectic-euler").answer(), "unknown");
+    // No limit of gains is shown beside it.
+    assert!(found.largest_factor.is_nan() && found.joints[0].largest_kp.is_nan());
+    assert!(!found.answer.contains("must stay below"), "{}", found.answer);
     assert!(libration_probe::gains_page(&found).contains("Whether the gains hold is unknown"));
+}
+
+/// A servo of `kp h²/m = 100` turns its joint too far, which a negative stiffness of the same joint does not explain.
+#[test]
+fn a_gain_that_is_too_large_beside_a_negative_stiffness_is_the_reason() {
+    let text = r#"{"mass": [1], "kp": [1e6], "kv": [1], "stiffness": [-5]}"#;
+    let found = report(text, 0.01, 1, "symplectic-euler");
+    assert!(!found.holds && !found.unstable_without_servos, "{}", found.answer);
+    close(found.largest_factor * 1e6, 5.0 + (4.0 - 2.0 * 0.01) / 1e-4, 1e-12);
 }
