@@ -44,13 +44,18 @@ class GainReport:
 
     @property
     def largest_factor(self) -> float:
-        """The largest factor of all gains of position, with the same gains of velocity; infinite if there is no limit."""
-        return _limit(self.results["largest_factor"])
+        """The largest factor of all gains of position, with the same gains of velocity; infinite if there is no limit, NaN beside an unknown verdict."""
+        return self._limit(self.results["largest_factor"])
 
     @property
     def largest_kv(self) -> dict[str, float]:
-        """The largest gain of velocity of each joint, with all others as they are; infinite if there is no limit."""
-        return {joint["name"]: _limit(joint["largest_kv"]) for joint in self.results["joints"]}
+        """The largest gain of velocity of each joint, with all others as they are; infinite if there is no limit, NaN beside an unknown verdict."""
+        return {joint["name"]: self._limit(joint["largest_kv"]) for joint in self.results["joints"]}
+
+    def _limit(self, value: float | None) -> float:
+        if value is None:
+            return float("nan" if self.verdict["outcome"] == "unknown" else "inf")
+        return float(value)
 
     @property
     def measured(self) -> dict[str, Any] | None:
@@ -65,8 +70,8 @@ class GainReport:
 
     @property
     def largest_kp(self) -> dict[str, float]:
-        """The largest gain of position of each joint, with all others as they are; infinite if there is no limit."""
-        return {joint["name"]: _limit(joint["largest_kp"]) for joint in self.results["joints"]}
+        """The largest gain of position of each joint, with all others as they are; infinite if there is no limit, NaN beside an unknown verdict."""
+        return {joint["name"]: self._limit(joint["largest_kp"]) for joint in self.results["joints"]}
 
     @property
     def fewest_substeps(self) -> int | None:
@@ -216,7 +221,3 @@ def _names(joints: Sequence[str]) -> list[str]:
     if repeated := [name for k, name in enumerate(found) if name in found[:k]]:
         raise ValueError(f"joints has {repeated[0]!r} twice; expected different names")
     return found
-
-
-def _limit(value: float | None) -> float:
-    return float("inf") if value is None else float(value)
