@@ -10,8 +10,8 @@ import libration
 from libration import gains
 
 DT = 0.01
-# The limit is where a mode grows by 1e-7 per step; near it the growth is at least a tenth of the relative distance.
-CLOSE = 1e-6
+# Limits of a few joints are searched to 1e-13 of their size.
+CLOSE = 1e-12
 
 
 def test_a_servo_without_damping_has_the_limit_of_symplectic_euler():
@@ -48,6 +48,25 @@ def test_the_limit_of_coupled_joints_is_that_of_their_fastest_mode():
     assert [joint["name"] for joint in report.joints] == ["shoulder", "elbow"]
     # All others as they are: the limit of one joint is above that of all together.
     assert report.largest_kp["elbow"] > report.largest_factor * 80
+
+
+def test_a_verdict_has_no_threshold_and_no_range_of_sizes():
+    # det = 1 + kp dt²/2 of a torque held on a free mass.
+    held = gains(1.0, 1e-5, dt=0.1, integrator="rk4", held_torque=True)
+    assert not held.holds and held.largest_factor == 0
+    assert held.results["spectral_radius_minus_one"] == pytest.approx(2.5e-8, rel=1e-7)
+    # kp < 2 (2 − kv dt)/dt² = 2.
+    beyond = gains(1.0, 2.00001, 19.9, dt=0.1)
+    assert not beyond.holds and beyond.largest_kp == {"joint 1": pytest.approx(2, rel=CLOSE)}
+    tiny = gains(1e-300, 1.0, dt=1e-200)
+    assert tiny.holds and tiny.largest_kp == {"joint 1": pytest.approx(4e100, rel=CLOSE)}
+
+
+def test_no_limit_is_beside_an_unknown_verdict():
+    # Forces across two equal joints make their motion grow by less than rounding.
+    report = gains([1.0, 1.0], [[1, 1e-12], [-1e-12, 1]], dt=DT)
+    assert report.verdict["outcome"] == "unknown" and not report.holds
+    assert math.isnan(report.largest_factor) and all(map(math.isnan, report.largest_kp.values()))
 
 
 def test_substeps_and_other_integrators_hold_gains_that_do_not():

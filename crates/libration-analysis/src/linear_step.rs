@@ -58,6 +58,24 @@ impl<'a, S: Float> StepOn<'a, S> {
         Matrix::from_fn(n, n, |i, j| columns[j][i])
     }
 
+    /// The same less the identity: of a short step in floats of more bits than `f64` nothing cancels.
+    pub fn deviation_matrix(&self) -> Matrix {
+        let LinearStepper { order, positions, .. } = self.stepper;
+        let n = order.len();
+        let mut matrix = Matrix::zeros(n, n);
+        for (column, &j) in order.iter().enumerate() {
+            let mut state = State::<S, HALF>::origin();
+            *at_place(&mut state, column, *positions) = S::one();
+            let mut state = ImplicitIntegrator::step(self.method, self, state, self.dt);
+            let own = at_place(&mut state, column, *positions);
+            *own = *own - S::one();
+            for (row, &i) in order.iter().enumerate() {
+                matrix[(i, j)] = at_place(&mut state, row, *positions).to_f64();
+            }
+        }
+        matrix
+    }
+
     /// The rates of the places `places` of the phase space.
     fn rates_of(&self, state: &State<S, HALF>, places: core::ops::Range<usize>) -> [S; HALF] {
         let n = self.stepper.order.len();

@@ -6,8 +6,12 @@ use num_complex::Complex64;
 
 use super::{LinearStepper, StepWindow};
 
-/// Growth per step that counts as none: with modes at rest, since rounding parts a double eigenvalue 1 by its root, and without.
+/// Growth per step that counts as none: of multipliers near 1 with modes at rest, since rounding parts a double eigenvalue 1 by its root,
+/// and of all others.
 const NEUTRAL: [f64; 2] = [1e-7, 1e-11];
+
+/// Distance from 1 of a multiplier that may be that of a mode at rest.
+const AT_REST: f64 = 1e-6;
 
 /// Relative width below which a window of a search is a point at which eigenvalues touch the unit circle.
 const POINT: f64 = 1e-6;
@@ -27,12 +31,15 @@ pub(crate) fn searched_windows(
     if fastest == 0.0 || !most.is_finite() {
         return Some(vec![StepWindow::ALL]);
     }
-    let [at_rest, moving] = NEUTRAL;
-    let neutral = if values.contains(&Complex64::ZERO) { at_rest } else { moving };
+    let has_rest = values.contains(&Complex64::ZERO);
+    let neutral = |x: &Complex64| match has_rest && (x - 1.0).norm() <= AT_REST {
+        true => NEUTRAL[0],
+        false => NEUTRAL[1],
+    };
     let is_stable = |z: f64| {
         let step = stepper.with_step::<f64>(method, z / fastest);
         let values = step.and_then(|step| eigenvalues(&step.update_matrix()));
-        values.is_some_and(|values| values.iter().all(|x| x.norm() <= 1.0 + neutral))
+        values.is_some_and(|values| values.iter().all(|x| x.norm() <= 1.0 + neutral(x)))
     };
     // Eigenvalues cost the cube of the size.
     let points = (400_000 / values.len().pow(2)).clamp(50, 400);
@@ -112,6 +119,37 @@ mod tests {
             let limit = 2.0 * (zeta + (1.0 + zeta * zeta).sqrt()) / 3.0;
             assert!((found.to / limit - 1.0).abs() < 1e-6, "{found:?} {limit}");
         }
+    }
+
+    #[test]
+    fn a_mode_at_rest_hides_no_slow_growth_of_another() {
+        // Springs and damping of two joints leave a third, free mass at rest.
+        let a = |gamma: f64| {
+            Matrix::from_fn(6, 6, |i, j| match (i, j) {
+                (0..3, _) => f64::from(u8::from(j == i + 3)),
+                (3, 0) | (4, 1) => -1.0,
+                (3, 3) => -gamma,
+                (4, 4) => -0.1,
+                (3, 4) | (4, 3) => 1e-3,
+                _ => 0.0,
+            })
+        };
+        // A multiplier is −1 at h² + 2 γ h = 4 but for the coupling, whose square is 10⁻⁶.
+        let (gamma, matrix) = (3.0, a(3.0));
+        let stepper = LinearStepper::new(&matrix).unwrap();
+        let values = eigenvalues(&matrix).unwrap();
+        let method = AnyMethod::from(Method::SymplecticEuler);
+        let found = searched_windows(&stepper, method, &values, [0.0, 5.0]).unwrap();
+        let limit = (gamma * gamma + 4.0_f64).sqrt() - gamma;
+        let last = found.last().unwrap();
+        assert!((last.to / limit - 1.0).abs() < 1e-5, "{found:?} {limit}");
+        let at = |part: f64| {
+            let step = stepper.with_step::<f64>(method, last.to * part).unwrap().update_matrix();
+            let far =
+                eigenvalues(&step).unwrap().into_iter().filter(|x| (x - 1.0).norm() > AT_REST);
+            far.map(|x| x.norm()).fold(0.0, f64::max) - 1.0
+        };
+        assert!(at(1.0) <= NEUTRAL[1] && at(1.0 + 1e-9) > NEUTRAL[1], "{}", at(1.0));
     }
 
     #[test]

@@ -41,7 +41,8 @@ pub struct Analysis {
     /// Whether every orbit stays bounded; unknown for nonlinear systems and for marginal coupled modes.
     pub bounded: Option<bool>,
     /// The intervals `[from, to]` of Δt in s within which every orbit of an uncoupled linear system stays
-    /// bounded, isolated exactly. A missing end is `null`.
+    /// bounded, isolated exactly; of a free mass, whose exact motions are not bounded, those within which steps
+    /// add no growth. A missing end is `null`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stability_windows: Option<Vec<[Option<f64>; 2]>>,
     /// The largest time steps of an oscillator that meet the criteria of the request.

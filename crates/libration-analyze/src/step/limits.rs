@@ -85,11 +85,15 @@ impl OrderOfWord {
     }
 }
 
-/// The stability windows of a linear system, in s.
+/// The stability windows of a linear system, in s: those in which no motion grows that does not grow in exact steps. Each step moves a
+/// free mass exactly.
 pub(crate) fn stability_windows(
     method: AnyMethod,
     system: AnySystem,
 ) -> Option<Vec<[Option<f64>; 2]>> {
+    if is_free(system) {
+        return Some(vec![[Some(0.0), None]]);
+    }
     // In powers of z for an oscillator of any stiffness, and of Δt where there is damping.
     let (damped, unit) = match system {
         AnySystem::Oscillator(model) if model.omega2 > 0.0 => {
@@ -106,6 +110,15 @@ pub(crate) fn stability_windows(
     let ends = windows.iter().map(|w| [Some(in_seconds(w.from)), w.to.map(in_seconds)]);
     // A window between two neighbouring floats holds no time step.
     Some(ends.filter(|[from, to]| from != to).collect())
+}
+
+/// Whether a system is a mass on which no force acts, so that exact motions grow in proportion to time.
+pub(super) fn is_free(system: AnySystem) -> bool {
+    match system {
+        AnySystem::Oscillator(model) => model.omega2 == 0.0,
+        AnySystem::DampedOscillator(model) => model.omega2 == 0.0 && model.gamma == 0.0,
+        _ => false,
+    }
 }
 
 /// `1/ω`, in s.

@@ -10,6 +10,7 @@ use libration_report::verdict::{Outcome, Verdict};
 use libration_settings::units;
 use serde::Serialize;
 
+use super::limits::is_free;
 use super::{Analysis, AnalyzeError, LoopAnalysis, Request};
 use crate::digits::change_per_step;
 use crate::motion::{MotionExamination, MotionState, MotionSubject, examine};
@@ -97,9 +98,12 @@ fn of_step(analysis: &Analysis, request: &Request) -> Verdict {
     match analysis.bounded {
         Some(true) if excess < 0.0 => Verdict::new(Outcome::Stable, motions),
         Some(true) => Verdict::new(Outcome::Stable, "every motion stays bounded"),
+        Some(false) if excess == 0.0 && is_free(request.system) => Verdict::new(
+            Outcome::Stable,
+            "motions grow in proportion to time, as those of exact steps do",
+        ),
         Some(false) if excess == 0.0 => {
-            let outcome = if is_free(request) { Outcome::Stable } else { Outcome::Unstable };
-            Verdict::new(outcome, "motions grow without bound, but not exponentially")
+            Verdict::new(Outcome::Unstable, "motions grow without bound, but not exponentially")
         }
         Some(false) if exact > 0.0 => {
             let outcome =
@@ -118,15 +122,6 @@ const COEFFICIENTS: f64 = 8.0 * f64::EPSILON;
 
 /// A motion that grows in exact steps may grow by this part faster: the step is inaccurate then, not unstable.
 const FASTER: f64 = 1.5;
-
-/// Whether exact motions grow without bound: a mass without a spring.
-fn is_free(request: &Request) -> bool {
-    match request.system {
-        AnySystem::Oscillator(model) => model.omega2 == 0.0,
-        AnySystem::DampedOscillator(model) => model.omega2 == 0.0,
-        _ => false,
-    }
-}
 
 /// None without feedback.
 fn of_loop(analysis: &LoopAnalysis) -> Option<Verdict> {

@@ -1,7 +1,8 @@
 //! Tests of stability windows of a damped oscillator against a NumPy scan.
 
-use libration::{AnySystem, Method};
-use libration_analyze::{Request, analyze};
+use libration::{AnyMethod, AnySystem, Method};
+use libration_analyze::{Request, Stepping, analyze};
+use libration_report::verdict::Outcome;
 use serde_json::Value;
 
 use super::analyze::request;
@@ -35,6 +36,41 @@ fn windows_of_damped_oscillators_are_those_that_numpy_finds() {
             // asserts the one, and rounding of entries below 30 is the other.
             assert!((found - wanted).abs() <= 2e-11 * wanted, "{found} {wanted} {case}");
         }
+    }
+}
+
+/// Each step moves a free mass by `x₀ + v₀ h`, which is its exact motion, and so adds no growth at any step.
+#[test]
+fn each_step_of_a_free_mass_is_stable_at_any_length() {
+    for (name, parameters) in [
+        ("oscillator", &[("omega2", 0.0)][..]),
+        ("damped-oscillator", &[("omega2", 0.0), ("gamma", 0.0)]),
+    ] {
+        let system = AnySystem::build(name, parameters).unwrap();
+        for method in AnyMethod::all() {
+            for dt in [1e-9, 0.1, 1e6] {
+                let stepping = match method {
+                    AnyMethod::Explicit(method) => Stepping::Method(method),
+                    AnyMethod::Implicit(method) => Stepping::Implicit(method),
+                };
+                let asked =
+                    Request { system, stepping, ..request(name, Method::Rk4, dt, &[1.0], &[1.0]) };
+                let found = analyze(&asked).unwrap();
+                assert_eq!(found.update_matrix, [[1.0, dt], [0.0, 1.0]], "{method:?}");
+                assert_eq!(found.stability_windows, Some(vec![[Some(0.0), None]]), "{method:?}");
+                let verdict = found.verdicts.step.unwrap();
+                assert_eq!(verdict.outcome, Outcome::Stable, "{method:?}");
+                assert!(verdict.evidence.contains("as those of exact steps do"), "{verdict}");
+            }
+        }
+    }
+    // With damping alone, symplectic Euler multiplies velocities by 1 − γh.
+    let system = AnySystem::build("damped-oscillator", &[("omega2", 0.0), ("gamma", 2.0)]).unwrap();
+    for (dt, wanted) in [(0.999, Outcome::Stable), (1.001, Outcome::Unstable)] {
+        let step = request("damped-oscillator", Method::SymplecticEuler, dt, &[1.0], &[1.0]);
+        let found = analyze(&Request { system, ..step }).unwrap();
+        assert_eq!(found.verdicts.step.unwrap().outcome, wanted, "{dt}");
+        assert_eq!(found.stability_windows, Some(vec![[Some(0.0), Some(1.0)]]));
     }
 }
 

@@ -184,9 +184,9 @@ fn describe(report: &GainReport) -> String {
             text,
             "{:<30} {:<6} {:>18} {:>16}",
             row.name,
-            if row.holds { "yes" } else { "no" },
+            row.answer(),
             limit(row.largest_factor),
-            row.fewest_substeps.map_or_else(|| "above 1000".to_owned(), |n| n.to_string())
+            row.substeps()
         );
     }
     let _ = writeln!(text, "repeat with: {}", report.repeat_command);

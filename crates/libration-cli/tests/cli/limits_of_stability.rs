@@ -101,6 +101,55 @@ fn a_step_is_not_stable_beside_never_stable() {
     }
 }
 
+/// Every step moves a free mass exactly: verdict, table and advice say so, for the catalogue and for matrices.
+#[test]
+fn a_free_mass_has_one_answer_by_both_doors() {
+    let folder = tempfile::tempdir().unwrap();
+    let plant = written(&folder, "plant.toml", "a = [[0, 1], [0, 0]]\nb = [[0], [1]]\n");
+    for integrator in ["velocity-verlet", "rk4", "backward-euler", "explicit-euler"] {
+        let step = format!("--integrator {integrator} --dt 0.1");
+        let free = "analyze --system oscillator --set omega2=0";
+        let (text, code) = answer(&format!("{free} {step}"));
+        let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains("is stable on oscillator"), "{text}");
+        assert!(words.contains("in proportion to time, as those of exact steps do"), "{text}");
+        assert!(words.contains("stable for dt in s 0 to ∞"), "{text}");
+        // Nothing to change: no command is recommended.
+        assert!(!words.contains("Take an integrator") && !words.contains("advise"), "{text}");
+        let (text, of_plant) = answer(&format!("analyze --plant {} {step}", plant.display()));
+        assert!(text.contains(&format!("stable at dt = 0.1 s: {integrator}")), "{text}");
+        assert_eq!((code, of_plant), (0, 0), "{integrator}");
+    }
+}
+
+#[test]
+fn verdicts_of_gains_and_their_exit_codes_are_those_of_closed_forms() {
+    for (gains, wanted, said) in [
+        // det = 1 + kp h²/2 under a held torque.
+        (
+            "--kp 0.00001 --kv 0 --dt 0.1 --held-torque --integrator rk4",
+            1,
+            "no gain of position does",
+        ),
+        // kp < 2 (2 − kv h)/h² = 2.
+        ("--kp 2.00001 --kv 19.9 --dt 0.1", 1, "must stay below 2,"),
+        ("--kp 1 --kv 0 --dt 1e-6", 0, "must stay below 4·10¹²,"),
+        ("--kp 400 --kv 0 --dt 0.1", 1, "at the limit of stability"),
+        (
+            "--kp 1e-8 --kv 0 --dt 0.1 --integrator explicit-euler",
+            1,
+            "by a factor 1 + 5·10⁻¹¹ per step",
+        ),
+    ] {
+        let (text, code) = answer(&format!("gains --inertia 1 {gains}"));
+        assert_eq!(code, wanted, "{gains}: {text}");
+        assert!(text.contains(said), "{text}");
+        assert_eq!(text.starts_with("The gains hold"), wanted == 0, "{text}");
+    }
+    let (text, code) = answer("gains --inertia 1e-300 --kp 1 --kv 0 --dt 1e-200");
+    assert!(code == 0 && text.contains("must stay below 4·10¹⁰⁰,"), "{text}");
+}
+
 #[test]
 fn a_number_that_is_missing_is_not_printed() {
     let duffing =

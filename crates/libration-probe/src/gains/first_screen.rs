@@ -101,6 +101,10 @@ pub(super) fn actions(report: &GainReport) -> Vec<String> {
         ];
     }
     let mut all = Vec::new();
+    if report.verdict.outcome == Outcome::Unknown && report.measured.is_none() {
+        all.push("Add damping or take another integrator: rounding decides with this one.".into());
+        return all;
+    }
     if report.verdict.outcome == Outcome::Unknown {
         let settled = with_flag(command, "--settle");
         all.push(format!("Examine an equilibrium near the point{}", then(settled.as_deref())));
@@ -117,7 +121,8 @@ pub(super) fn actions(report: &GainReport) -> Vec<String> {
             all.push(format!("Step with {}{}", row.title, then(changed.as_deref())));
         }
         if report.largest_factor.is_finite() && report.largest_factor > 0.0 {
-            let factor = number(cut(report.largest_factor), 4);
+            // At the limit itself they do not hold.
+            let factor = number(cut(report.largest_factor * (1.0 - 1e-11)), 4);
             all.push(format!(
                 "Multiply all gains of position by at most {factor}, which leaves no margin."
             ));

@@ -1,26 +1,42 @@
 //! Steps of servos whose torques are held over substeps.
 
+use libration::Float;
 use libration::linear::{Matrix, Signal};
+use libration::number::TwoFloat;
 
 use super::{ServoIntegrator, Servos, Torque};
 
 impl Servos {
-    /// The matrix of a substep, or with held torques of all `substeps` of a time step; none if it is not finite.
+    /// The matrix of a substep, or with held torques of all `substeps` of a time step, in units of the substep; none if it is not finite.
     pub(super) fn period(
         &self,
         integrator: ServoIntegrator,
         dt: f64,
         substeps: u32,
     ) -> Option<Matrix> {
-        let h = dt / f64::from(substeps);
+        let own = self.in_steps_of(dt / f64::from(substeps));
+        let deviation = own.deviation::<TwoFloat>(integrator, substeps)?;
+        Some(Matrix::identity(deviation.rows()).plus(&deviation))
+    }
+
+    /// The same less the identity, of substeps of 1 s, in floats of type `S`.
+    pub(super) fn deviation<S: Float>(
+        &self,
+        integrator: ServoIntegrator,
+        substeps: u32,
+    ) -> Option<Matrix> {
         match self.torque {
-            Torque::EachSubstep => self.step(integrator, h),
-            Torque::Held => self.held_step(integrator, h, substeps),
+            Torque::EachSubstep => self.step_deviation::<S>(integrator),
+            Torque::Held => self.held_deviation::<S>(integrator, substeps),
         }
     }
 
     /// Substeps under the torques `−K_p q − K_v v` of their beginning.
-    fn held_step(&self, integrator: ServoIntegrator, h: f64, substeps: u32) -> Option<Matrix> {
+    fn held_deviation<S: Float>(
+        &self,
+        integrator: ServoIntegrator,
+        substeps: u32,
+    ) -> Option<Matrix> {
         let n = self.joints.len();
         // A constant torque moves as a joint without motion whose position it is.
         let (mut stiffness, mut mass) = (Matrix::zeros(2 * n, 2 * n), Matrix::identity(2 * n));
@@ -33,10 +49,11 @@ impl Servos {
         let joints = Signal::numbered("q", 2 * n);
         let torque = Torque::EachSubstep;
         let whole = Servos { joints, mass, kp: none.clone(), kv: none, stiffness, damping, torque };
-        let substep = whole.step(integrator, h)?;
-        let mut all = Matrix::identity(4 * n);
+        let substep = whole.step_deviation::<S>(integrator)?;
+        let mut all = Matrix::zeros(4 * n, 4 * n);
         for _ in 0..substeps {
-            all = &substep * &all;
+            // (1 + E)(1 + A) − 1.
+            all = all.plus(&substep).plus(&(&substep * &all));
         }
         // Positions and velocities of the joints, and the torques at the beginning.
         let part = |columns: usize| {

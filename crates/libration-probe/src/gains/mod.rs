@@ -1,10 +1,13 @@
 //! Gains of servos: whether they hold at a time step, by which margin, and with which integrator.
 
 mod command_option;
+mod coupled_step;
 mod first_screen;
 mod gain_limits;
 mod gain_search;
+mod growth;
 mod held_step;
+mod joint_step;
 mod limit_in_json;
 mod measured;
 mod measured_summary;
@@ -13,8 +16,10 @@ mod report;
 mod servo_gain;
 mod servo_integrator;
 mod servo_mode;
+mod servo_step;
 mod servos;
 mod stable_factors;
+mod step_units;
 mod summary;
 mod torque;
 

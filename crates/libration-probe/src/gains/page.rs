@@ -86,10 +86,10 @@ pub fn gains_page(report: &GainReport) -> String {
         table.push([
             row.name.into(),
             row.title.clone().into(),
-            if row.holds { "yes" } else { "no" }.into(),
+            row.answer().into(),
             limit(row.largest_factor, 5),
             row.fewest_substeps
-                .map_or_else(|| Cell::absent("above 1000"), |n| Cell::rounded(f64::from(n), 4)),
+                .map_or_else(|| Cell::absent(row.substeps()), |n| Cell::rounded(f64::from(n), 4)),
             Cell::rounded(row.spectral_radius, 5),
         ]);
     }

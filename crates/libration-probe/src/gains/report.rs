@@ -1,20 +1,23 @@
 //! The report on gains.
 
-use libration::linear::{Matrix, eigenvalues};
+use libration::Elementary;
+use libration::linear::eigenvalues;
+use libration::number::Wide;
 use libration_report::verdict::Verdict;
 use serde::Serialize;
 
-use super::gain_limits::GainLimits;
+use super::growth::Growth;
 use super::limit_in_json::limit;
 use super::measured::MeasuredGains;
 use super::servo_mode::{ServoMode, modes};
-use super::stable_factors::{StableFactors, growth, holds, is_stable};
+use super::servo_step::ServoStep;
+use super::stable_factors::{StableFactors, largest_gain, resolution_of};
 use super::{ServoIntegrator, Servos, Torque};
 
 /// Most substeps that are tried.
 pub(super) const MOST_SUBSTEPS: u32 = 1000;
-/// Relative accuracy of the limit of a gain.
-const RESOLUTION: f64 = 1e-9;
+/// Distance from the limit, as part of the gains, up to which they are said to be at it.
+const AT_LIMIT: f64 = 1e-12;
 /// Part of the fastest rate below which growth is rounding.
 const ROUNDING: f64 = 1e-7;
 /// The results; the fields are the keys of `gains --json`. Infinite limits are `null` there.
@@ -44,6 +47,14 @@ pub struct GainReport {
     pub integrator_title: String,
     /// The largest factor of a mode per substep; per step with held torques.
     pub spectral_radius: f64,
+    /// The same less 1, of the servo model without cancellation.
+    pub spectral_radius_minus_one: f64,
+    /// Whether the gains of the servo model do not hold since they are at their limit.
+    #[serde(skip)]
+    pub(super) is_at_limit: bool,
+    /// Whether it is known if a motion of the servo model grows.
+    #[serde(skip)]
+    pub(super) is_known: bool,
     /// The largest factor of all gains of position, with the same gains of velocity.
     #[serde(serialize_with = "limit")]
     pub largest_factor: f64,
@@ -96,8 +107,10 @@ pub struct IntegratorRow {
     pub name: &'static str,
     /// The same in running text.
     pub title: String,
-    /// Whether the gains hold.
+    /// Whether the gains hold; not if that is unknown.
     pub holds: bool,
+    /// Whether it is known if they hold.
+    pub is_known: bool,
     /// The largest factor of all gains of position.
     #[serde(serialize_with = "limit")]
     pub largest_factor: f64,
@@ -107,6 +120,28 @@ pub struct IntegratorRow {
     pub fewest_substeps: Option<u32>,
     /// The largest factor of a mode per substep.
     pub spectral_radius: f64,
+    /// The same less 1, without cancellation.
+    pub spectral_radius_minus_one: f64,
+}
+
+impl IntegratorRow {
+    /// The fewest substeps in words.
+    pub fn substeps(&self) -> String {
+        match self.fewest_substeps {
+            Some(count) => count.to_string(),
+            None if !self.is_known => "unknown".into(),
+            None => format!("above {MOST_SUBSTEPS}"),
+        }
+    }
+
+    /// Whether the gains hold, in a word.
+    pub fn answer(&self) -> &'static str {
+        match (self.is_known, self.holds) {
+            (false, _) => "unknown",
+            (true, true) => "yes",
+            (true, false) => "no",
+        }
+    }
 }
 
 /// Whether the gains of servos hold at steps of `dt` seconds in `substeps` parts, by the servo model.
@@ -117,17 +152,24 @@ pub fn gains(
     integrator: ServoIntegrator,
     notes: Vec<String>,
 ) -> GainReport {
+    let size = servos.size_of_gains(dt / f64::from(substeps));
+    let resolution = resolution_of(servos.parts().iter().map(Vec::len).max().unwrap_or(1));
     let row = |integrator: ServoIntegrator| {
-        let step = |servos: &Servos| servos.period(integrator, dt, substeps);
-        let factor = StableFactors::search(|factor| step(&servos.with_factor(factor)));
+        let step = ServoStep::new(integrator);
+        let growth = |factor: f64| step.growth(&servos.with_factor(factor), dt, substeps);
+        let factor = StableFactors::search(size, resolution, growth);
+        let own = step.growth_beside_limit(servos, dt, substeps);
+        let excess = step.radius_minus_one(servos, dt, substeps);
         IntegratorRow {
             name: integrator.name(),
             title: integrator.title(),
-            holds: holds(|dt| servos.period(integrator, dt, substeps), dt),
-            largest_factor: factor.most,
+            holds: own == Growth::None,
+            is_known: own != Growth::Unknown,
+            largest_factor: if own == Growth::Unknown { f64::NAN } else { factor.most },
             least_factor: factor.least,
-            fewest_substeps: fewest_substeps(servos, dt, integrator),
-            spectral_radius: growth(step(servos)).exp(),
+            fewest_substeps: fewest_substeps(servos, dt, &step),
+            spectral_radius: 1.0 + excess,
+            spectral_radius_minus_one: excess,
         }
     };
     let integrators: Vec<IntegratorRow> = ServoIntegrator::all().map(row).collect();
@@ -138,46 +180,59 @@ pub fn gains(
         Torque::Held => dt,
     };
     let parts = if servos.torque == Torque::Held { substeps } else { 1 };
-    let step = |length: f64| servos.period(integrator, length, parts);
-    let passive = is_stable(servos.passive().period(integrator, length, parts));
+    let step = ServoStep::new(integrator);
+    // Servos may hold what grows without them in continuous time.
+    let passive = step.growth(&servos.passive(), dt, substeps) != Growth::Some
+        || continuous_growth(&servos.passive(), length).is_some();
+    let shorter = step.growth(servos, dt * (1.0 - AT_LIMIT), substeps);
     let mut report = GainReport {
         answer: String::new(),
         verdict: Verdict::unknown("no step was examined"),
         holds: own.holds,
-        growth_in_continuous_time: continuous_growth(servos),
+        growth_in_continuous_time: continuous_growth(servos, length),
         dt,
         substeps,
         torque: servos.torque,
         measured: None,
-        unstable_without_servos: !own.holds && !passive,
+        unstable_without_servos: !own.holds && own.is_known && !passive,
         integrator: own.name,
         integrator_title: own.title,
         spectral_radius: own.spectral_radius,
+        spectral_radius_minus_one: own.spectral_radius_minus_one,
+        is_at_limit: !own.holds && own.is_known && shorter == Growth::None,
+        is_known: own.is_known,
         largest_factor: own.largest_factor,
         least_factor: own.least_factor,
         fewest_substeps: own.fewest_substeps,
         joints: (0..servos.joints.len())
-            .map(|i| joint_row(servos, i, integrator, length, parts))
+            .map(|i| joint_row(servos, i, &step, length, parts))
             .collect(),
-        modes: modes(servos, step, length),
+        modes: modes(servos, |length| servos.period(integrator, length, parts), length),
         integrators,
         notes,
         repeat_command: String::new(),
     };
+    if !report.is_known {
+        // Limits beside gains of which nothing is known would be read as gains that hold.
+        (report.largest_factor, report.fewest_substeps) = (f64::NAN, None);
+        for joint in &mut report.joints {
+            (joint.largest_kp, joint.largest_kv) = (f64::NAN, f64::NAN);
+        }
+    }
     report.conclude();
     report
 }
 
 /// The growth rate of a motion that grows beyond rounding, which parts a repeated eigenvalue by its root.
-fn continuous_growth(servos: &Servos) -> Option<f64> {
-    let values = eigenvalues(&servos.plant().ok()?.a)?;
+fn continuous_growth(servos: &Servos, h: f64) -> Option<f64> {
+    let values = eigenvalues(&servos.in_steps_of(h).plant().ok()?.a)?;
     let size = values.iter().map(|s| s.norm()).fold(0.0, f64::max);
     let growth = values.iter().map(|s| s.re).fold(f64::NEG_INFINITY, f64::max);
-    (growth > ROUNDING * size).then_some(growth)
+    (growth > ROUNDING * size).then_some(growth / h)
 }
 
-fn fewest_substeps(servos: &Servos, dt: f64, integrator: ServoIntegrator) -> Option<u32> {
-    let holds = |substeps: u32| holds(|dt| servos.period(integrator, dt, substeps), dt);
+fn fewest_substeps(servos: &Servos, dt: f64, step: &ServoStep) -> Option<u32> {
+    let holds = |substeps: u32| step.growth_beside_limit(servos, dt, substeps) == Growth::None;
     // Doubling finds a number that holds, bisection the fewest.
     let mut high = 1;
     while !holds(high) {
@@ -195,47 +250,42 @@ fn fewest_substeps(servos: &Servos, dt: f64, integrator: ServoIntegrator) -> Opt
 }
 
 /// The row of a joint in steps of `length` seconds, in parts if torques are held over them.
-fn joint_row(
-    servos: &Servos,
-    i: usize,
-    integrator: ServoIntegrator,
-    length: f64,
-    parts: u32,
-) -> JointRow {
+fn joint_row(servos: &Servos, i: usize, step: &ServoStep, length: f64, parts: u32) -> JointRow {
     let alone = servos.alone(i);
     let (inertia, kp, kv) = (alone.mass[(0, 0)], alone.kp[(0, 0)], alone.kv[(0, 0)]);
-    let stiffness = kp + alone.stiffness[(0, 0)];
-    let omega = (stiffness / inertia).max(0.0).sqrt();
-    let damping = kv + alone.damping[(0, 0)];
-    let damping_ratio = (omega > 0.0).then(|| damping / inertia / (2.0 * omega));
+    let in_steps = alone.joint_numbers(0, length);
+    let stiffness = in_steps.kp + in_steps.stiffness;
+    let squared = if stiffness.is_negative() { Wide::ZERO } else { stiffness };
+    let turn = squared.sqrt().to_f64();
+    let damping = (in_steps.kv + in_steps.damping).to_f64();
     // Longer steps change ωh at the same damping ratio.
-    let longest = StableFactors::search(|factor| alone.period(integrator, length * factor, parts));
-    let step = |servos: &Servos| servos.period(integrator, length, parts);
+    let longest = StableFactors::search(turn.max(damping.abs()), resolution_of(1), |factor| {
+        step.growth(&alone, length * factor, parts)
+    });
+    let growth = |servos: &Servos| step.growth(servos, length, parts);
+    let resolution = resolution_of(servos.parts().iter().map(Vec::len).max().unwrap_or(1));
+    let [kp_in_steps, kv_in_steps] = [in_steps.kp, in_steps.kv].map(|x| x.abs().to_f64());
     // The whole row of a gain that is there; the entry of the joint of one that is not.
     let largest_kp = match kp {
-        0.0 => largest(inertia / length.powi(2), kp, |kp| step(&servos.with_kp(i, kp))),
-        kp => kp * StableFactors::search(|factor| step(&servos.with_joint_factor(i, factor))).most,
+        0.0 => {
+            let unit = inertia / length / length;
+            largest_gain(kp, [0.0, unit], resolution, |kp| growth(&servos.with_kp(i, kp)))
+        }
+        kp => {
+            let of = |factor: f64| growth(&servos.with_joint_factor(i, factor));
+            kp * StableFactors::search(kp_in_steps.max(f64::MIN_POSITIVE), resolution, of).most
+        }
     };
+    let of_kv = |kv: f64| growth(&servos.with_kv(i, kv));
     JointRow {
         name: servos.joints[i].name.clone(),
         inertia,
         kp,
         kv,
-        turn: omega * length,
-        damping_ratio,
-        largest_turn: if omega == 0.0 { f64::NAN } else { omega * length * longest.most },
+        turn,
+        damping_ratio: (turn > 0.0).then(|| damping / (2.0 * turn)),
+        largest_turn: if turn == 0.0 { f64::NAN } else { turn * longest.most },
         largest_kp: largest_kp.max(0.0),
-        largest_kv: largest(inertia / length, kv, |kv| step(&servos.with_kv(i, kv))),
-    }
-}
-
-/// The largest gain with which a step is stable; `size` is one that is about the limit.
-fn largest(size: f64, given: f64, step: impl Fn(f64) -> Option<Matrix>) -> f64 {
-    let found = GainLimits::search(given, 1e-2 * size, RESOLUTION, &mut |gain| {
-        Ok::<_, core::convert::Infallible>(is_stable(step(gain)))
-    });
-    match found {
-        Ok(limits) => limits.most,
-        Err(never) => match never {},
+        largest_kv: largest_gain(kv, [kv_in_steps, inertia / length], resolution, of_kv),
     }
 }

@@ -4,6 +4,7 @@ use libration::linear::{Complex64, Matrix, eigenvalues};
 use serde::Serialize;
 
 use super::Servos;
+use super::step_units::scaled;
 use crate::modes::matched;
 
 /// Halvings of the step through which the factors of a mode are followed.
@@ -36,7 +37,9 @@ pub(super) fn modes(
     step: impl Fn(f64) -> Option<Matrix>,
     h: f64,
 ) -> Vec<ServoMode> {
-    let Ok(plant) = servos.plant() else { return Vec::new() };
+    // In units of the step, in which no number overflows.
+    let Ok(plant) = servos.in_steps_of(h).plant() else { return Vec::new() };
+    let units = servos.unit_exponents();
     let details = plant.mode_details();
     // Each mode with its place among all eigenvalues; of a pair both.
     let mut rates: Vec<Complex64> = Vec::new();
@@ -63,7 +66,8 @@ pub(super) fn modes(
                 .filter(|added| added.is_finite());
             let mut radii: Vec<f64> = own.iter().map(|z| z.norm()).collect();
             radii.dedup_by(|a, b| (*a - *b).abs() <= SAME * b.abs());
-            let size = |i: usize| mode.shape[i].norm();
+            let unit = units.iter().copied().max().unwrap_or(0);
+            let size = |i: usize| scaled(mode.shape[i].norm(), units[i] - unit);
             let largest = (0..n).map(size).fold(f64::MIN_POSITIVE, f64::max);
             let mut joints: Vec<(String, f64)> = (0..n)
                 .map(|i| (servos.joints[i].name.clone(), size(i) / largest))
@@ -73,8 +77,8 @@ pub(super) fn modes(
             joints.truncate(4);
             ServoMode {
                 joints,
-                frequency: mode.natural_frequency() / core::f64::consts::TAU,
-                turn: mode.natural_frequency() * h,
+                frequency: mode.natural_frequency() / h / core::f64::consts::TAU,
+                turn: mode.natural_frequency(),
                 damping_ratio,
                 radius: radii.first().copied().unwrap_or(f64::NAN),
                 radii,
@@ -93,7 +97,7 @@ fn factors(rates: &[Complex64], step: impl Fn(f64) -> Option<Matrix>, h: f64) ->
         let part = 2.0_f64.powi(-halvings);
         let Some(found) = step(h * part).and_then(|step| eigenvalues(&step)) else { continue };
         let expected = match current {
-            None => rates.iter().map(|s| (s * h * part).exp()).collect(),
+            None => rates.iter().map(|s| (s * part).exp()).collect(),
             // A factor of a step twice as long is about the square.
             Some(before) => before.iter().map(|z: &Complex64| z * z).collect::<Vec<_>>(),
         };

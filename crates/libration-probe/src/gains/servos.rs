@@ -1,5 +1,6 @@
 //! Servos on joints as matrices.
 
+use libration::Float;
 use libration::analysis::LinearStepper;
 use libration::linear::{
     LinearPlant, MOST_STATES, Matrix, PlantError, Signal, cholesky, eigenvalues, solve_matrix,
@@ -244,31 +245,31 @@ impl Servos {
         LinearPlant::mechanical([&self.mass, &damping, &stiffness], &force, &self.joints)
     }
 
-    /// The matrix of a step of `dt` seconds; none if it is not finite.
-    pub(super) fn step(&self, integrator: ServoIntegrator, dt: f64) -> Option<Matrix> {
+    /// The matrix of a step of 1 s less the identity, in floats of type `S`; none if it is not finite.
+    pub(super) fn step_deviation<S: Float>(&self, integrator: ServoIntegrator) -> Option<Matrix> {
         match integrator {
-            ServoIntegrator::JointDampingImplicit => self.joint_damping_step(dt),
+            ServoIntegrator::JointDampingImplicit => self.joint_damping_step(),
             ServoIntegrator::Method(method) => {
                 let plant = self.plant().ok()?;
                 let stepper = LinearStepper::new(&plant.a)?;
-                Some(stepper.with_step::<f64>(method, dt)?.update_matrix())
+                Some(stepper.with_step::<S>(method, 1.0)?.deviation_matrix())
             }
         }
         .filter(Matrix::is_finite)
     }
 
-    /// `(M + hD) v' = M v − h((K_p + K) q + K_v v)`, `q' = q + h v'`.
-    fn joint_damping_step(&self, h: f64) -> Option<Matrix> {
+    /// `(M + D)(v' − v) = −(K_p + K) q − (K_v + D) v`, `q' − q = v'`.
+    fn joint_damping_step(&self) -> Option<Matrix> {
         let n = self.joints.len();
         let mut right = Matrix::zeros(n, 2 * n);
-        right.set_block((0, 0), &self.kp.plus(&self.stiffness).scaled(-h));
-        right.set_block((0, n), &self.mass.plus(&self.kv.scaled(-h)));
-        let velocities = solve_matrix(&self.mass.plus(&self.damping.scaled(h)), &right)?;
+        right.set_block((0, 0), &self.kp.plus(&self.stiffness).scaled(-1.0));
+        right.set_block((0, n), &self.kv.plus(&self.damping).scaled(-1.0));
+        let velocities = solve_matrix(&self.mass.plus(&self.damping), &right)?;
         let mut step = Matrix::zeros(2 * n, 2 * n);
         step.set_block((n, 0), &velocities);
-        let mut positions = velocities.scaled(h);
+        let mut positions = velocities;
         for i in 0..n {
-            positions[(i, i)] += 1.0;
+            positions[(i, n + i)] += 1.0;
         }
         step.set_block((0, 0), &positions);
         Some(step)

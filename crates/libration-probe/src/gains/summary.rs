@@ -5,8 +5,10 @@ use libration_report::verdict::{Outcome, Verdict};
 
 use super::measured::MeasuredGains;
 use super::report::MOST_SUBSTEPS;
-use super::stable_factors::OUTSIDE;
 use super::{GainReport, ServoIntegrator, Torque};
+
+/// Growth per step beside which five digits of a spectral radius show nothing.
+const SMALL: f64 = 1e-4;
 
 /// What the servo model does not have.
 const NOT_MODELLED: &str = "contacts, constraints, friction and limits of forces";
@@ -17,6 +19,7 @@ impl GainReport {
     #[must_use]
     pub fn with_measured(mut self, measured: MeasuredGains, others: &[String]) -> Self {
         self.spectral_radius = measured.spectral_radius;
+        self.spectral_radius_minus_one = measured.spectral_radius - 1.0;
         self.growth_in_continuous_time = measured.growth_of_system;
         self.unstable_without_servos = measured.unstable_without_servos.is_some();
         self.largest_factor = measured.largest_factor;
@@ -54,30 +57,28 @@ impl GainReport {
     }
 
     fn verdict_of_model(&self) -> Verdict {
-        let radius = number(self.spectral_radius, 6);
+        let radius = beside_one(self.spectral_radius_minus_one, 6);
         let verdict = match self.growth_in_continuous_time {
             Some(growth) => Verdict::new(
                 Outcome::Unstable,
                 format!("the motion grows at {} 1/s in continuous time", number(growth, 5)),
             ),
+            None if !self.is_known => Verdict::unknown(format!(
+                "rounding may hide growth of the servo model: spectral radius {radius}"
+            )),
             None if self.holds => Verdict::new(
                 Outcome::Stable,
                 format!("spectral radius {radius} of the servo model"),
             ),
             None => Verdict::new(
                 Outcome::Unstable,
-                match self.is_at_limit() {
+                match self.is_at_limit {
                     true => format!("the servo model is at its limit: spectral radius {radius}"),
                     false => format!("spectral radius {radius} of the servo model"),
                 },
             ),
         };
         verdict.without(NOT_MODELLED)
-    }
-
-    /// Whether gains do not hold because slightly longer steps are unstable.
-    fn is_at_limit(&self) -> bool {
-        !self.holds && self.spectral_radius.ln() <= OUTSIDE
     }
 
     /// The steps in words.
@@ -114,7 +115,7 @@ impl GainReport {
     /// The largest common factor of gains of position, as the end of a sentence.
     pub(super) fn factor(&self) -> String {
         match self.largest_factor {
-            _ if self.is_at_limit() => ".".to_owned(),
+            _ if self.is_at_limit && self.measured.is_none() => ".".to_owned(),
             x if x.is_nan() => ".".to_owned(),
             f64::INFINITY if self.holds => {
                 "; no larger gain of position was found that does not.".to_owned()
@@ -122,7 +123,8 @@ impl GainReport {
             f64::INFINITY => ".".to_owned(),
             0.0 => "; no gain of position does.".to_owned(),
             factor => {
-                let factor = number(cut_off(factor, 5), 5);
+                // At the limit itself they do not hold.
+                let factor = number(cut_off(factor * (1.0 - 1e-11), 5), 5);
                 format!("; the largest gains of position are {factor} times the given ones.")
             }
         }
@@ -147,37 +149,45 @@ impl GainReport {
             });
             return format!(
                 "The step is unstable without any servo: springs or damping of the joints turn the mode of {stiffest} too far in {of} with {integrator} (factor {} per step with the servos). No gain is the reason.{} {limits}",
-                number(self.spectral_radius, 5),
+                beside_one(self.spectral_radius_minus_one, 5),
                 self.substeps_in_words()
+            );
+        }
+        if !self.is_known {
+            return format!(
+                "Whether the gains hold with {integrator} and {of} is unknown: rounding may hide growth of a mode.{} {limits}",
+                self.others_in_words()
             );
         }
         let mut text = if self.holds {
             format!("The gains hold with {integrator} and {of}")
-        } else if self.is_at_limit() {
+        } else if self.is_at_limit {
             format!(
                 "The gains do not hold with {integrator} and {of}: they are at the limit of stability, where a motion does not decay or grows with the number of steps"
             )
         } else {
             format!(
                 "The gains do not hold with {integrator} and {of}: a mode grows by a factor {} per step",
-                number(self.spectral_radius, 5)
+                beside_one(self.spectral_radius_minus_one, 5)
             )
         };
         text += &self.factor();
         text += &self.tightest();
         if !self.holds {
             text += &self.substeps_in_words();
-            let others: Vec<String> = self
-                .integrators
-                .iter()
-                .filter(|row| row.holds)
-                .map(|row| ServoIntegrator::label(row.name))
-                .collect();
-            if !others.is_empty() {
-                text += &format!(" They hold with {}.", others.join(", "));
-            }
+            text += &self.others_in_words();
         }
         format!("{text} {limits}")
+    }
+
+    /// The integrators with which the gains hold, as a sentence.
+    fn others_in_words(&self) -> String {
+        let others = self.integrators.iter().filter(|row| row.holds);
+        let others: Vec<String> = others.map(|row| ServoIntegrator::label(row.name)).collect();
+        match others.is_empty() {
+            true => String::new(),
+            false => format!(" They hold with {}.", others.join(", ")),
+        }
     }
 
     /// The gains with the least margin, in sentences.
@@ -217,5 +227,14 @@ impl GainReport {
             Some(substeps) => format!(" {substeps} substeps hold them."),
             None => format!(" No number of substeps up to {MOST_SUBSTEPS} holds them."),
         }
+    }
+}
+
+/// A spectral radius from its difference from 1, with the digits of a small one: `1 + 5·10⁻⁸`.
+fn beside_one(excess: f64, digits: usize) -> String {
+    match excess {
+        excess if excess == 0.0 || excess.abs() >= SMALL => number(1.0 + excess, digits),
+        excess if excess > 0.0 => format!("1 + {}", number(excess, 3)),
+        excess => format!("1 − {}", number(-excess, 3)),
     }
 }

@@ -2,13 +2,13 @@
 
 use libration_probe::{GainReport, ServoIntegrator, ServosDescription, gains};
 
-fn report(text: &str, dt: f64, substeps: u32, integrator: &str) -> GainReport {
+pub(crate) fn report(text: &str, dt: f64, substeps: u32, integrator: &str) -> GainReport {
     let description: ServosDescription = serde_json::from_str(text).unwrap();
     let integrator = ServoIntegrator::from_name(integrator).unwrap();
     gains(&description.servos().unwrap(), dt, substeps, integrator, vec![])
 }
 
-fn close(found: f64, wanted: f64, tolerance: f64) {
+pub(crate) fn close(found: f64, wanted: f64, tolerance: f64) {
     assert!((found / wanted - 1.0).abs() <= tolerance, "{found:e} {wanted:e}");
 }
 
@@ -154,11 +154,12 @@ fn numbers_of_any_size_have_a_few_digits() {
         "{}",
         endless.answer
     );
-    assert!(endless.answer.contains("joint 1: no gain of it holds"), "{}", endless.answer);
+    // 4/h².
+    assert!(endless.answer.contains("gain must stay below 40\u{202f}000"), "{}", endless.answer);
     let held: Vec<&str> =
         endless.integrators.iter().filter(|row| row.holds).map(|row| row.name).collect();
     assert!(!held.contains(&"explicit-euler") && held.contains(&"implicit-midpoint"), "{held:?}");
-    assert!(endless.answer.len() < 700, "{}", endless.answer);
+    assert!(endless.answer.len() < 800, "{}", endless.answer);
     // Without a frequency there is no largest one.
     for text in [r#"{"mass": [1], "kp": [0]}"#, r#"{"mass": [1], "kp": [0], "kv": [3]}"#] {
         let free = report(text, 0.01, 1, "symplectic-euler");

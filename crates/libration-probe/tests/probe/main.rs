@@ -13,6 +13,7 @@ mod faults;
 mod finding_kinds;
 mod first_difference;
 mod gains;
+mod gains_beside_limits;
 mod inner_steps;
 mod jacobians;
 mod measured_gains;

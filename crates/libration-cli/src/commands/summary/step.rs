@@ -194,17 +194,22 @@ fn next(analysis: &Analysis, is_loop: bool) -> Option<(&'static str, String)> {
             }
         });
     }
+    let is_good = analysis.verdicts.step.as_ref().is_some_and(Verdict::is_good);
+    // Nothing moves there, so that no error has a size.
+    let rests = about.parameters.get("omega2") == Some(&0.0) && about.v.iter().all(|v| *v == 0.0);
     match (analysis.bounded, &analysis.stability_windows) {
-        (Some(false), Some(windows)) => match windows.first() {
+        (Some(false), Some(windows)) if !is_good => match windows.first() {
             Some(&[Some(0.0), Some(to)]) if about.dt > to => {
                 Some(("Take shorter steps", with_option("--dt", &limit(0.9 * to, 2))))
             }
             Some(_) => None,
+            None if about.integrator == "velocity-verlet" => None,
             None => Some((
                 "Take an integrator that is stable",
                 with_option("--integrator", "velocity-verlet"),
             )),
         },
+        _ if rests => None,
         // `advise` has systems of at most two degrees of freedom.
         _ if about.q.len() <= 2 => Some((
             "Find the cheapest integrator for an error",
