@@ -38,7 +38,8 @@ impl LinearAdvice {
                 }
                 _ => "The loop is unstable without latency, jitter, skew and loss",
             };
-            return format!("{first}: {motions}. {}", remedies.unwrap_or_default());
+            let help = remedies.unwrap_or_else(|| "Shorten the period.".to_owned());
+            return format!("{first}: {motions}. {help}");
         }
         if self.verdict.outcome == Outcome::Unknown && self.remedies.is_some() {
             return format!(

@@ -19,7 +19,7 @@ use libration_settings::linear_loop::OperatingPoint;
 use serde::Serialize;
 
 use crate::Stepping;
-pub use closed_loop::{ClosedLoop, LoopMode, StateDeviation, loop_verdict};
+pub use closed_loop::{ClosedLoop, LoopMode, StateDeviation, hidden_loop, loop_verdict};
 pub use error::LinearAnalysisError;
 pub use mode::Mode;
 pub use simulated_mode::SimulatedMode;

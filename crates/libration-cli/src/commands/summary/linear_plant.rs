@@ -154,6 +154,9 @@ fn in_words(subject: &str, inside: &str, scope: &str, verdict: &Verdict) -> Stri
         Outcome::Unknown => {
             format!("Whether {inside} is stable {scope} is not known: {evidence}.")
         }
+        Outcome::NotResolved => {
+            format!("{subject} does not resolve the motion {scope}: {evidence}.")
+        }
         outcome => format!("{subject} is {outcome} {scope}: {evidence}."),
     }
 }
