@@ -117,7 +117,10 @@ impl StepGrowth<'_> {
             ));
         }
         let outcome = match inside {
-            _ if added <= ROUNDING && is_growing && let Some(lost) = self.lost_growth(rounding) => {
+            _ if added <= ROUNDING
+                && is_growing
+                && let Some(lost) = self.lost_growth(rounding) =>
+            {
                 return Verdict::new(Outcome::NotResolved, format!("{lost}; {evidence}"));
             }
             Some(true) if added <= DEFECTIVE => Outcome::Stable,

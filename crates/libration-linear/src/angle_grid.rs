@@ -73,7 +73,8 @@ impl<'a> AngleGrid<'a> {
         }
         // The response has a pole where the open loop has an eigenvalue, such as -1 of a motion that alternates.
         let poles = open.eigenvalues();
-        let is_pole = |angle: f64| poles.iter().any(|pole| (pole - unit(angle)).norm() < 0.5 * SLOWEST);
+        let is_pole =
+            |angle: f64| poles.iter().any(|pole| (pole - unit(angle)).norm() < 0.5 * SLOWEST);
         let last = if is_pole(PI) { PI - SLOWEST } else { PI };
         angles.extend([slowest, last]);
         angles.retain(|&angle| (slowest..=last).contains(&angle) && !is_pole(angle));

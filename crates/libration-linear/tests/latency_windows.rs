@@ -105,7 +105,13 @@ fn windows_are_where_the_spectral_radius_of_the_whole_matrix_is_below_one() {
 }
 
 /// A loop around the plant with one input and these matrices, sampled or not.
-fn loop_of(a: &[Vec<f64>], b: &[f64], sampling: Option<f64>, gain: &[f64], period: f64) -> LinearLoop {
+fn loop_of(
+    a: &[Vec<f64>],
+    b: &[f64],
+    sampling: Option<f64>,
+    gain: &[f64],
+    period: f64,
+) -> LinearLoop {
     let n = a.len();
     let columns: Vec<[f64; 1]> = b.iter().map(|x| [*x]).collect();
     let [a, b] = [Matrix::from_rows(a), Matrix::from_rows(&columns)].map(Option::unwrap);

@@ -150,7 +150,7 @@ impl LinearAdvice {
                 "rare outbursts dominate the cost: a simulation has too few of them, and a typical run costs less"
                     .into(),
             ),
-            None if self.growth < 0.0 => warnings.push(
+            None if self.growth < 0.0 && self.unstable_motions.is_empty() => warnings.push(
                 "the loop was not simulated because it decays too slowly: the results follow from theory alone".into(),
             ),
             _ => {}

@@ -2,7 +2,9 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use libration::analysis::{LinearStepper, StabilityFunction, StepLimits, jacobian, without_rounding};
+use libration::analysis::{
+    LinearStepper, StabilityFunction, StepLimits, jacobian, without_rounding,
+};
 use libration::equations::{Degree, StepProgram};
 use libration::linear::eigenvalues;
 use libration::{AnyMethod, Method};

@@ -27,7 +27,8 @@ pub(crate) fn run(args: &IdentifyArgs, quiet: bool) -> Result<(), Failure> {
     let saved = ResultFile::create("--save-loop", args.save_loop.as_deref())?;
     // Before this computation there is nothing to keep: a signal ends the process while it reads.
     let reporter = Reporter::new(quiet);
-    let found = interrupt::compute(|stop| identify(&recording, &request, &Work::new(&reporter, stop)));
+    let found =
+        interrupt::compute(|stop| identify(&recording, &request, &Work::new(&reporter, stop)));
     reporter.clear();
     let mut found = found.map_err(failure)?;
     found.repeat_command = command_line();

@@ -139,7 +139,8 @@ fn verdict_of_loop(own: &ClosedLoop) -> String {
     };
     let moments = 100.0 * own.mean_square_growth.exp_m1().abs();
     let verb = if own.stable { "fall" } else { "grow" };
-    match own.mean_square_growth.abs() > GROWTH_ROUNDING {
+    match own.mean_square_growth.abs() > GROWTH_ROUNDING && own.verdict.outcome != Outcome::Unknown
+    {
         true => {
             format!("{first}: second moments {verb} by {} % per period.", significant(moments, 4))
         }
