@@ -53,6 +53,7 @@ impl LoopAdvice {
                 _ => StabilityOutcome::Undecided,
             },
             growth: combined.growth,
+            hidden_by: None,
         });
         match () {
             () if !of_loop.is_good() => of_loop,

@@ -19,7 +19,7 @@ use super::integrator_choice::{
     IntegratorChoice, SearchExtent, StepTrial, best_possible, largest_step, offered_methods,
 };
 use super::loop_check::UnstableLoop;
-use super::loop_simulation::{LoopSimulation, MOST_PERIODS};
+use super::loop_simulation::{LoopSimulation, simulated_horizon};
 use super::loops::{Loop, LoopError, PlantModel};
 use super::request::{Measure, Request, Tolerance};
 use super::simulated_system::SimulatedSystem;
@@ -237,9 +237,9 @@ pub(super) fn advise_loop<M: PlantModel>(
     if !advice.integrators.is_empty() {
         answer += &format!(" {}", describe_integrator(&advice, request));
     }
-    let followed = MOST_PERIODS as f64 * control.period;
+    let followed = simulated_horizon(request.horizon, control.period);
     let stable = looped.remedies.is_none();
-    if stable && request.tolerance.of == Measure::Trajectory && request.horizon > followed {
+    if stable && request.tolerance.of == Measure::Trajectory && request.horizon != followed {
         advice.warnings.push(format!(
             "the loop was simulated for {followed} s instead of the {} s of the request",
             request.horizon

@@ -188,7 +188,12 @@ impl TimedLoop {
             Limit::Value(size) => (Some(scale * size), scale * size),
             Limit::Beyond(size) => (None, scale * size),
         };
-        let windows = self.latency_windows(subject)?;
+        let channels = self.searched_channels(subject);
+        let windows = match &channels {
+            Some(channels) => self.latency_windows(subject, channels)?,
+            None => None,
+        };
+        let search_ended = channels.is_some() && windows.is_none();
         let (stable, tried) = end(self.stable_up_to(subject, windows.as_deref())?);
         let tolerated = self.tolerated_up_to(subject, tolerance)?.map(|limit| end(limit).0);
         let smaller = |a: f64, b: f64| if a.abs() < b.abs() { a } else { b };
@@ -225,15 +230,7 @@ impl TimedLoop {
             regained,
             later_windows: later_windows(windows.as_deref(), scale),
             crossing_angle: crossing.filter(|angle| *angle > 0.0),
-            how: match subject.kind {
-                Imperfection::Latency | Imperfection::OutputLatency | Imperfection::Skew => {
-                    "exact: the spectral radius passes 1"
-                }
-                Imperfection::Jitter if self.timing.record.is_some() => {
-                    "exact: growth through the stretched record"
-                }
-                Imperfection::Jitter | Imperfection::Loss => "exact: second moments grow",
-            },
+            how: self.method_of(subject, search_ended),
             command: command(&self.single(subject, limit.unwrap_or(tried) / scale)?),
         })
     }

@@ -2,6 +2,10 @@
 
 use libration_report::notation::{cut_off, cut_up};
 
+use super::imperfection::Imperfection;
+use super::subject::Subject;
+use super::timed_loop::TimedLoop;
+
 /// An upper limit as [`rounded`](super::rounded) shows it, but not beyond itself.
 pub fn rounded_down(limit: f64) -> String {
     in_digits(limit, cut_off)
@@ -33,6 +37,24 @@ fn cut_to(limit: f64, decimals: usize, cut: fn(f64, usize) -> f64) -> f64 {
     match before.is_finite() {
         true => cut(limit, (before as i32 + 1 + decimals as i32).max(1) as usize),
         false => limit,
+    }
+}
+
+impl TimedLoop {
+    /// How a limit was found, in words; `search_ended` is whether the search for all crossings ended without an answer.
+    pub(super) fn method_of(&self, subject: Subject, search_ended: bool) -> &'static str {
+        match subject.kind {
+            Imperfection::Latency | Imperfection::OutputLatency if search_ended => {
+                "the spectral radius passes 1 between tried sizes: the search for all crossings ended without an answer"
+            }
+            Imperfection::Latency | Imperfection::OutputLatency | Imperfection::Skew => {
+                "exact: the spectral radius passes 1"
+            }
+            Imperfection::Jitter if self.timing.record.is_some() => {
+                "exact: growth through the stretched record"
+            }
+            Imperfection::Jitter | Imperfection::Loss => "exact: second moments grow",
+        }
     }
 }
 

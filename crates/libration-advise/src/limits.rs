@@ -24,6 +24,9 @@ const MOST_PERIODS: f64 = 160.0;
 /// Largest tried latency, in periods, unless more is stated.
 const TRIED_PERIODS: f64 = 240.0;
 
+/// Latency in periods below which times of a period are taken for the same: a shorter limit is none.
+const RESOLUTION: f64 = 2e-12;
+
 /// Smallest number of tried sizes before the first unstable one is bisected.
 const TRIED: u32 = 64;
 
@@ -59,6 +62,17 @@ impl TimedLoop {
 
     /// The largest size with which the loop is stable, in the mean square for random imperfections.
     pub(super) fn stable_up_to(
+        &self,
+        subject: Subject,
+        windows: Option<&[LatencyWindow]>,
+    ) -> Result<Limit, LinearLoopError> {
+        Ok(match self.found_up_to(subject, windows)? {
+            Limit::Value(size) if subject.is_latency() && size < RESOLUTION => Limit::Value(0.0),
+            found => found,
+        })
+    }
+
+    fn found_up_to(
         &self,
         subject: Subject,
         windows: Option<&[LatencyWindow]>,

@@ -28,7 +28,12 @@ const SUBSTEPS: [u64; 17] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 
 const TRUE: u64 = 512;
 
 /// Largest number of compared periods.
-pub(super) const MOST_PERIODS: u64 = 20_000;
+const MOST_PERIODS: u64 = 20_000;
+
+/// The time in s for which a loop is simulated where a request asks for `horizon`: at least a period, and not too many.
+pub(super) fn simulated_horizon(horizon: f64, period: f64) -> f64 {
+    horizon.clamp(period, MOST_PERIODS as f64 * period)
+}
 
 impl<M: PlantModel> LoopSimulation<'_, M> {
     /// The fewest steps per period with which `method` meets the tolerance.

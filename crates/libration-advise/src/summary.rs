@@ -9,7 +9,7 @@ use super::combined_effect::CombinedEffect;
 use super::control::Control;
 use super::imperfection::Imperfection;
 use super::limit_text::rounded_up;
-use super::loop_simulation::MOST_PERIODS;
+use super::loop_simulation::simulated_horizon;
 use super::loops::{Loop, PlantModel};
 use super::motion::four_digits;
 use super::request::{Measure, Request, Tolerance};
@@ -19,9 +19,9 @@ use super::used_share::share_in_percent;
 /// The advised integrator in a sentence.
 pub(super) fn describe_integrator(advice: &Advice, request: &Request) -> String {
     let Tolerance { of, most } = request.tolerance;
-    // A loop is simulated for a limited number of periods; its cost is stationary.
+    // A loop is simulated for a period or more, and a limited number of them; its cost is stationary.
     let horizon = match &request.control {
-        Some(control) => request.horizon.min(MOST_PERIODS as f64 * control.period),
+        Some(control) => simulated_horizon(request.horizon, control.period),
         None => request.horizon,
     };
     let over = match of {

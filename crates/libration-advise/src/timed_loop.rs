@@ -102,12 +102,9 @@ impl TimedLoop {
         Ok(timing)
     }
 
-    /// The windows of stable latencies of a channel or of all, in periods; none for other imperfections, and for a cascade, whose channels
-    /// have several numbers per round.
-    pub(super) fn latency_windows(
-        &self,
-        subject: Subject,
-    ) -> Result<Option<Vec<LatencyWindow>>, LinearLoopError> {
+    /// The channels whose windows of stable latencies are searched; none for other imperfections, for a cascade, whose channels have
+    /// several numbers per round, and where the critical latency is known.
+    pub(super) fn searched_channels(&self, subject: Subject) -> Option<Channels> {
         let late = |count: usize| subject.channel.map_or_else(|| (0..count).collect(), |i| vec![i]);
         let StatedTiming { input_latency, output_latency, .. } = &self.timing;
         let channels = match subject.kind {
@@ -117,20 +114,26 @@ impl TimedLoop {
             Imperfection::Latency | Imperfection::OutputLatency => {
                 Channels::Inputs(late(input_latency.len()))
             }
-            _ => return Ok(None),
+            _ => return None,
         };
-        if self.linear.controllers().periods() > 1 {
-            return Ok(None);
-        }
         let stated = self.stated_size(subject) / self.period();
-        if self
+        let is_known = self
             .critical_latency
-            .is_some_and(|CriticalLatency(end)| end.is_none_or(|end| stated < end))
-        {
-            return Ok(None);
-        }
+            .is_some_and(|CriticalLatency(end)| end.is_none_or(|end| stated < end));
+        (self.linear.controllers().periods() == 1 && !is_known).then_some(channels)
+    }
+
+    /// The windows of stable latencies of channels, in periods; none if the search for them ends without an answer.
+    pub(super) fn latency_windows(
+        &self,
+        subject: Subject,
+        channels: &Channels,
+    ) -> Result<Option<Vec<LatencyWindow>>, LinearLoopError> {
         let largest = self.largest(subject);
-        self.linear.latency_windows(&self.ideal(), &channels, [largest; 2]).map(Some)
+        match self.linear.latency_windows(&self.ideal(), channels, [largest; 2]) {
+            Err(LinearLoopError::Search { .. }) => Ok(None),
+            found => found.map(Some),
+        }
     }
 
     /// The side of the skew: 1 for a slow clock, also if none is stated, −1 for a fast one.

@@ -5,9 +5,8 @@ use libration_core::system::DampedOscillator;
 use libration_linear::eigenvalues;
 use num_complex::Complex64;
 
-use super::neutral_steps::{MOST_EXACT, neutral_windows};
-use super::step_search::{DAMPED, searched_windows};
-use super::{LinearStepper, StabilityFunction, StabilityWindow, StepWindow, oscillator_windows};
+use super::neutral_steps::MOST_EXACT;
+use super::{LinearStepper, StepLimits, StepWindow};
 
 /// Part of the largest eigenvalue that is a rounding of another one.
 const ROUNDING: f64 = 1e-13;
@@ -56,44 +55,7 @@ impl LinearStepper {
         method: impl Into<AnyMethod>,
         values: &[Complex64],
     ) -> Option<Vec<StepWindow>> {
-        let (method, values) = (method.into(), without_rounding(values));
-        if let Some(function) = StabilityFunction::of(method) {
-            let kept = values.iter().filter(|value| value.re <= 0.0);
-            return Some(intersection(kept.map(|&value| function.stable_steps(value))));
-        }
-        if !self.is_mechanical() || values.iter().any(|value| value.re > 0.0) {
-            return None;
-        }
-        // In powers of ωh.
-        let undamped = windows_of(method, &DampedOscillator { omega2: 1.0, gamma: 0.0 })?;
-        if !self.is_damped() {
-            let of = |value: &Complex64| match value.norm() {
-                0.0 => vec![StepWindow::ALL],
-                size => undamped.iter().map(|window| window.scaled(size.recip())).collect(),
-            };
-            return Some(intersection(values.iter().map(of)));
-        }
-        let exact = self.oscillators(&values).and_then(|all| {
-            all.iter().map(|one| windows_of(method, one)).collect::<Option<Vec<_>>>()
-        });
-        if let Some(exact) = exact {
-            return Some(intersection(exact.into_iter()));
-        }
-        let last = undamped.last().map_or(0.0, |window| window.to);
-        // Of gyroscopic forces: where an exact mode neither grows nor decays, no search in `f64` tells growth from rounding.
-        if values.iter().any(|value| value.re == 0.0 && value.im != 0.0) {
-            let most = match method {
-                AnyMethod::Explicit(_) => 2.0 * last + 1.0,
-                AnyMethod::Implicit(_) => DAMPED[1],
-            };
-            return neutral_windows(self, method, &values, most);
-        }
-        match method {
-            AnyMethod::Explicit(_) => {
-                searched_windows(self, method, &values, [0.0, 2.0 * last + 1.0])
-            }
-            AnyMethod::Implicit(_) => searched_windows(self, method, &values, DAMPED),
-        }
+        StepLimits::new(method).of(self, values)
     }
 
     /// The reason in words for which [`stable_steps`](LinearStepper::stable_steps) of an integrator that applies are not known.
@@ -118,7 +80,7 @@ impl LinearStepper {
     ///
     /// Modes are oscillators if the matrices of damping and stiffness, both over the masses, commute (T. K. Caughey, M. E. J. O'Kelly,
     /// Journal of Applied Mechanics 32, 1965).
-    fn oscillators(&self, values: &[Complex64]) -> Option<Vec<DampedOscillator<f64>>> {
+    pub(super) fn oscillators(&self, values: &[Complex64]) -> Option<Vec<DampedOscillator<f64>>> {
         let (stiffness, damping) = self.stiffness_and_damping();
         if stiffness.rows() == 1 {
             let [omega2, gamma] = [stiffness[(0, 0)], damping[(0, 0)]];
@@ -138,20 +100,6 @@ impl LinearStepper {
         };
         (oscillates && is_damping && apart.largest() <= rounding).then(|| upper.map(one).collect())
     }
-}
-
-/// The stability windows of a method on an oscillator, from exact polynomials; none if these outgrow their arithmetic.
-fn windows_of(method: AnyMethod, one: &DampedOscillator<f64>) -> Option<Vec<StepWindow>> {
-    let windows = oscillator_windows(method, one)?;
-    let ends = |window: &StabilityWindow| StepWindow {
-        from: window.from.to_f64(),
-        to: window.to.map_or(f64::INFINITY, |to| to.to_f64()),
-    };
-    Some(windows.iter().map(ends).collect())
-}
-
-fn intersection(all: impl Iterator<Item = Vec<StepWindow>>) -> Vec<StepWindow> {
-    all.fold(vec![StepWindow::ALL], |sum, next| StepWindow::intersections(&sum, &next))
 }
 
 #[cfg(test)]

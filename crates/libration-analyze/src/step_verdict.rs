@@ -1,9 +1,11 @@
 //! Whether a step lets deviations grow more than exact steps do.
 
+use core::f64::consts::PI;
+
 use libration::linear::Complex64;
 use libration_report::verdict::{Outcome, Verdict};
 
-use crate::digits::{beside_one, change_per_step};
+use crate::digits::{beside_one, change_per_step, significant};
 use crate::stable_steps::{is_at_limit, is_within};
 
 /// Growth per step of a matrix of simple eigenvalues that is rounding.
@@ -21,6 +23,9 @@ const DEFECTIVE: f64 = 1e-6;
 
 /// A mode of the plant that grows may grow by this part faster in steps: they are inaccurate then, not unstable.
 const FASTER: f64 = 1.5;
+
+/// The factor between the growth rates of a growing mode in steps and in exact steps up to which steps follow it.
+pub(crate) const FOLLOWED: f64 = 2.0;
 
 /// Distance of eigenvalues, relative to their size, up to which they may be one that rounding parted.
 const PARTED: f64 = 1e-6;
@@ -42,6 +47,15 @@ pub(crate) struct ModeGrowth {
     pub(crate) exact_growth: f64,
     /// The angle of the multiplier of the exact step in rad.
     pub(crate) exact_angle: f64,
+}
+
+/// A multiplier in words: real ones with their sign.
+fn multiplier(size: f64, angle: f64) -> String {
+    match (angle.sin().abs() < 1e-9, angle.cos() < 0.0) {
+        (true, true) => format!("−{}", significant(size, 4)),
+        (true, false) => significant(size, 4),
+        _ => format!("{} at {} rad", significant(size, 4), significant(angle, 4)),
+    }
 }
 
 /// The growth of deviations in steps of an integrator on a linear system, or about an equilibrium.
@@ -103,6 +117,12 @@ impl StepGrowth<'_> {
             ));
         }
         let outcome = match inside {
+            _ if added <= ROUNDING
+                && is_growing
+                && let Some(lost) = self.lost_growth(rounding) =>
+            {
+                return Verdict::new(Outcome::NotResolved, format!("{lost}; {evidence}"));
+            }
             Some(true) if added <= DEFECTIVE => Outcome::Stable,
             Some(false) if !decays => Outcome::Unstable,
             _ if added <= ROUNDING => Outcome::Stable,
@@ -110,6 +130,30 @@ impl StepGrowth<'_> {
             _ => Outcome::Unstable,
         };
         Verdict::new(outcome, evidence)
+    }
+
+    /// A mode that grows in exact steps and that these steps do not follow, in words: they damp it, turn it round, or let it grow at
+    /// another rate. None if they follow all of them.
+    fn lost_growth(&self, rounding: f64) -> Option<String> {
+        let follows = |growth: f64, exact: f64| {
+            let [own, exact] = [growth, exact].map(f64::ln);
+            own * FOLLOWED >= exact && own <= FOLLOWED * exact
+        };
+        let lost = self.modes.iter().find(|mode| {
+            let turned = (mode.angle - mode.exact_angle).abs() > 0.5 * PI;
+            mode.exact_growth > 1.0 + rounding
+                && (turned || !follows(mode.growth, mode.exact_growth))
+        });
+        if let Some(mode) = lost {
+            let own = multiplier(mode.growth, mode.angle);
+            let exact = multiplier(mode.exact_growth, mode.exact_angle);
+            return Some(format!(
+                "the steps do not follow a growing motion: a step multiplies it by {own}, an exact one by {exact}"
+            ));
+        }
+        let exact = (self.exact_rate * self.dt).exp();
+        let radius = self.radius.filter(|radius| self.modes.is_empty() && !follows(*radius, exact));
+        radius.map(|_| "the steps do not follow a growing motion".to_owned())
     }
 
     /// Without damping, the two multipliers of a mode leave the unit circle where they meet, at ±1. If steps have other shapes than the plant,

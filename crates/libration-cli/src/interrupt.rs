@@ -2,14 +2,24 @@
 
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
 
 use libration_probe::end_programs;
 
 use crate::error::{FAILED, Failure, INTERRUPTED};
+use crate::output_file::remove_temporary_files;
+use crate::terminal;
 
 static STOP: AtomicBool = AtomicBool::new(false);
 /// Whether the run checks [`STOP`].
 static LISTENING: AtomicBool = AtomicBool::new(false);
+
+/// Whether the run computes and writes nothing, so that nothing is lost where it ends.
+static COMPUTING: AtomicBool = AtomicBool::new(false);
+
+/// The time in which a computation that checks [`STOP`] ends in order.
+const GRACE: Duration = Duration::from_millis(500);
 
 /// Installs the handler of Ctrl-C, which ends the process with the exit code of an interrupted run.
 ///
@@ -21,6 +31,7 @@ pub(crate) fn handle() -> Result<(), Failure> {
             end_programs();
             process::exit(i32::from(INTERRUPTED));
         }
+        end_computation();
     })
     .map_err(|error| Failure::run(format!("cannot listen for Ctrl-C: {error}")))
 }
@@ -29,6 +40,31 @@ pub(crate) fn handle() -> Result<(), Failure> {
 pub(crate) fn listen() -> &'static AtomicBool {
     LISTENING.store(true, Ordering::Relaxed);
     &STOP
+}
+
+/// Runs a computation that writes nothing, with the flag that the first Ctrl-C sets. A search that does not check the flag ends with the
+/// process, a moment later.
+pub(crate) fn compute<R>(work: impl FnOnce(&'static AtomicBool) -> R) -> R {
+    let stop = listen();
+    COMPUTING.store(true, Ordering::SeqCst);
+    let result = work(stop);
+    COMPUTING.store(false, Ordering::SeqCst);
+    result
+}
+
+/// Ends the process unless its computation ends in order.
+fn end_computation() {
+    let watch = || {
+        thread::sleep(GRACE);
+        if COMPUTING.swap(false, Ordering::SeqCst) {
+            remove_temporary_files();
+            terminal::say("interrupted");
+            process::exit(i32::from(exit_code()));
+        }
+    };
+    if COMPUTING.load(Ordering::SeqCst) && thread::Builder::new().spawn(watch).is_err() {
+        process::exit(i32::from(exit_code()));
+    }
 }
 
 /// The exit code of a run that a termination stops.
@@ -49,7 +85,7 @@ pub(crate) fn handle_termination() {
         use signal_hook::{consts::SIGTERM, iterator::Signals, low_level::emulate_default_handler};
         // Without the handler the signal ends this process alone, and each simulator at the end of its input.
         let Ok(mut signals) = Signals::new([SIGTERM]) else { return };
-        let _ = std::thread::Builder::new().spawn(move || {
+        let _ = thread::Builder::new().spawn(move || {
             for signal in signals.forever() {
                 end_programs();
                 let is_again = IS_TERMINATED.swap(true, Ordering::Relaxed);
@@ -57,6 +93,7 @@ pub(crate) fn handle_termination() {
                     let _ = emulate_default_handler(signal);
                 }
                 STOP.store(true, Ordering::Relaxed);
+                end_computation();
             }
         });
     }

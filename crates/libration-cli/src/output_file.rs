@@ -5,9 +5,21 @@ use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::process;
+use std::sync::{Mutex, PoisonError};
 
 /// Largest number of links in a chain, as on Linux.
 const MOST_LINKS: usize = 40;
+
+/// The temporary files that exist.
+static TEMPORARY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Removes all temporary files of this process, which ends.
+pub(crate) fn remove_temporary_files() {
+    for path in TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
+        // A leftover temporary file is harmless.
+        let _ = fs::remove_file(path);
+    }
+}
 
 /// A file with a temporary name in the same folder until it is complete.
 ///
@@ -62,6 +74,7 @@ impl OutputFile {
             std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
         }
         let file = options.open(&temporary)?;
+        TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner).push(temporary.clone());
         let fill = old.filter(|(_, old)| !copy_permissions(&file, old)).map(|(old, _)| old);
         Ok(OutputFile { file, pending: Some(Pending { temporary, target, fill }) })
     }

@@ -20,7 +20,7 @@ pub(crate) struct UnitGain {
 /// The responses of an open loop at many angles.
 pub(crate) struct AngleGrid<'a> {
     pub(crate) open: &'a OpenChannels<'a>,
-    /// Each with its angle, in rising order from almost 0 to π.
+    /// Each with its angle, in rising order from almost 0 to π, or to almost π where the response has a pole there.
     pub(crate) points: Vec<(f64, Resolved)>,
 }
 
@@ -71,8 +71,13 @@ impl<'a> AngleGrid<'a> {
             // Not the eigenvalue itself, which may be a pole of the response.
             angles.extend(away.map(|step| value.arg() + step));
         }
-        angles.push(slowest);
-        angles.retain(|angle| (slowest..=PI).contains(angle));
+        // The response has a pole where the open loop has an eigenvalue, such as -1 of a motion that alternates.
+        let poles = open.eigenvalues();
+        let is_pole =
+            |angle: f64| poles.iter().any(|pole| (pole - unit(angle)).norm() < 0.5 * SLOWEST);
+        let last = if is_pole(PI) { PI - SLOWEST } else { PI };
+        angles.extend([slowest, last]);
+        angles.retain(|&angle| (slowest..=last).contains(&angle) && !is_pole(angle));
         angles.sort_by(f64::total_cmp);
         angles.dedup_by(|b, a| *b - *a < 1e-3 * SLOWEST);
         let points = angles.into_iter().map(|angle| (angle, open.resolved(unit(angle)))).collect();
@@ -88,7 +93,8 @@ impl<'a> AngleGrid<'a> {
     /// The loci at both ends of the grid.
     pub(crate) fn end_loci(&self, response: &PartResponse) -> [Vec<Complex64>; 2] {
         let slowest = self.points.first().map_or(SLOWEST, |(angle, _)| *angle);
-        [slowest, PI].map(|angle| self.loci(response, angle))
+        let last = self.points.last().map_or(PI, |(angle, _)| *angle);
+        [slowest, last].map(|angle| self.loci(response, angle))
     }
 
     /// All angles at which a locus is on the unit circle, in rising order. The sizes of loci in their order are continuous.

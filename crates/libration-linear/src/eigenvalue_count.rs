@@ -44,7 +44,7 @@ impl AngleGrid<'_> {
     /// The number of eigenvalues outside the unit circle: the argument of the characteristic polynomial along half of it.
     ///
     /// # Errors
-    /// [`LinearLoopError::Range`] if the polynomial is beyond the range of floats.
+    /// [`LinearLoopError::Range`] if the polynomial is beyond the range of floats, and [`LinearLoopError::Search`].
     pub(crate) fn unstable(
         &self,
         response: &PartResponse,
@@ -73,8 +73,14 @@ impl AngleGrid<'_> {
                     let own = turned(a.determinant.arg(), b.determinant.arg());
                     to.argument() - from.argument() + own
                 }
-                false => argument(&fresh, from, to, 0.5 / delays, 48),
+                false => {
+                    let ends = || self.open.is_exhausted();
+                    argument((&fresh, &ends), from, to, 0.5 / delays, 48)
+                }
             };
+        }
+        if self.open.is_exhausted() {
+            return Err(self.open.exhausted());
         }
         if turn.is_nan() {
             return Err(LinearLoopError::Range);
@@ -83,8 +89,15 @@ impl AngleGrid<'_> {
     }
 }
 
-/// The angle by which the polynomial turns from one point to another, which are halved until it changes by a part of its size.
-fn argument(f: &impl Fn(f64) -> Point, from: &Point, to: &Point, most: f64, depth: u32) -> f64 {
+/// The angle by which the polynomial turns from one point to another, which are halved until it changes by a part of its size, or the
+/// search ends.
+fn argument(
+    (f, ends): (&impl Fn(f64) -> Point, &impl Fn() -> bool),
+    from: &Point,
+    to: &Point,
+    most: f64,
+    depth: u32,
+) -> f64 {
     let change = (to.value - from.value).norm();
     if !change.is_finite() {
         // No part of the way is closer.
@@ -92,9 +105,10 @@ fn argument(f: &impl Fn(f64) -> Point, from: &Point, to: &Point, most: f64, dept
     }
     let small = change < 0.7 * from.value.norm().min(to.value.norm());
     let close = || from.continues_at(to) && to.continues_at(from);
-    if small && to.angle - from.angle <= most && close() || depth == 0 {
+    if small && to.angle - from.angle <= most && close() || depth == 0 || ends() {
         return turned(from.value.arg(), to.value.arg());
     }
     let at = f(0.5 * (from.angle + to.angle));
-    argument(f, from, &at, most, depth - 1) + argument(f, &at, to, most, depth - 1)
+    let part = |from: &Point, to: &Point| argument((f, ends), from, to, most, depth - 1);
+    part(from, &at) + part(&at, to)
 }

@@ -113,6 +113,14 @@ pub enum LinearLoopError {
     /// The periods of a loop are beyond the range of floats.
     #[error("the periods of the loop are beyond the range of floats")]
     Range,
+    /// A search for latencies ends without an answer.
+    #[error(
+        "the search for stable latencies ended after {responses} parts of a period: rounding hides where the loop has unit gain"
+    )]
+    Search {
+        /// The responses that were computed.
+        responses: u64,
+    },
     /// The plant moves too far in a period.
     #[error("the plant turns by more than 2048 rad in a standard deviation of the jitter")]
     Turn,

@@ -1,6 +1,6 @@
 //! Whether a loop is stable, where rounding allows an answer.
 
-use crate::{LinearLoop, LinearLoopError, LinearPlant, LoopTiming, Matrix};
+use crate::{LinearLoop, LinearLoopError, LinearPlant, LoopTiming, Matrix, eigenvalues};
 
 /// Growth of second moments per period, up or down, that may be rounding.
 pub const GROWTH_ROUNDING: f64 = 1e-11;
@@ -12,6 +12,8 @@ pub struct LoopStability {
     pub outcome: StabilityOutcome,
     /// The logarithm of the growth factor of second moments per period.
     pub growth: f64,
+    /// The factor by which the plant alone grows in a period, where its rounding hides whether the loop is stable; none elsewhere.
+    pub hidden_by: Option<f64>,
 }
 
 /// The answer to the question whether a loop is stable.
@@ -33,7 +35,7 @@ impl LoopStability {
             growth if growth > GROWTH_ROUNDING => StabilityOutcome::Unstable,
             _ => StabilityOutcome::Undecided,
         };
-        LoopStability { outcome, growth }
+        LoopStability { outcome, growth, hidden_by: None }
     }
 
     /// Whether the loop is certainly stable.
@@ -46,6 +48,9 @@ impl LoopStability {
         self.growth.abs() <= GROWTH_ROUNDING
     }
 }
+
+/// Roundings of the factor by which the plant grows in a period, up to which a multiplier of the loop may be off.
+const DOUBT: f64 = 16.0 * f64::EPSILON;
 
 /// Distance from 1 in which a multiplier of a period may be one of a slow motion.
 const NEAR: f64 = 1e-9;
@@ -76,6 +81,13 @@ impl LinearLoop {
         found: LoopStability,
         timing: &LoopTiming,
     ) -> Result<LoopStability, LinearLoopError> {
+        // What the plant adds in a period and the commands take away is rounded. A loop that decays does so by the digits that are left.
+        let plant = self.plant_growth(timing);
+        let off = ((0.5 * found.growth).exp() - 1.0).abs();
+        if DOUBT * plant > 1e-3 && (off.is_nan() || off <= DOUBT * plant) {
+            let outcome = StabilityOutcome::Undecided;
+            return Ok(LoopStability { outcome, hidden_by: Some(plant), ..found });
+        }
         if found.outcome != StabilityOutcome::Undecided || self.controllers().periods() > 1 {
             return Ok(found);
         }
@@ -92,6 +104,18 @@ impl LinearLoop {
             None => StabilityOutcome::Undecided,
         };
         Ok(LoopStability { outcome, ..found })
+    }
+
+    /// The factor by which the fastest growth of the plant alone multiplies deviations in a period.
+    fn plant_growth(&self, timing: &LoopTiming) -> f64 {
+        let seconds = self.period() * (1.0 + timing.skew);
+        match self.plant().sampling_period {
+            None => self.motions().iter().map(|rate| (rate.re * seconds).exp()).fold(0.0, f64::max),
+            Some(_) => {
+                let factors = eigenvalues(&self.plant().a).unwrap_or_default();
+                factors.iter().map(|factor| factor.norm()).fold(0.0, f64::max)
+            }
+        }
     }
 
     /// The sign of the determinant of the equations of rest; none within rounding.
@@ -199,6 +223,21 @@ mod tests {
         let growing = [3.4e-14, 3.7e-7, 1.4, 2.5e6, -1.9];
         let found = looped(&[0.4, 2.5e6, -1.9], &growing, 1.0, 25e-9);
         assert_eq!(found.outcome, StabilityOutcome::Unstable);
+    }
+
+    /// The plant `s − 1` whose commands place the multiplier at zero: in a period of `h` seconds its digits end at `e^h = 2⁵³`, at 36.7 s.
+    #[test]
+    fn a_loop_is_unknown_where_the_plant_outgrows_the_digits_of_a_float() {
+        for (period, is_known) in [(1.0_f64, true), (20.0, true), (36.0, false), (50.0, false)] {
+            let gain = period.exp() / period.exp_m1();
+            let found = looped(&[1.0], &[1.0, -1.0], gain, period);
+            assert_eq!(found.is_stable(), is_known, "{period} s: {found:?}");
+            let factor = found.hidden_by.unwrap_or(f64::NAN);
+            assert_eq!((factor / period.exp() - 1.0).abs() < 1e-12, !is_known, "{found:?}");
+        }
+        // Without commands the growth is known, however large it is.
+        let found = looped(&[1.0], &[1.0, -1.0], 0.0, 50.0);
+        assert_eq!((found.outcome, found.hidden_by), (StabilityOutcome::Unstable, None));
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! A loop opened at some channels.
 
+use core::cell::Cell;
+
 use libration_core::control::Latency;
 use num_complex::Complex64;
 
@@ -55,7 +57,13 @@ pub(crate) struct OpenChannels<'a> {
     form: HessenbergForm,
     /// One column per channel.
     driven: Vec<Vec<f64>>,
+    /// Responses and resolvents that were computed.
+    work: [Cell<u64>; 2],
 }
+
+/// The most responses, and the most resolvents, of one search. Loops whose loci are known use a hundredth of them. Where loci are rounding,
+/// as beside a plant that grows by many digits per period, every interval would be halved to its end.
+const MOST_WORK: [u64; 2] = [1 << 16, 1 << 22];
 
 /// The transposed response `G_f(z)`, or `G_f(z)` itself: entry `(i, j)` is the sum of all ways `i` with the resolvent `xⱼ(z)`.
 pub(crate) struct PartResponse {
@@ -113,7 +121,17 @@ impl<'a> OpenChannels<'a> {
             form.column(&others.iter().map(entry).collect::<Vec<f64>>())
         };
         let driven = ends.iter().map(driven).collect();
-        Ok(OpenChannels { linear, timing, channels, form, driven })
+        Ok(OpenChannels { linear, timing, channels, form, driven, work: Default::default() })
+    }
+
+    /// Whether a search has used all of its work.
+    pub(crate) fn is_exhausted(&self) -> bool {
+        self.work.iter().zip(MOST_WORK).any(|(used, most)| used.get() >= most)
+    }
+
+    /// The error of a search that has used all of its work.
+    pub(crate) fn exhausted(&self) -> LinearLoopError {
+        LinearLoopError::Search { responses: self.work[0].get() }
     }
 
     /// The number of eigenvalues of the open loop, but for the part of a period.
@@ -136,6 +154,7 @@ impl<'a> OpenChannels<'a> {
     }
 
     pub(crate) fn resolved(&self, z: Complex64) -> Resolved {
+        self.work[1].set(self.work[1].get() + 1);
         self.form.resolvent(z, &self.driven)
     }
 
@@ -161,8 +180,12 @@ impl<'a> OpenChannels<'a> {
     /// The response for an added latency with this part of a period.
     ///
     /// # Errors
-    /// [`LinearLoopError`]: a latency that is too long.
+    /// [`LinearLoopError`]: a latency that is too long, or [`LinearLoopError::Search`] if all work of a search is used.
     pub(crate) fn response(&self, part: f64) -> Result<PartResponse, LinearLoopError> {
+        if self.is_exhausted() {
+            return Err(self.exhausted());
+        }
+        self.work[0].set(self.work[0].get() + 1);
         let Cut { matrix, ends, others } = cut(self.linear, self.timing, self.channels, part)?;
         let row = |entry: &dyn Fn(usize) -> f64| -> Vec<f64> {
             self.form.row(&others.iter().map(|&i| entry(i)).collect::<Vec<_>>())

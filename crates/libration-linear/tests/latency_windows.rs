@@ -4,7 +4,8 @@
 
 use libration_core::control::Latency;
 use libration_linear::{
-    Channels, DiscreteController, LinearLoop, LinearPlant, Matrix, eigenvalues, is_schur_stable,
+    Channels, DiscreteController, LinearLoop, LinearLoopError, LinearPlant, Matrix, eigenvalues,
+    is_schur_stable,
 };
 use num_complex::Complex64;
 
@@ -101,4 +102,61 @@ fn windows_are_where_the_spectral_radius_of_the_whole_matrix_is_below_one() {
         }
     }
     assert!(ends > 40, "{ends}");
+}
+
+/// A loop around the plant with one input and these matrices, sampled or not.
+fn loop_of(
+    a: &[Vec<f64>],
+    b: &[f64],
+    sampling: Option<f64>,
+    gain: &[f64],
+    period: f64,
+) -> LinearLoop {
+    let n = a.len();
+    let columns: Vec<[f64; 1]> = b.iter().map(|x| [*x]).collect();
+    let [a, b] = [Matrix::from_rows(a), Matrix::from_rows(&columns)].map(Option::unwrap);
+    let mut plant = LinearPlant::new(a, b, Matrix::identity(n), Matrix::zeros(n, 1)).unwrap();
+    plant.sampling_period = sampling;
+    let commands: Vec<f64> = gain.iter().map(|k| -k).collect();
+    let controller = DiscreteController::gain(Matrix::from_rows(&[commands]).unwrap());
+    let cost = Matrix::identity(n + 1);
+    LinearLoop::new(plant, controller, period, cost, vec![0.0; n]).unwrap()
+}
+
+/// An open loop with an eigenvalue at −1, ±i or 1 has a pole there on the unit circle, where its response is no number.
+#[test]
+fn an_open_loop_with_poles_on_the_unit_circle_has_windows() {
+    for (a, b, gain) in [
+        (vec![vec![0.5, 0.0], vec![0.0, -1.0]], [1.0, 1.0], [0.05, -0.4]),
+        (vec![vec![-1.0, 0.0], vec![0.0, 1.0]], [1.0, 1.0], [-0.3, 0.2]),
+        (vec![vec![0.0, -1.0], vec![1.0, 0.0]], [1.0, 0.0], [0.1, 0.3]),
+        (vec![vec![-1.0, 1.0], vec![0.0, -1.0]], [0.0, 1.0], [0.2, -0.5]),
+    ] {
+        let linear = loop_of(&a, &b, Some(0.1), &gain, 0.1);
+        let channels = Channels::Inputs(vec![0]);
+        let windows = linear.latency_windows(&linear.ideal(), &channels, [12.0, 12.0]).unwrap();
+        for whole in 0..12 {
+            let latency = f64::from(whole);
+            let inside = windows
+                .iter()
+                .any(|window| window.from <= latency && window.to.is_none_or(|to| latency <= to));
+            let stable = is_schur_stable(&at(&linear, &channels, latency));
+            assert_eq!(inside, stable, "{a:?} {gain:?} {latency}: {windows:?}");
+        }
+    }
+}
+
+/// `s − 1` in a period of 28 s: the plant grows by `e²⁸`, and all of its response but a part of `e⁻²⁸` is on the unit circle.
+#[test]
+fn a_search_among_roundings_ends() {
+    for period in [26.0_f64, 28.0, 30.0] {
+        let gain = period.exp() / period.exp_m1();
+        let linear = loop_of(&[vec![1.0]], &[1.0], None, &[gain], period);
+        let found = linear.latency_windows(&linear.ideal(), &Channels::Inputs(vec![0]), [160.0; 2]);
+        // By hand: the loop is unstable from a latency of about `e⁻ʰ` s on.
+        match found {
+            Ok(windows) => assert!(windows.iter().all(|w| w.to.is_some_and(|to| to < 1e-9))),
+            Err(error) => assert!(matches!(error, LinearLoopError::Search { .. }), "{error}"),
+        }
+    }
 }

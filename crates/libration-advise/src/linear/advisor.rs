@@ -1,6 +1,7 @@
 //! Advice on loops around linear plants.
 
 use libration::linear::{LoopStability, Signal};
+use libration_analyze::linear_analysis::hidden_loop;
 use libration_report::verdict::Verdict;
 use libration_settings::linear_loop::Part;
 use libration_work::Work;
@@ -24,6 +25,10 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
     let ideal = timed.ideal();
     if let Some(why) = request.redesign_obstacle().filter(|_| request.redesign) {
         return Err(AdviseError::Redesign(why));
+    }
+    let ideal_stability = timed.stability(&ideal).map_err(LoopError::from)?;
+    if let Some(plant) = ideal_stability.hidden_by {
+        return Ok(LinearAdvice::unknown(request, &ideal_stability, plant));
     }
     if let Some(motions) = timed.unstable_modes().map_err(LoopError::from)? {
         return advise_unstable(work, request, motions);
@@ -110,6 +115,18 @@ fn advise_unstable(
 }
 
 impl LinearAdvice {
+    /// The advice on a loop whose stability rounding hides, since the plant alone grows by the factor `plant` in a period. No search of a
+    /// limit would know more.
+    fn unknown(request: &LinearRequest, stability: &LoopStability, plant: f64) -> Self {
+        let mut advice = LinearAdvice {
+            growth: stability.growth,
+            unstable_motions: vec![hidden_loop(plant)],
+            ..LinearAdvice::of_request(request)
+        };
+        advice.conclude(request, stability);
+        advice
+    }
+
     /// The plant and the controller of a request, without any result.
     fn of_request(request: &LinearRequest) -> Self {
         let timed = &request.timed;

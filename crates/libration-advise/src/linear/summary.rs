@@ -38,7 +38,8 @@ impl LinearAdvice {
                 }
                 _ => "The loop is unstable without latency, jitter, skew and loss",
             };
-            return format!("{first}: {motions}. {}", remedies.unwrap_or_default());
+            let help = remedies.unwrap_or_else(|| "Shorten the period.".to_owned());
+            return format!("{first}: {motions}. {help}");
         }
         if self.verdict.outcome == Outcome::Unknown && self.remedies.is_some() {
             return format!(
@@ -149,7 +150,7 @@ impl LinearAdvice {
                 "rare outbursts dominate the cost: a simulation has too few of them, and a typical run costs less"
                     .into(),
             ),
-            None if self.growth < 0.0 => warnings.push(
+            None if self.growth < 0.0 && self.unstable_motions.is_empty() => warnings.push(
                 "the loop was not simulated because it decays too slowly: the results follow from theory alone".into(),
             ),
             _ => {}

@@ -2,7 +2,9 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use libration::analysis::{LinearStepper, StabilityFunction, jacobian, without_rounding};
+use libration::analysis::{
+    LinearStepper, StabilityFunction, StepLimits, jacobian, without_rounding,
+};
 use libration::equations::{Degree, StepProgram};
 use libration::linear::eigenvalues;
 use libration::{AnyMethod, Method};
@@ -66,11 +68,12 @@ impl MotionSteps {
             unknown_states: 0,
             until,
         };
+        let limits = StepLimits::searched(method);
         for (time, state) in &samples {
             if stop.load(Ordering::Relaxed) {
                 return Err(AnalyzeError::Interrupted);
             }
-            match largest_stable_step(system, method, state) {
+            match largest_stable_step(system, (method, &limits), state) {
                 None => found.unknown_states += 1,
                 Some(dt) if dt < found.largest_stable_dt.unwrap_or(f64::INFINITY) => {
                     (found.largest_stable_dt, found.at_time) = (Some(dt), *time);
@@ -88,7 +91,11 @@ impl MotionSteps {
 }
 
 /// The end of the stable steps that begin at 0, of the linearisation at a state; zero if there are none. None if it is not known.
-fn largest_stable_step(system: &EquationSystem, method: AnyMethod, state: &[f64]) -> Option<f64> {
+fn largest_stable_step(
+    system: &EquationSystem,
+    (method, limits): (AnyMethod, &StepLimits),
+    state: &[f64],
+) -> Option<f64> {
     let a = system.state_matrix(&jacobian(system.equations.dynamics(), state));
     let is_first_order = system.equations.degrees().iter().any(|d| matches!(d, Degree::State(_)));
     let stepper = match is_first_order {
@@ -113,7 +120,7 @@ fn largest_stable_step(system: &EquationSystem, method: AnyMethod, state: &[f64]
             return None;
         }
     }
-    let windows = stepper.stable_steps(method, &values)?;
+    let windows = limits.of(&stepper, &values)?;
     let first = windows.first().filter(|window| window.from == 0.0);
     Some(first.map_or(0.0, |window| window.to))
 }

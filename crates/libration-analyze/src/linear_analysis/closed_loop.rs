@@ -154,6 +154,9 @@ impl ClosedLoop {
 
 /// The verdict on a loop of this stability, for all commands.
 pub fn loop_verdict(stability: &LoopStability) -> Verdict {
+    if let Some(plant) = stability.hidden_by {
+        return Verdict::unknown(hidden_loop(plant));
+    }
     let percent = 100.0 * stability.growth.exp_m1().abs();
     let (outcome, verb) = match stability.outcome {
         StabilityOutcome::Stable => (Outcome::Stable, "fall"),
@@ -174,5 +177,12 @@ pub fn loop_verdict(stability: &LoopStability) -> Verdict {
             (_, true) => format!("{change}: by the equations of rest"),
             (_, false) => change,
         },
+    )
+}
+
+/// Why the stability of a loop is unknown whose plant alone grows by a factor in a period.
+pub fn hidden_loop(plant: f64) -> String {
+    format!(
+        "the plant alone grows by the factor {plant:.3e} in a period, of which commands leave less than the rounding of f64"
     )
 }

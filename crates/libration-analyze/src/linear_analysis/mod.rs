@@ -21,7 +21,9 @@ use libration_work::{Silent, Work};
 use serde::Serialize;
 
 use crate::Stepping;
-pub use closed_loop::{ClosedLoop, LoopMode, NOT_SIMULATED, StateDeviation, loop_verdict};
+pub use closed_loop::{
+    ClosedLoop, LoopMode, NOT_SIMULATED, StateDeviation, hidden_loop, loop_verdict,
+};
 pub use error::LinearAnalysisError;
 pub use mode::Mode;
 pub use simulated_mode::SimulatedMode;

@@ -60,6 +60,9 @@ pub struct Analysis {
     pub reversibility_defect: f64,
     /// Angle of the step minus that of the exact solution, in rad: the largest over the modes.
     pub phase_error_per_step: Option<f64>,
+    /// Whether the phase error would be more than half a turn, so that steps do not follow the oscillation.
+    #[serde(skip)]
+    pub loses_oscillation: bool,
     /// Counted force evaluations per step.
     pub force_evaluations_per_step: u64,
     /// The energy drift; none if the initial energy is zero.

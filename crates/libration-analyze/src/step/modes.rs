@@ -1,5 +1,7 @@
 //! Eigenvalues of a step, and phase errors of its modes.
 
+use core::f64::consts::PI;
+
 use libration::analysis::{
     Complex, Eigenvalues, Linearisation, Spectrum, UpdateMatrix, determinant, eigenvalues,
 };
@@ -97,6 +99,16 @@ impl Modes {
             phase_error: if comparable { errors.reduce(larger_size) } else { None },
             values,
         }
+    }
+
+    /// The phase error in rad, of steps that follow the oscillation.
+    pub(super) fn followed_phase_error(&self) -> Option<f64> {
+        self.phase_error.map(Wide::to_f64).filter(|_| !self.loses_oscillation())
+    }
+
+    /// Whether the phase error is more than half a turn, or no number: beyond the digits of a step, nothing is left of an angle.
+    pub(super) fn loses_oscillation(&self) -> bool {
+        self.phase_error.is_some_and(|error| !(error.to_f64().abs() <= PI))
     }
 
     /// The eigenvalues as pairs of real and imaginary part.

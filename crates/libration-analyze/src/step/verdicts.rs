@@ -14,7 +14,7 @@ use super::limits::is_free;
 use super::{Analysis, AnalyzeError, LoopAnalysis, Request};
 use crate::digits::change_per_step;
 use crate::motion::{MotionExamination, MotionState, MotionSubject, examine};
-use crate::step_verdict::StepGrowth;
+use crate::step_verdict::{FOLLOWED, StepGrowth};
 
 /// The verdicts on a step of a system of the catalogue. Of a loop there is that of the loop alone.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -93,6 +93,12 @@ fn of_step(analysis: &Analysis, request: &Request) -> Verdict {
     if excess > 0.0 && excess <= COEFFICIENTS * turn {
         return Verdict::unknown(
             "motions grow by less than the rounding of the coefficients of the integrator",
+        );
+    }
+    if exact > GROWTH_ROUNDING && FOLLOWED * excess.ln_1p() < exact.ln_1p() {
+        return Verdict::new(
+            Outcome::NotResolved,
+            format!("{motions}, and those of exact steps {}", change_per_step(exact)),
         );
     }
     match analysis.bounded {

@@ -1,5 +1,7 @@
 //! Tests of stability windows of a damped oscillator against a NumPy scan.
 
+use libration::analysis::{LinearStepper, StepLimits};
+use libration::linear::{Matrix, eigenvalues};
 use libration::{AnyMethod, AnySystem, Method};
 use libration_analyze::{Request, Stepping, analyze};
 use libration_report::verdict::Outcome;
@@ -112,4 +114,26 @@ fn textbook_verlet_is_said_to_be_another_method_where_forces_depend_on_velocitie
         assert!(!told.contains("another method"), "{told}");
     }
     assert_eq!(note("oscillator", &[], Method::TextbookVerlet), None);
+}
+
+#[test]
+fn searched_limits_of_long_steps_are_where_the_step_leaves_the_unit_circle() {
+    let a = Matrix::from_rows(&[[0.0, 1.0], [-9.0, -0.4]]).unwrap();
+    let (stepper, values) = (LinearStepper::new(&a).unwrap(), eigenvalues(&a).unwrap());
+    for name in ["blanes-moan-s10-6-kdk", "blanes-moan-s6-4-dkd", "velocity-verlet"] {
+        let method = Method::from_name(name).unwrap();
+        let windows = StepLimits::searched(method).of(&stepper, &values).unwrap();
+        assert!(windows[0].from == 0.0, "{name}: {windows:?}");
+        let radius = |dt: f64| {
+            let step = stepper.with_step::<f64>(method, dt).unwrap();
+            let values = eigenvalues(&step.update_matrix()).unwrap();
+            values.iter().map(|value| value.norm()).fold(0.0, f64::max)
+        };
+        // A multiplier leaves the circle at a rate of more than a tenth per relative change of the step.
+        let end = windows[0].to;
+        assert!(radius(end * (1.0 - 1e-6)) < 1.0 && radius(end * (1.0 + 1e-6)) > 1.0, "{name}");
+    }
+    // Short ones are exact.
+    let verlet = StepLimits::searched(Method::VelocityVerlet).of(&stepper, &values);
+    assert_eq!(verlet, stepper.stable_steps(Method::VelocityVerlet, &values));
 }

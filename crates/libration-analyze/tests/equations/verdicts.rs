@@ -207,3 +207,15 @@ fn the_scale_of_the_energy_has_no_arbitrary_constant() {
     // A constant adds its own rounding.
     assert!((of("9.81") / level - 1.0).abs() < 1e-9 && (of("1000") / level - 1.0).abs() < 1e-7);
 }
+
+/// A method of ten stages under a friction that differs at each state: exact polynomials take seconds for one of them.
+#[test]
+fn stable_steps_along_a_damped_motion_are_known_for_steps_of_many_stages() {
+    let damped = force("-7.0*q0/(1 + q0^2) - 0.08*q0'*abs(q0')");
+    let found = examined(&damped, "blanes-moan-s10-6-kdk", 0.87, 60);
+    let along = &found.steps_along_motion;
+    assert!(along.states > 16 && along.unknown_states == 0, "{along:?}");
+    // The stiffness is at most 7 s⁻², and the undamped limit of the method more than one stage of Verlet, 2/√7 s.
+    let limit = along.largest_stable_dt.unwrap();
+    assert!(limit > 2.0 / 7.0_f64.sqrt() && limit < 20.0 / 7.0_f64.sqrt(), "{limit}");
+}

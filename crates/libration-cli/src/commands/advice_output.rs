@@ -32,12 +32,11 @@ impl<A: Serialize> AdviceOutput<A> {
         log_warnings: &[String],
         compute: impl FnOnce(&Work<'_>) -> Result<A, AdviseError>,
     ) -> Result<(), Failure> {
-        let stop = interrupt::listen();
         let file = ResultFile::create("--page", args.page.as_deref())?;
         let log = args.jitter_file.as_deref();
         let log_warnings = log.map_or_else(Vec::new, |path| log_warnings::warn(path, log_warnings));
         let reporter = Reporter::new(quiet);
-        let advice = compute(&Work::new(&reporter, stop));
+        let advice = interrupt::compute(|stop| compute(&Work::new(&reporter, stop)));
         reporter.clear();
         if let (Err(_), Some(page)) = (&advice, &args.page) {
             terminal::warn(&format!("`{}` (--page) is not written", page.display()));

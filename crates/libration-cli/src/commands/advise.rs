@@ -55,12 +55,12 @@ pub(super) struct Verdict {
 
 /// Computes advice on a loop, without printing it; `command` repeats it.
 pub(super) fn verdict(args: &AdviseArgs, command: &str, quiet: bool) -> Result<Verdict, Failure> {
-    let stop = interrupt::listen();
     // `clock` prints the warnings about its file itself.
     if let Some((mut request, _)) = super::advise_linear::load_request(args)? {
         command.clone_into(&mut request.invocation);
         let reporter = Reporter::new(quiet);
-        let advice = linear::advise(&Work::new(&reporter, stop), &request);
+        let advice =
+            interrupt::compute(|stop| linear::advise(&Work::new(&reporter, stop), &request));
         reporter.clear();
         let advice = advice.map_err(failure)?;
         let holds = advice.holds();
@@ -71,7 +71,7 @@ pub(super) fn verdict(args: &AdviseArgs, command: &str, quiet: bool) -> Result<V
     let (mut request, _) = load_request(args, quiet)?;
     command.clone_into(&mut request.invocation);
     let reporter = Reporter::new(quiet);
-    let advice = advise::advise(&Work::new(&reporter, stop), &request);
+    let advice = interrupt::compute(|stop| advise::advise(&Work::new(&reporter, stop), &request));
     reporter.clear();
     let advice = advice.map_err(failure)?;
     let holds = advice.holds();

@@ -199,7 +199,7 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
         "phase error per step",
         match analysis.phase_error_per_step {
             Some(error) => format!("{} rad", short(error)),
-            None => "none: nothing oscillates".into(),
+            None => summary::no_phase_error(analysis).into(),
         },
     );
     line("force evaluations", format!("{} a step", analysis.force_evaluations_per_step));

@@ -31,7 +31,7 @@ pub(super) fn run(
         ));
     };
     let steps = args.steps.unwrap_or(DEFAULT_STEPS);
-    let analysis = analyze(system, method, dt, steps, interrupt::listen());
+    let analysis = interrupt::compute(|stop| analyze(system, method, dt, steps, stop));
     let analysis = analysis.map_err(|error| match error {
         AnalyzeError::Interrupted => Failure::Interrupted(error.to_string()),
         error => Failure::usage(error),

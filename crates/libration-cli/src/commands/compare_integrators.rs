@@ -45,7 +45,7 @@ pub(super) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     };
     let request = ComparisonRequest { system, dynamics, start, horizon, tolerance };
     let reporter = Reporter::new(args.json);
-    let found = compare(&Work::new(&reporter, interrupt::listen()), &request);
+    let found = interrupt::compute(|stop| compare(&Work::new(&reporter, stop), &request));
     reporter.clear();
     let found = found.map_err(|error| match error {
         ComparisonError::Interrupted => Failure::Interrupted(error.to_string()),

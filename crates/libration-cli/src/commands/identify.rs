@@ -25,10 +25,10 @@ pub(crate) fn run(args: &IdentifyArgs, quiet: bool) -> Result<(), Failure> {
     let (recording, warnings) = recording(args, quiet)?;
     let page_file = ResultFile::create("--page", args.page.as_deref())?;
     let saved = ResultFile::create("--save-loop", args.save_loop.as_deref())?;
-    // Before this line there is nothing to keep: a signal ends the process while it reads.
-    let stop = interrupt::listen();
+    // Before this computation there is nothing to keep: a signal ends the process while it reads.
     let reporter = Reporter::new(quiet);
-    let found = identify(&recording, &request, &Work::new(&reporter, stop));
+    let found =
+        interrupt::compute(|stop| identify(&recording, &request, &Work::new(&reporter, stop)));
     reporter.clear();
     let mut found = found.map_err(failure)?;
     found.repeat_command = command_line();

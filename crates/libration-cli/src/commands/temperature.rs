@@ -35,7 +35,8 @@ pub(super) fn run(args: &AnalyzeArgs, temperature: f64) -> Result<(String, u8), 
         seed: args.seed.unwrap_or(0),
     };
     let reporter = Reporter::new(args.json);
-    let found = analyze_temperature(&Work::new(&reporter, interrupt::listen()), &request);
+    let found =
+        interrupt::compute(|stop| analyze_temperature(&Work::new(&reporter, stop), &request));
     reporter.clear();
     let found = found.map_err(failure)?;
     let text = match (args.json, args.verbose) {

@@ -76,3 +76,41 @@ fn a_signal_ends_a_comparison_while_it_follows_the_motion() {
         assert_eq!(child.wait().unwrap().code(), Some(code), "{name}");
     }
 }
+
+/// A chain of 60 lags with commands at both ends: the limits of its latencies take minutes, in searches that check no flag.
+#[test]
+fn a_signal_ends_advice_within_a_search_and_leaves_no_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let n = 60_usize;
+    let entry = |i: usize, j: usize| if i == j { -2 } else { i32::from(i.abs_diff(j) == 1) };
+    let row = |i: usize| (0..n).map(|j| entry(i, j).to_string()).collect::<Vec<_>>().join(", ");
+    let a: Vec<String> = (0..n).map(|i| format!("[{}]", row(i))).collect();
+    let b: Vec<String> =
+        (0..n).map(|i| format!("[{}, {}]", u8::from(i == 0), u8::from(i == n - 1))).collect();
+    let text = format!("a = [{}]\nb = [{}]\n", a.join(", "), b.join(", "));
+    fs::write(folder.path().join("chain.toml"), text).unwrap();
+    let weights = format!("{}/1,1", vec!["1"; n].join(","));
+    let begin = |page: &str| {
+        Command::new(assert_cmd::cargo::cargo_bin("libration"))
+            .args(["advise", "--plant", "chain.toml", "--lqr", &weights, "--period", "0.1"])
+            .args(["--latency", "0.05", "--jitter", "gaussian:0.1", "--page", page])
+            .current_dir(&folder)
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap()
+    };
+    let runs = [("INT", 130, begin("a.html")), ("TERM", 143, begin("b.html"))];
+    sleep(Duration::from_millis(700));
+    let start = Instant::now();
+    for (name, _, child) in &runs {
+        signal(child, name);
+    }
+    for (name, code, child) in runs {
+        let output = child.wait_with_output().unwrap();
+        assert!(start.elapsed() < Duration::from_secs(5), "{name}: {:?}", start.elapsed());
+        assert_eq!(output.status.code(), Some(code), "{name}: {output:?}");
+        assert!(String::from_utf8_lossy(&output.stderr).contains("interrupted"), "{output:?}");
+    }
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "a file is left");
+}

@@ -63,6 +63,10 @@ pub fn verify(
     match (value, how.replay) {
         (Ok((dataset, format, groups)), again) => {
             flaws.extend(check_completeness(folder, &manifest, &dataset, groups)?);
+            let is_ordered = flaws.is_empty();
+            if again.is_none() && is_ordered {
+                flaws.extend(check_entries(&manifest, &dataset, format, groups[0]));
+            }
             if let Some(execution) = again {
                 flaws.extend(compare_recomputed(
                     &manifest,
@@ -114,6 +118,26 @@ fn check_completeness(
     let unlisted = unlisted.iter().filter(|path| **path != Path::new(resume_state::NAME));
     let unlisted = unlisted.map(|path| of_all(path, "is not in the manifest".to_owned()));
     Ok(extra.chain(unlisted).collect())
+}
+
+/// The entries of chunks that say something else than the settings. Checksums compare files with a manifest, and not a manifest itself.
+fn check_entries(
+    manifest: &Manifest,
+    dataset: &Dataset,
+    format: DataFormat,
+    first: usize,
+) -> Vec<Flaw> {
+    let mut before = [0, 0];
+    let of = |(i, chunk): (usize, &Chunk)| {
+        let number = first + i / dataset.chunks() as usize;
+        let step = i as u64 % dataset.chunks();
+        let key = dataset.misstated(number, step, format, &mut before, &chunk.holds)?;
+        let stated = chunk.holds.get(&key).map_or_else(|| "none".to_owned(), Value::to_string);
+        let what = format!("states {stated} as `{key}`, which is not that of the settings");
+        let (chunk, path) = (chunk.chunk.clone(), "manifest.jsonl".into());
+        Some(Flaw { chunk, path, what, broken: false })
+    };
+    manifest.chunks.iter().enumerate().filter_map(of).collect()
 }
 
 /// Reads the settings in a manifest.

@@ -147,7 +147,8 @@ fn verdict_of_loop(own: &ClosedLoop) -> String {
     }
     let moments = 100.0 * own.mean_square_growth.exp_m1().abs();
     let verb = if own.stable { "fall" } else { "grow" };
-    let second_moments = match own.mean_square_growth.abs() > GROWTH_ROUNDING {
+    let is_known = own.verdict.outcome != Outcome::Unknown;
+    let second_moments = match is_known && own.mean_square_growth.abs() > GROWTH_ROUNDING {
         true => format!("second moments {verb} by {} % per period", significant(moments, 4)),
         false => evidence.clone(),
     };
@@ -163,6 +164,9 @@ fn in_words(subject: &str, inside: &str, scope: &str, verdict: &Verdict) -> Stri
     match outcome {
         Outcome::Unknown => {
             format!("Whether {inside} is stable {scope} is not known: {evidence}.")
+        }
+        Outcome::NotResolved => {
+            format!("{subject} does not resolve the motion {scope}: {evidence}.")
         }
         outcome => format!("{subject} is {outcome} {scope}: {evidence}."),
     }

@@ -18,7 +18,7 @@ pub(super) use equations::{along_motion, of_equations};
 pub(super) use linear_advice::of_linear_advice;
 pub(super) use linear_plant::of_plant;
 pub(super) use motion::energy_change;
-pub(super) use step::of_step;
+pub(super) use step::{no_phase_error, of_step};
 pub(super) use temperature::of_temperatures;
 
 use libration_report::printable::printable;

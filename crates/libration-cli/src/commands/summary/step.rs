@@ -48,6 +48,9 @@ fn in_words(subject: &str, inside: &str, scope: &str, verdict: &Verdict) -> Stri
         Outcome::Unknown => {
             format!("Whether {inside} is stable{scope} is not known: {evidence}.")
         }
+        Outcome::NotResolved => {
+            format!("{subject} does not resolve the motion{scope}: {evidence}.")
+        }
         outcome => format!("{subject} is {outcome}{scope}: {evidence}."),
     }
 }
@@ -134,10 +137,10 @@ fn append_step(analysis: &Analysis, request: &Request, summary: &mut Summary) {
     if let Some(word) = &analysis.order_of_word {
         summary.row("order", &word.order.to_string());
     }
-    let phase = analysis.phase_error_per_step.map_or_else(
-        || "none: nothing oscillates".to_owned(),
-        |error| format!("{} rad per step", significant(error, 4)),
-    );
+    let phase = match analysis.phase_error_per_step {
+        Some(error) => format!("{} rad per step", significant(error, 4)),
+        None => no_phase_error(analysis).to_owned(),
+    };
     summary.row("phase error", &phase);
     summary.row("force evaluations", &format!("{} per step", analysis.force_evaluations_per_step));
     let of_motion = analysis.motion.as_ref().and_then(|motion| motion.energy.as_ref());
@@ -160,6 +163,14 @@ fn append_step(analysis: &Analysis, request: &Request, summary: &mut Summary) {
         }
     };
     summary.row("energy drift", &drift);
+}
+
+/// Why there is no phase error.
+pub(crate) fn no_phase_error(analysis: &Analysis) -> &'static str {
+    match analysis.loses_oscillation {
+        true => "none: a step is too long to follow the oscillation",
+        false => "none: nothing oscillates",
+    }
 }
 
 /// A decimal with four digits, also beyond the range of floats.
