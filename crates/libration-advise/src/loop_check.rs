@@ -11,6 +11,17 @@ use super::request::Request;
 use super::stabilising_changes::{StabilisingChanges, rounded_down};
 use super::{AdviseError, TURN};
 
+/// What advice on a loop in a stability window has not.
+pub(super) const WINDOW: &str = "limits of the stability window";
+
+/// The answer about a loop that is stable as stated, and without imperfections has these motions.
+pub(super) fn in_window(motions: &str) -> String {
+    format!(
+        "The loop is stable with the stated imperfections, but only in a stability window that less latency leaves: do not rely on it. \
+         Without latency, jitter, skew and loss {motions}."
+    )
+}
+
 /// Latency in periods that no analysis of a loop allows: one with the wrong unit.
 const MOST_PERIODS: f64 = 300.0;
 
@@ -18,8 +29,10 @@ const MOST_PERIODS: f64 = 300.0;
 pub(super) struct UnstableLoop {
     /// The motions that do not decay, in words, fastest first.
     pub(super) motions: Vec<String>,
-    /// Changes that stabilise the loop.
-    pub(super) remedies: StabilisingChanges,
+    /// Whether the loop is stable with the stated imperfections.
+    pub(super) is_stable_as_stated: bool,
+    /// Changes that stabilise the loop; none if it is stable as stated.
+    pub(super) remedies: Option<StabilisingChanges>,
     /// These in words, with a shorter period.
     pub(super) help: String,
 }
@@ -53,19 +66,17 @@ impl<M: PlantModel> Loop<M> {
             return Ok(None);
         };
         if timed.settles(&stated) {
-            let remedies = self.stabilising_changes(&none);
-            let help = format!(
-                "It is stable with the stated imperfections, but only in a stability window that less latency leaves: do not rely on it. {}",
-                remedies.sentence(gains)
-            );
-            return Ok(Some(UnstableLoop { motions, remedies, help }));
+            let help = "It is stable with the stated imperfections, but only in a stability window that less latency leaves.";
+            let (remedies, help) = (None, help.to_owned());
+            return Ok(Some(UnstableLoop { motions, is_stable_as_stated: true, remedies, help }));
         }
         let remedies = self.stabilising_changes(&stated);
         let shorter = self.stable_period().map_or_else(String::new, |period| {
             format!(" It is stable with a period of {} s.", rounded_down(period))
         });
         let help = format!("{}{shorter}", remedies.sentence(gains));
-        Ok(Some(UnstableLoop { motions, remedies, help }))
+        let remedies = Some(remedies);
+        Ok(Some(UnstableLoop { motions, is_stable_as_stated: false, remedies, help }))
     }
 
     /// The growth of a loop that is unstable without imperfections; it has no cost and no margin.

@@ -10,6 +10,7 @@ use serde::{Serialize, Serializer};
 use super::{ChainLink, DeadlineMisses, InputMargins, Mode, Redesign};
 use crate::budget::{Budget, FirstFailure};
 use crate::combined_effect::SimulatedCost;
+use crate::loop_check::WINDOW;
 use crate::stabilising_changes::StabilisingChanges;
 use crate::stability_map::StabilityMap;
 use crate::summary::percent;
@@ -24,6 +25,9 @@ pub struct LinearAdvice {
     /// The motions that do not decay without imperfections, in words, fastest first; empty if the loop is stable without them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub unstable_motions: Vec<String>,
+    /// The stability with the stated imperfections of a loop that is unstable without them.
+    #[serde(skip)]
+    pub(super) stable_as_stated: Option<LoopStability>,
     /// The warnings, most urgent first.
     pub warnings: Vec<String>,
     /// The states of the plant, those of lags and filters last.
@@ -163,6 +167,15 @@ impl LinearAdvice {
         let of_loop = loop_verdict(stated);
         let misses = self.deadline_misses.as_ref();
         let verdict = match () {
+            () if let Some(own) = &self.stable_as_stated => {
+                let motions = self.unstable_motions.join("; ");
+                let verdict = match &self.motion {
+                    Some(motion) => motion.judged(loop_verdict(own)),
+                    None => loop_verdict(own),
+                };
+                let evidence = format!("{}; without imperfections {motions}", verdict.evidence);
+                Verdict { evidence, ..verdict }.without(WINDOW)
+            }
             () if !self.unstable_motions.is_empty() => match stated.outcome {
                 StabilityOutcome::Undecided => Verdict::unknown(self.unstable_motions.join("; ")),
                 _ => Verdict::new(
@@ -227,7 +240,8 @@ impl LinearAdvice {
 
     /// Whether the loop is not known to be stable, with or without the stated imperfections.
     pub fn is_unstable(&self) -> bool {
-        self.growth >= 0.0 || !self.unstable_motions.is_empty()
+        let is_in_window = self.stable_as_stated.is_some();
+        !is_in_window && (self.growth >= 0.0 || !self.unstable_motions.is_empty())
     }
 
     /// Whether the cost exceeds its tolerance.

@@ -99,14 +99,20 @@ fn advise_unstable(
     let timed = &request.timed;
     let (stated, ideal) = (timed.stated().map_err(LoopError::from)?, timed.ideal());
     let stability = timed.stability(&ideal).map_err(LoopError::from)?;
+    let as_stated = match timed.settles(&stated) {
+        true => Some(timed.stability(&stated).map_err(LoopError::from)?),
+        false => None,
+    };
     let mut advice = LinearAdvice {
         growth: stability.growth,
         unstable_motions,
-        remedies: Some(timed.stabilising_changes(match timed.settles(&stated) {
-            // A stability window that less latency leaves is nothing to rely on.
-            true => &ideal,
-            false => &stated,
-        })),
+        // What stabilises the loop without its latency may not do so in a stability window of the latency.
+        remedies: as_stated.is_none().then(|| timed.stabilising_changes(&stated)),
+        motion: match (&as_stated, request.system_loop()) {
+            (Some(own), Some(system)) => system.motion(&timed.linear, &stated, own.growth, work)?,
+            _ => None,
+        },
+        stable_as_stated: as_stated,
         map: request.stability_map(work, &[])?,
         ..LinearAdvice::of_request(request)
     };
@@ -137,6 +143,7 @@ impl LinearAdvice {
             answer: String::new(),
             verdict: Verdict::unknown("not computed"),
             unstable_motions: Vec::new(),
+            stable_as_stated: None,
             warnings: Vec::new(),
             states: names(&plant.states),
             inputs: names(&plant.inputs),

@@ -4,6 +4,7 @@ use libration_report::notation::cut_off;
 use libration_report::verdict::Outcome;
 
 use super::LinearAdvice;
+use crate::loop_check::in_window;
 use crate::summary::{beside_ideal, capitalise, describe_window, noun, percent};
 use crate::used_share::share_in_percent;
 
@@ -32,6 +33,9 @@ impl LinearAdvice {
         let remedies = self.remedies.as_ref().map(|remedies| remedies.sentence(["", ""]));
         if !self.unstable_motions.is_empty() {
             let motions = self.unstable_motions.join("; ");
+            if self.stable_as_stated.is_some() && self.verdict.is_good() {
+                return in_window(&motions);
+            }
             let first = match self.verdict.outcome {
                 Outcome::Unknown => {
                     "It is unknown whether the loop is stable without latency, jitter, skew and loss"
@@ -117,6 +121,10 @@ impl LinearAdvice {
         if let Some(increase) = self.cost_increase.filter(|_| self.margin_tried_up_to.is_some()) {
             text += &format!(" Its cost is {}.", beside_ideal(increase));
         }
+        let far = self.motion.as_ref().and_then(|motion| motion.excursion.as_ref());
+        text += &far.map_or_else(String::new, |far| {
+            format!(" From the start of the system {}.", far.in_words())
+        });
         if self.is_linearised_only() {
             text += " The motion of the nonlinear system was not simulated.";
         }

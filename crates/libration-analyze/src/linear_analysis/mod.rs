@@ -3,6 +3,7 @@
 mod closed_loop;
 mod error;
 mod mode;
+mod motion_end;
 mod plant_verdict;
 mod simulated_mode;
 mod step;
@@ -26,9 +27,10 @@ pub use closed_loop::{
 };
 pub use error::LinearAnalysisError;
 pub use mode::Mode;
+pub use motion_end::{Excursion, MotionEnd, SystemMotion};
 pub use simulated_mode::SimulatedMode;
 pub use step::{ModeUnderSteps, StepAnalysis};
-pub use system_motion::{MEMORIES, MotionEnd, SystemLoop, SystemMotion};
+pub use system_motion::{MEMORIES, SystemLoop};
 pub use verdicts::LinearVerdicts;
 
 /// Version of the JSON format.

@@ -4,12 +4,11 @@ use libration::ensemble::Execution;
 use libration::linear::{LinearLoop, LoopTiming};
 use libration::linear_loops::LinearLoops;
 use libration::{AnyMethod, Method};
-use libration_report::verdict::{Outcome, Verdict};
 use libration_settings::equations::EquationSystem;
 use libration_settings::linear_loop::OperatingPoint;
 use libration_work::{Interrupted, Work};
-use serde::Serialize;
 
+use super::motion_end::{Excursion, MotionEnd, SystemMotion};
 use crate::linear_trajectory::LinearRequest;
 
 /// A system by equations under a loop around its linearisation.
@@ -25,44 +24,6 @@ pub struct SystemLoop {
     pub record: Option<Vec<f64>>,
     /// The rate of the fastest mode of the plant in 1/s.
     pub rate: f64,
-}
-
-/// The motion of a system by equations under the loop, without noise, from the start of the system.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SystemMotion {
-    /// The deviation of each state from the operating point in place of the start, where the system starts at that point or the request
-    /// states another one; none from the start.
-    pub deviation: Option<f64>,
-    /// The simulated time in s.
-    pub duration: f64,
-    /// Whether the motion returns to the operating point, and how it ends if not.
-    pub end: MotionEnd,
-}
-
-/// The end of a motion.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum MotionEnd {
-    /// All deviations fall below a twentieth of their largest size.
-    Returns,
-    /// A state keeps a deviation.
-    Away {
-        /// The state whose deviation is largest beside its largest size.
-        state: String,
-        /// The deviation.
-        deviation: f64,
-    },
-    /// A state grows by a factor of 1000 in the time in which the linearised loop forgets its start.
-    Grows {
-        /// The state.
-        state: String,
-        /// Its deviation.
-        deviation: f64,
-    },
-    /// The state stops being finite.
-    NotFinite,
-    /// Steps of a quarter of the length end in another way.
-    Unresolved,
 }
 
 /// Times in which second moments fall by a factor e until the linearised loop has forgotten its start.
@@ -88,6 +49,9 @@ const DEVIATIONS: [f64; 3] = [1e-3, 1e-6, 1e-9];
 
 /// Part of its largest deviation to which a state returns. The linearised loop leaves e⁻¹⁰.
 const RETURNED: f64 = 0.05;
+
+/// Excursions of this many times the start of a state are told.
+const FAR: f64 = 3.0;
 
 /// Growth of a state that leaves.
 const GROWN: f64 = 1e3;
@@ -152,17 +116,17 @@ impl SystemLoop {
                 };
                 LinearRequest { start, ..request.clone() }
             };
-            let Some((mut end, mut duration)) = followed(&from(&coarse), work)? else {
-                return Ok(None);
-            };
-            if end != MotionEnd::Returns {
-                let Some((other, longer)) = followed(&from(&fine), work)? else { return Ok(None) };
-                let is_alike = core::mem::discriminant(&other) == core::mem::discriminant(&end);
-                end = if is_alike { other } else { MotionEnd::Unresolved };
-                duration = longer;
+            let Some(mut found) = followed(&from(&coarse), work)? else { return Ok(None) };
+            if found.end != MotionEnd::Returns {
+                let Some(other) = followed(&from(&fine), work)? else { return Ok(None) };
+                let kind = core::mem::discriminant::<MotionEnd>;
+                let is_alike = kind(&other.end) == kind(&found.end);
+                let end = if is_alike { other.end } else { MotionEnd::Unresolved };
+                found = SystemMotion { end, ..other };
             }
-            let returns = end == MotionEnd::Returns;
-            last = Some(SystemMotion { deviation, duration, end });
+            let returns = found.end == MotionEnd::Returns;
+            found.excursion = found.excursion.filter(|_| deviation.is_none());
+            last = Some(SystemMotion { deviation, ..found });
             if returns {
                 break;
             }
@@ -171,14 +135,12 @@ impl SystemLoop {
     }
 }
 
-/// The end of a motion, and its duration in s; none where the loop cannot be simulated.
-fn followed(
-    request: &LinearRequest,
-    work: &Work<'_>,
-) -> Result<Option<(MotionEnd, f64)>, Interrupted> {
+/// A motion to its end; none where the loop cannot be simulated.
+fn followed(request: &LinearRequest, work: &Work<'_>) -> Result<Option<SystemMotion>, Interrupted> {
     let Ok(mut loops) = request.loops(Execution::serial()) else { return Ok(None) };
     let states = &request.linear.plant().states;
     let scale = ROUNDING * plant_scale(request);
+    let ended = |end, duration| SystemMotion { deviation: None, duration, end, excursion: None };
     let deviation = |loops: &LinearLoops, i| loops.state(0, i).abs();
     let mut most: Vec<f64> = request.start.iter().map(|x| x.abs()).collect();
     let mut before = most.clone();
@@ -186,7 +148,7 @@ fn followed(
         work.check()?;
         loops.advance(1);
         if !loops.is_finite(0) {
-            return Ok(Some((MotionEnd::NotFinite, loops.time(0))));
+            return Ok(Some(ended(MotionEnd::NotFinite, loops.time(0))));
         }
         for (i, most) in most.iter_mut().enumerate() {
             *most = most.max(deviation(&loops, i));
@@ -198,22 +160,36 @@ fn followed(
         let grows = grows.max_by(|&i, &j| most[i].total_cmp(&most[j]));
         if let Some(i) = grows.filter(|_| periods > request.steps) {
             let (state, deviation) = (states[i].name.clone(), loops.state(0, i));
-            return Ok(Some((MotionEnd::Grows { state, deviation }, loops.time(0))));
+            return Ok(Some(ended(MotionEnd::Grows { state, deviation }, loops.time(0))));
         }
         before.clone_from(&most);
         let rest = ROUNDING * most.iter().copied().fold(0.0, f64::max);
         let left = (0..states.len()).map(|i| (deviation(&loops, i) / (most[i] + rest), i));
         let left = left.max_by(|a, b| a.0.total_cmp(&b.0));
         match left.filter(|(left, _)| *left > RETURNED) {
-            None => return Ok(Some((MotionEnd::Returns, loops.time(0)))),
+            None => {
+                let excursion = excursion(request, &most);
+                let end = ended(MotionEnd::Returns, loops.time(0));
+                return Ok(Some(SystemMotion { excursion, ..end }));
+            }
             Some((_, i)) if periods == PATIENCE * request.steps => {
                 let (state, deviation) = (states[i].name.clone(), loops.state(0, i));
-                return Ok(Some((MotionEnd::Away { state, deviation }, loops.time(0))));
+                return Ok(Some(ended(MotionEnd::Away { state, deviation }, loops.time(0))));
             }
             Some(_) => {}
         }
     }
     Ok(None)
+}
+
+/// The state that is farthest beside its start, where that is far.
+fn excursion(request: &LinearRequest, most: &[f64]) -> Option<Excursion> {
+    let starts = request.start.iter().map(|x| x.abs());
+    let all = starts.zip(most).zip(&request.linear.plant().states);
+    let far = all.filter(|((start, most), _)| *start > 0.0 && **most > FAR * start);
+    let ((start, &deviation), signal) =
+        far.max_by(|((a, x), _), ((b, y), _)| (*x / a).total_cmp(&(*y / b)))?;
+    Some(Excursion { state: signal.name.clone(), deviation, start })
 }
 
 /// The size of the states at the operating point; 1 where they are zero.
@@ -223,49 +199,5 @@ fn plant_scale(request: &LinearRequest) -> f64 {
     match values.map(f64::abs).fold(0.0, f64::max) {
         0.0 => 1.0,
         size => size,
-    }
-}
-
-impl SystemMotion {
-    /// Where the motion begins and how it ends, in words.
-    pub fn in_words(&self) -> String {
-        let from = match self.deviation {
-            None => "from the start of the system".to_owned(),
-            Some(deviation) => format!("from {deviation:e} beside the operating point"),
-        };
-        let duration = format!("{:.4e}", self.duration).parse().unwrap_or(self.duration);
-        match &self.end {
-            MotionEnd::Returns => format!("the motion {from} returns within {duration} s"),
-            MotionEnd::Away { state, deviation } => format!(
-                "the motion {from} does not return: after {duration} s {state} is {deviation:.4e} from the operating point"
-            ),
-            MotionEnd::Grows { state, deviation } => format!(
-                "the motion {from} leaves: after {duration} s {state} is {deviation:.4e} from the operating point, and grows"
-            ),
-            MotionEnd::NotFinite => format!("the motion {from} is not finite after {duration} s"),
-            MotionEnd::Unresolved => {
-                format!("the motion {from} ends differently in shorter steps of its simulation")
-            }
-        }
-    }
-
-    /// A good verdict on the linearised loop, together with this motion.
-    pub fn judged(&self, of_loop: Verdict) -> Verdict {
-        self.contradiction().unwrap_or_else(|| {
-            let evidence = format!("{}; {}", of_loop.evidence, self.in_words());
-            Verdict { evidence, ..of_loop }
-        })
-    }
-
-    /// The verdict on a motion that does not return.
-    pub fn contradiction(&self) -> Option<Verdict> {
-        let outcome = match self.end {
-            MotionEnd::Returns => return None,
-            MotionEnd::NotFinite | MotionEnd::Grows { .. } if self.deviation.is_none() => {
-                Outcome::Unstable
-            }
-            _ => Outcome::Unknown,
-        };
-        Some(Verdict::new(outcome, self.in_words()))
     }
 }
