@@ -45,9 +45,11 @@ mod linear_weights;
 mod log_warnings;
 mod logs;
 mod long_files;
+mod loop_ranges;
 mod loop_verdicts;
 mod loops_from_starts;
 #[cfg(target_os = "linux")]
+mod manifest_contents;
 mod memory;
 mod operating_points;
 mod plant_files;
