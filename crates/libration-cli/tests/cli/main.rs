@@ -48,8 +48,8 @@ mod long_files;
 mod loop_ranges;
 mod loop_verdicts;
 mod loops_from_starts;
-#[cfg(target_os = "linux")]
 mod manifest_contents;
+#[cfg(target_os = "linux")]
 mod memory;
 mod operating_points;
 mod plant_files;
