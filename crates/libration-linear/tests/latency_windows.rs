@@ -149,14 +149,13 @@ fn an_open_loop_with_poles_on_the_unit_circle_has_windows() {
 /// `s − 1` in a period of 28 s: the plant grows by `e²⁸`, and all of its response but a part of `e⁻²⁸` is on the unit circle.
 #[test]
 fn a_search_among_roundings_ends() {
-    for period in [26.0_f64, 28.0, 30.0] {
-        let gain = period.exp() / period.exp_m1();
-        let linear = loop_of(&[vec![1.0]], &[1.0], None, &[gain], period);
-        let found = linear.latency_windows(&linear.ideal(), &Channels::Inputs(vec![0]), [160.0; 2]);
-        // By hand: the loop is unstable from a latency of about `e⁻ʰ` s on.
-        match found {
-            Ok(windows) => assert!(windows.iter().all(|w| w.to.is_some_and(|to| to < 1e-9))),
-            Err(error) => assert!(matches!(error, LinearLoopError::Search { .. }), "{error}"),
-        }
+    let period = 28.0_f64;
+    let gain = period.exp() / period.exp_m1();
+    let linear = loop_of(&[vec![1.0]], &[1.0], None, &[gain], period);
+    let found = linear.latency_windows(&linear.ideal(), &Channels::Inputs(vec![0]), [160.0; 2]);
+    // By hand: the loop is unstable from a latency of about `e⁻ʰ` s on.
+    match found {
+        Ok(windows) => assert!(windows.iter().all(|w| w.to.is_some_and(|to| to < 1e-9))),
+        Err(error) => assert!(matches!(error, LinearLoopError::Search { .. }), "{error}"),
     }
 }

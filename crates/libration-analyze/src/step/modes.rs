@@ -108,7 +108,7 @@ impl Modes {
 
     /// Whether the phase error is more than half a turn, or no number: beyond the digits of a step, nothing is left of an angle.
     pub(super) fn loses_oscillation(&self) -> bool {
-        self.phase_error.is_some_and(|error| !(error.to_f64().abs() <= PI))
+        self.phase_error.map(Wide::to_f64).is_some_and(|error| error.is_nan() || error.abs() > PI)
     }
 
     /// The eigenvalues as pairs of real and imaginary part.

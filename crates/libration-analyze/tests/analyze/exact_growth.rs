@@ -1,4 +1,6 @@
-//! The growth of motions in exact steps.
+//! The growth of motions in exact steps, and steps that are too long for them.
+
+use core::f64::consts::PI;
 
 use libration::Method;
 use libration_analyze::analyze;
@@ -22,4 +24,16 @@ fn the_growth_of_an_exact_step_is_that_of_the_linearised_equations() {
     assert_eq!(growth("pendulum", &[0.0], &[0.0]), 0.0);
     let damps = growth("damped-oscillator", &[1.0], &[0.0]);
     assert!((damps / (-0.001_f64).exp_m1() - 1.0).abs() < 1e-14, "{damps}");
+}
+
+#[test]
+fn steps_beyond_the_digits_of_an_angle_have_no_phase_error() {
+    for dt in [1e15, 1e60, 1e150] {
+        let found = analyze(&request("oscillator", Method::Rk4, dt, &[1.0], &[0.0])).unwrap();
+        assert!(found.phase_error_per_step.is_none_or(|error| error.abs() <= PI), "{dt}");
+    }
+    let found = analyze(&request("oscillator", Method::Rk4, 1e60, &[1.0], &[0.0])).unwrap();
+    assert!(found.loses_oscillation);
+    let close = analyze(&request("oscillator", Method::Rk4, 0.1, &[1.0], &[0.0])).unwrap();
+    assert!(!close.loses_oscillation && close.phase_error_per_step.is_some());
 }

@@ -8,6 +8,7 @@ mod comparison;
 mod dimensions;
 mod exact_growth;
 mod export;
+mod growing_motions;
 mod implicit;
 mod linear_analysis;
 mod loop_growth;

@@ -45,8 +45,10 @@ mod linear_weights;
 mod log_warnings;
 mod logs;
 mod long_files;
+mod loop_ranges;
 mod loop_verdicts;
 mod loops_from_starts;
+mod manifest_contents;
 #[cfg(target_os = "linux")]
 mod memory;
 mod operating_points;
