@@ -4,8 +4,10 @@ mod changes;
 mod encounter;
 mod files;
 mod request;
+mod verdict;
 
 use libration::bodies::{BodiesError, BodySimulation};
+use libration_report::verdict::Verdict;
 use libration_settings::limits::TRAJECTORY_STEPS;
 use serde::Serialize;
 
@@ -16,6 +18,7 @@ use encounter::Closest;
 pub use encounter::{ENCOUNTERS_AT_EACH_STEP, Encounter};
 pub use files::write;
 pub use request::BodiesRequest;
+pub use verdict::FEW_STEPS;
 
 /// Version of the JSON format.
 pub const SCHEMA: &str = "libration.bodies/1";
@@ -28,6 +31,8 @@ pub const COLUMNS: [&str; 9] = ["body", "step", "t", "x", "y", "z", "vx", "vy", 
 pub struct BodiesAudit {
     /// The version of this format.
     pub schema: &'static str,
+    /// Whether the motion has a fault: a change of the energy by a tenth of its size, or an end before the last step.
+    pub verdict: Verdict,
     /// The name of the system.
     pub system: String,
     /// The number of bodies.
@@ -130,8 +135,9 @@ pub fn simulate(
         predicted_by_rounding: relative(by_rounding[i], sizes[i]),
         size: sizes[i],
     });
-    Ok(BodiesAudit {
+    let mut audit = BodiesAudit {
         schema: SCHEMA,
+        verdict: Verdict::unknown(""),
         system: request.system.name.clone(),
         bodies: request.system.bodies.count(),
         integrator: request.integrator.name(),
@@ -150,7 +156,9 @@ pub fn simulate(
         conserved: conserved.collect(),
         encounter: closest.encounter(&simulation, request),
         stopped: stopped.map(|error| named(&error, request).to_string()),
-    })
+    };
+    audit.verdict = audit.judge();
+    Ok(audit)
 }
 
 fn check(request: &BodiesRequest) -> Result<(), TrajectoryError> {

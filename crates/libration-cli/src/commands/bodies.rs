@@ -8,7 +8,7 @@ use libration::bodies::{InitialConditions, PairPotential};
 use libration::ensemble::Execution;
 use libration::equations::Expression;
 use libration_analyze::bodies::{
-    BodiesAudit, BodiesRequest, ENCOUNTERS_AT_EACH_STEP, simulate, write,
+    BodiesAudit, BodiesRequest, ENCOUNTERS_AT_EACH_STEP, FEW_STEPS, simulate, write,
 };
 use libration_analyze::export::{ExportError, Rows};
 use libration_analyze::trajectory::TrajectoryError;
@@ -22,9 +22,6 @@ use crate::error::Failure;
 use crate::interrupt;
 use crate::output_file::OutputFile;
 use crate::terminal;
-
-/// Steps of an orbit below which an encounter is too fast for the time step.
-const FEW_STEPS: f64 = 20.0;
 
 /// Simulates bodies and prints the audit.
 pub(crate) fn run(args: &BodiesArgs, quiet: bool) -> Result<(), Failure> {
@@ -54,7 +51,8 @@ pub(crate) fn run(args: &BodiesArgs, quiet: bool) -> Result<(), Failure> {
     terminal::print(&text)?;
     match audit.stopped {
         Some(reason) => Err(Failure::run(reason)),
-        None => Ok(()),
+        None if audit.verdict.is_good() => Ok(()),
+        None => Err(Failure::Disagreement),
     }
 }
 
@@ -233,6 +231,7 @@ fn describe(audit: &BodiesAudit) -> String {
         audit.samples,
         energy_scale(audit),
     );
+    let _ = writeln!(text, "verdict: {}", audit.verdict);
     text += "By order: the change with twice the time step, over the power of 2; 0 where rounding hides it.\n";
     text
 }

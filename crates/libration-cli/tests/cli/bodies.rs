@@ -33,6 +33,22 @@ fn the_audit_of_bodies_has_a_prediction_for_each_change() {
     }
 }
 
+/// Of the Pythagorean problem the first encounter is at 0.01 after 1.9; steps of 0.1 pass it in one, and throw the bodies out.
+#[test]
+fn a_motion_whose_energy_is_lost_has_a_fault_and_one_with_a_passed_encounter_is_unknown() {
+    for (words, outcome, code) in [
+        ("pythagorean --integrator velocity-verlet --dt 0.1 --steps 700", "fault", 1),
+        ("figure-eight --integrator rk4 --dt 0.5 --steps 1000", "fault", 1),
+        ("figure-eight --integrator explicit-euler --dt 5 --steps 1000", "fault", 1),
+        ("figure-eight --integrator leapfrog --dt 0.15 --steps 30", "unknown", 1),
+        ("figure-eight --integrator rk4 --dt 0.01 --steps 1000", "no-fault", 0),
+    ] {
+        let output = libration(&format!("bodies {words} --no-prediction --json")).code(code);
+        let audit: Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
+        assert_eq!(audit["verdict"]["outcome"], outcome, "{words}: {}", audit["verdict"]);
+    }
+}
+
 #[test]
 fn near_a_parabolic_orbit_changes_are_relative_to_the_kinetic_energy() {
     let folder = tempfile::tempdir().unwrap();

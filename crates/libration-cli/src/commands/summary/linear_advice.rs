@@ -45,7 +45,8 @@ pub(crate) fn of_linear_advice(advice: &LinearAdvice, args: &AdviseArgs) -> Stri
     append_margins("of the redesign", redesigned, &mut summary);
     match advice.unstable_motions.is_empty() {
         true => summary.row("second moments", &change(advice.growth)),
-        false => summary.row("second moments", &change_without(advice.growth)),
+        false => summary
+            .row("second moments", &(change_without(advice.growth) + " without imperfections")),
     }
     if advice.ideal_cost.is_finite() {
         summary.row("cost", &cost(advice.cost, advice.ideal_cost));

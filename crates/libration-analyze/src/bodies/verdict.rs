@@ -1,0 +1,36 @@
+//! The verdict on a motion of bodies.
+
+use libration_report::notation::number;
+use libration_report::verdict::{Outcome, Verdict};
+
+use super::BodiesAudit;
+
+/// Steps of an orbit below which an encounter is too fast for the time step.
+pub const FEW_STEPS: f64 = 20.0;
+
+/// The part of its size by which the energy changes in a motion that is not that of the bodies: distances change by as much.
+const BROKEN: f64 = 0.1;
+
+impl BodiesAudit {
+    /// The verdict. That the energy is kept does not say that the bodies are where they should be.
+    pub(super) fn judge(&self) -> Verdict {
+        if let Some(reason) = &self.stopped {
+            return Verdict::new(Outcome::Fault, reason.clone());
+        }
+        let energy = self.conserved.iter().find(|one| one.quantity == "energy");
+        let change = energy.map_or(f64::NAN, |one| one.largest_change);
+        let evidence = format!("the energy changes by {} of its size", number(change, 3));
+        // A change that is no number is no small one.
+        if !(change <= BROKEN) {
+            return Verdict::new(Outcome::Fault, evidence);
+        }
+        let few = self.encounter.as_ref().and_then(|own| own.steps_per_orbit);
+        if let Some(steps) = few.filter(|steps| *steps < FEW_STEPS) {
+            return Verdict::unknown(format!(
+                "an orbit at the distance of the closest encounter has {} steps, fewer than {FEW_STEPS}; {evidence}",
+                number(steps, 2)
+            ));
+        }
+        Verdict::new(Outcome::NoFault, evidence).without("errors of positions")
+    }
+}
