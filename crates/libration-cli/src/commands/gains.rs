@@ -123,7 +123,7 @@ fn describe(report: &GainReport) -> String {
     }
     let limit = |x: f64| match x {
         f64::INFINITY => "no limit".to_owned(),
-        0.0 => "none holds".to_owned(),
+        0.0 => "none found".to_owned(),
         x if x.is_nan() => "-".to_owned(),
         x => number(cut_off(x, 6), 6),
     };

@@ -20,7 +20,7 @@ pub fn gains_page(report: &GainReport) -> String {
     }
     let limit = |x: f64, digits| match x {
         f64::INFINITY => Cell::absent("no limit"),
-        0.0 => Cell::absent("none holds"),
+        0.0 => Cell::absent("none found"),
         x if x.is_nan() => Cell::absent("—"),
         x => Cell::rounded(x, digits),
     };

@@ -3,7 +3,7 @@
 use super::growth::Growth;
 
 /// Gains in units of those at which a step is about unstable, between which limits are searched for in small steps.
-const NEAR: [f64; 2] = [1e-3, 1e3];
+const NEAR: [f64; 2] = [1e-6, 1e3];
 /// The least and the largest ones that are tried.
 const RANGE: [f64; 2] = [1e-30, 1e9];
 const BISECTIONS: usize = 100;

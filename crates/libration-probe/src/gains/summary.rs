@@ -198,7 +198,7 @@ impl GainReport {
         let of_kp = of_kp.min_by(|a, b| (a.largest_kp / a.kp).total_cmp(&(b.largest_kp / b.kp)));
         if let Some(joint) = of_kp {
             let most = match joint.largest_kp {
-                0.0 => "no gain of it holds".to_owned(),
+                0.0 => "no tried gain of it holds".to_owned(),
                 most => format!("its gain must stay below {}", number(cut_off(most, 5), 5)),
             };
             text += &format!(
