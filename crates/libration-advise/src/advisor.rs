@@ -3,12 +3,9 @@
 use std::sync::atomic::AtomicBool;
 
 use libration::analysis::Imperfections;
-use libration::linear::GROWTH_ROUNDING;
 use libration::{Float, Method, State, System};
 use libration_analyze::comparison::missed_force;
-use libration_analyze::linear_analysis::loop_verdict;
 use libration_analyze::motion::narrow_force;
-use libration_report::verdict::{Outcome, Verdict};
 use libration_work::Work;
 
 use super::advice::{Advice, FloatChoice, LoopAdvice};
@@ -19,7 +16,7 @@ use super::free_motion::FreeMotion;
 use super::integrator_choice::{
     IntegratorChoice, SearchExtent, StepTrial, best_possible, largest_step, offered_methods,
 };
-use super::loop_check::{UnstableLoop, WINDOW, in_window};
+use super::loop_check::UnstableLoop;
 use super::loop_simulation::{LoopSimulation, simulated_horizon};
 use super::loops::{Loop, LoopError, PlantModel};
 use super::request::{Measure, Request, Tolerance};
@@ -205,26 +202,7 @@ pub(super) fn advise_loop<M: PlantModel>(
     if let Some(unstable) = unstable {
         let combined = one.combined_effect_unstable(request)?;
         let looped = LoopAdvice { remedies: unstable.remedies, ..one.advice(request, combined)? };
-        let motions = unstable.motions.join("; ");
-        let (outcome, first) = match looped.combined.growth.abs() <= GROWTH_ROUNDING {
-            true => (Outcome::Unknown, "It is unknown whether the loop is stable"),
-            false => (Outcome::Unstable, "The loop is unstable"),
-        };
-        (advice.verdict, advice.answer) = match unstable.is_stable_as_stated {
-            true => {
-                let stated = one.timed.stated().map_err(LoopError::from)?;
-                let own = loop_verdict(&one.timed.stability(&stated).map_err(LoopError::from)?);
-                let evidence = format!("{}; without imperfections {motions}", own.evidence);
-                (Verdict { evidence, ..own }.without(WINDOW), in_window(&motions))
-            }
-            false => (
-                Verdict::new(outcome, format!("without imperfections {motions}")),
-                format!(
-                    "{first} without latency, jitter, skew and loss: {motions}. {}",
-                    unstable.help
-                ),
-            ),
-        };
+        (advice.verdict, advice.answer) = unstable.judged(&one.timed, looped.combined.growth)?;
         if request.map {
             advice.map = Some(one.timed.map(work, None)?);
         }

@@ -1,7 +1,9 @@
 //! Checks of a loop before any work, and its budgets.
 
 use libration::control::Feedback;
-use libration::linear::{LinearLoopError, LoopTiming};
+use libration::linear::{GROWTH_ROUNDING, LinearLoopError, LoopTiming};
+use libration_analyze::linear_analysis::loop_verdict;
+use libration_report::verdict::{Outcome, Verdict};
 use libration_work::Work;
 
 use super::budget::Budget;
@@ -9,6 +11,7 @@ use super::combined_effect::CombinedEffect;
 use super::loops::{Loop, LoopError, PlantModel};
 use super::request::Request;
 use super::stabilising_changes::{StabilisingChanges, rounded_down};
+use super::timed_loop::TimedLoop;
 use super::{AdviseError, TURN};
 
 /// What advice on a loop in a stability window has not.
@@ -35,6 +38,30 @@ pub(super) struct UnstableLoop {
     pub(super) remedies: Option<StabilisingChanges>,
     /// These in words, with a shorter period.
     pub(super) help: String,
+}
+
+impl UnstableLoop {
+    /// The verdict and the answer; second moments grow by `growth` per period without imperfections.
+    pub(super) fn judged(
+        &self,
+        timed: &TimedLoop,
+        growth: f64,
+    ) -> Result<(Verdict, String), AdviseError> {
+        let motions = self.motions.join("; ");
+        if self.is_stable_as_stated {
+            let stated = timed.stated().map_err(LoopError::from)?;
+            let own = loop_verdict(&timed.stability(&stated).map_err(LoopError::from)?);
+            let evidence = format!("{}; without imperfections {motions}", own.evidence);
+            return Ok((Verdict { evidence, ..own }.without(WINDOW), in_window(&motions)));
+        }
+        let (outcome, first) = match growth.abs() <= GROWTH_ROUNDING {
+            true => (Outcome::Unknown, "It is unknown whether the loop is stable"),
+            false => (Outcome::Unstable, "The loop is unstable"),
+        };
+        let verdict = Verdict::new(outcome, format!("without imperfections {motions}"));
+        let help = &self.help;
+        Ok((verdict, format!("{first} without latency, jitter, skew and loss: {motions}. {help}")))
+    }
 }
 
 impl<M: PlantModel> Loop<M> {

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::flow::Flow;
 use crate::linearised_step::LinearisedStep;
-use crate::{DelayAudit, Memory, Subject};
+use crate::{DelayAudit, MeasuredDelay, Memory, Subject};
 
 /// Steps per period of the frequencies at which phases are compared; the result is the middle one, as one may be at a resonance.
 const STEPS_PER_PERIOD: [f64; 3] = [12.0, 20.0, 33.0];
@@ -26,6 +26,15 @@ pub struct HiddenLatency {
     pub integrator_delay: Option<f64>,
     /// The sum of both in s.
     pub total: Option<f64>,
+}
+
+/// The inputs that the adapter has measured, unless the audit of many steps knows more of a delay that changes.
+pub(crate) fn measured_inputs<'a>(
+    subject: &'a Subject,
+    delays: &[DelayAudit],
+) -> impl Iterator<Item = &'a MeasuredDelay> {
+    let is_known = delays.iter().any(|audit| audit.first_change.is_some());
+    subject.measured_inputs.iter().filter(move |input| !(is_known && input.varies))
 }
 
 /// The latency of each input.
@@ -53,7 +62,7 @@ pub(crate) fn hidden_latencies(
             total: late_steps.map(|late| late * step.dt + integrator_delay.unwrap_or(0.0)),
         }
     };
-    let measured = subject.measured_inputs_without(delays).map(|input| HiddenLatency {
+    let measured = measured_inputs(subject, delays).map(|input| HiddenLatency {
         input: input.name.clone(),
         late_steps: Some(input.late_steps),
         late: Some(input.late_steps * step.dt),

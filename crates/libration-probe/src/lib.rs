@@ -19,6 +19,7 @@ mod differences;
 mod driven_velocity;
 mod energy_drift;
 mod energy_finding;
+mod energy_trajectory;
 mod finding;
 mod finding_kind;
 mod findings;

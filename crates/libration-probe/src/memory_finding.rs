@@ -3,6 +3,7 @@
 use libration_report::notation::{number, plural};
 
 use crate::FindingKind::*;
+use crate::hidden_latency::measured_inputs;
 use crate::{DelayAudit, Finding, MeasuredDelay, Memory, Observed, Subject};
 
 /// Part of a step by which a delay may differ from the stated one.
@@ -117,7 +118,7 @@ pub(crate) fn of_memory(
 
 /// Findings about the lateness that the adapter of the simulator has measured.
 pub(crate) fn of_measured(subject: &Subject, delays: &[DelayAudit], found: &mut Vec<Finding>) {
-    for input in subject.measured_inputs_without(delays) {
+    for input in measured_inputs(subject, delays) {
         let subject_of = format!("a command of `{}` acts", input.name);
         if input.varies {
             found.push(Finding::fault(

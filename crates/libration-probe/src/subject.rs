@@ -5,7 +5,7 @@ use libration_report::notation::plural;
 use serde::Deserialize;
 use thiserror::Error;
 
-use crate::{DelayAudit, OperatingPoint};
+use crate::OperatingPoint;
 
 /// What is known of a simulator before its first step.
 #[derive(Clone, Debug)]
@@ -158,15 +158,6 @@ impl Subject {
             operating_point: None,
             invocation: String::new(),
         }
-    }
-
-    /// The inputs that the adapter has measured, unless the audit of many steps knows more of a delay that changes.
-    pub(crate) fn measured_inputs_without(
-        &self,
-        delays: &[DelayAudit],
-    ) -> impl Iterator<Item = &MeasuredDelay> {
-        let is_known = delays.iter().any(|audit| audit.first_change.is_some());
-        self.measured_inputs.iter().filter(move |input| !(is_known && input.varies))
     }
 
     /// Checks all values.

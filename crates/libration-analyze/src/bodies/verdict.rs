@@ -20,8 +20,7 @@ impl BodiesAudit {
         let energy = self.conserved.iter().find(|one| one.quantity == "energy");
         let change = energy.map_or(f64::NAN, |one| one.largest_change);
         let evidence = format!("the energy changes by {} of its size", number(change, 3));
-        // A change that is no number is no small one.
-        if !(change <= BROKEN) {
+        if change.is_nan() || change > BROKEN {
             return Verdict::new(Outcome::Fault, evidence);
         }
         let few = self.encounter.as_ref().and_then(|own| own.steps_per_orbit);

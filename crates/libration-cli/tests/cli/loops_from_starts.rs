@@ -64,6 +64,21 @@ fn a_pole_that_falls_from_its_start_has_no_stable_loop() {
     assert!(shown.starts_with("The loop is unstable: the motion from the start"), "{shown}");
 }
 
+/// `q″ = 9.81 sin q + u` with `|u| ≤ 3` from 0.32: no command holds it, as 9.81 sin 0.32 > 3. It falls past the bottom, and swings up.
+#[test]
+fn a_motion_that_returns_by_a_long_way_says_how_far() {
+    let folder = tempfile::tempdir().unwrap();
+    let equations = "name = \"moved\"\ncoordinates = [\"q\"]\ninputs = [\"u\"]\nacceleration.q = \"9.81*sin(q) + max(-3, min(3, u))\"\nstart = { q = 0.32 }";
+    let (advice, shown) =
+        advised(&folder, equations, "--lqr 10,1/0.1 --period 0.02 --latency 0.03");
+    let far = &advice["motion"]["excursion"];
+    assert!(
+        far["deviation"].as_f64().unwrap() > core::f64::consts::PI && far["start"] == 0.32,
+        "{far}"
+    );
+    assert!(shown.contains("times its start"), "{shown}");
+}
+
 /// Dry friction holds a deviation of any size: its linearisation at rest knows nothing of it.
 #[test]
 fn a_start_at_rest_is_examined_beside_it() {

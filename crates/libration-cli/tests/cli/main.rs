@@ -46,6 +46,7 @@ mod log_warnings;
 mod logs;
 mod long_files;
 mod loop_ranges;
+mod loop_remedies;
 mod loop_verdicts;
 mod loops_from_starts;
 mod manifest_contents;
