@@ -8,7 +8,7 @@ use super::linear::written;
 #[test]
 fn a_loop_that_only_its_latency_stabilises_is_stable_as_stated_by_both_commands() {
     let folder = tempfile::tempdir().unwrap();
-    let text = "[system.linear]\na = [[0, 1], [-10, 0]]\nb = [[0], [1]]\n";
+    let text = "a = [[0, 1], [-10, 0]]\nb = [[0], [1]]\n";
     let file = written(&folder, "late.toml", text);
     let file = file.to_str().unwrap();
     let run = |command: &str, gain: &str, code: i32| {
