@@ -45,8 +45,10 @@ impl EquationVerdicts {
             _ if is_affine(system) => of_affine(system, method, motion.dt),
             _ => None,
         };
-        // The motion shows what rounding hides at the equilibrium.
-        let step = step.filter(|verdict| verdict.outcome != Outcome::Unknown);
+        // The motion shows what rounding hides at the equilibrium, and whether steps follow a growing mode for as long as it is asked for.
+        let is_decided =
+            |verdict: &Verdict| !matches!(verdict.outcome, Outcome::Unknown | Outcome::NotResolved);
+        let step = step.filter(is_decided);
         EquationVerdicts { step, motion: motion.examination.verdict.clone() }
     }
 

@@ -39,7 +39,10 @@ impl StepVerdicts {
             step: match &analysis.motion {
                 _ if is_loop => None,
                 _ if request.system.is_linear() => Some(of_step(analysis, request)),
-                Some(motion) if motion.is_at_rest() => Some(at_rest(analysis)),
+                // A motion at rest is followed, whatever becomes of deviations that grow.
+                Some(motion) if motion.is_at_rest() => {
+                    Some(at_rest(analysis)).filter(|own| own.outcome != Outcome::NotResolved)
+                }
                 _ => None,
             },
             motion: analysis.motion.as_ref().map(|motion| motion.verdict.clone()),

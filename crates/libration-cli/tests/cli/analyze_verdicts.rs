@@ -158,6 +158,12 @@ fn a_motion_that_is_not_resolved_or_not_known_has_exit_code_1() {
             "dormand-prince-5 in steps of 0.05 s on force resolves the motion over 1000 steps (50 s)",
             0,
         ),
+        // Its growing mode has a third of its rate, which is less than 1 % of the motion by then.
+        (
+            "analyze --force|'-26.94*q0+0.06914*v0|--q 1 --v 1 --integrator stable-pd --dt 0.0017 --steps 200",
+            "stable-pd in steps of 0.0017 s on force resolves the motion over 200 steps",
+            0,
+        ),
         // Chaos: beyond 21 s two references of different tolerance differ.
         (
             "analyze --system ../../examples/systems/lorenz.toml --integrator dormand-prince-8 --dt 0.002 --steps 15000",
