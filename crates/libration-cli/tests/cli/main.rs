@@ -70,6 +70,7 @@ mod shared_config;
 #[cfg(unix)]
 mod short_answers;
 mod simulate;
+mod snapshots;
 mod stability;
 mod steps;
 mod system_advice;

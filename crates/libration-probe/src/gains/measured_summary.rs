@@ -71,7 +71,7 @@ impl MeasuredGains {
                 report.window()
             ),
             Outcome::Unstable if let Some(passive) = self.unstable_without_servos => format!(
-                "The step is unstable without any servo, with {integrator} and {of}: without gains a mode grows by a factor {} per step, with them by {} ({}). No gain is the reason.",
+                "The step is unstable without any servo, with {integrator} and {of}: without gains a mode grows by a factor {} per step, with them by {} ({}).",
                 number(passive, 6),
                 number(self.spectral_radius, 6),
                 self.leading()

@@ -121,7 +121,7 @@ impl GainReport {
                 "; no larger gain of position was found that does not.".to_owned()
             }
             f64::INFINITY => ".".to_owned(),
-            0.0 => "; no gain of position does.".to_owned(),
+            0.0 => "; no tried factor of all gains of position does.".to_owned(),
             factor => {
                 // At the limit itself they do not hold.
                 let factor = number(cut_off(factor * (1.0 - 1e-11), 5), 5);
@@ -148,7 +148,7 @@ impl GainReport {
                 mode.joints.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ")
             });
             return format!(
-                "The step is unstable without any servo: springs or damping of the joints turn the mode of {stiffest} too far in {of} with {integrator} (factor {} per step with the servos). No gain is the reason.{} {limits}",
+                "The step is unstable without any servo: springs or damping of the joints alone make a mode grow in {of} with {integrator}. With the servos the fastest mode is that of {stiffest}, and the largest factor of a mode is {} per step.{} {limits}",
                 beside_one(self.spectral_radius_minus_one, 5),
                 self.substeps_in_words()
             );
