@@ -108,7 +108,7 @@ def gymnasium_host(
     if repeated > 1:
         notes.append(f"a step is {repeated} steps of the environment")
     simulation.settle()
-    not_examined, late_inputs, old_observation = _limits(simulation, start, vector, timestep, left_out)
+    not_examined, late_inputs, old_observation = _limits(simulation, start, vector, timestep, wrappers, left_out)
     if simulation.is_single:
         notes.append("the environment keeps its state in float32: differences have about three digits")
     if angles:
@@ -159,7 +159,7 @@ def _memory(simulation: Steps, start: Array, vector: Array, dt: float, is_wrappe
 
 
 def _limits(
-    simulation: Steps, start: Array, vector: Array, dt: float, left_out: Sequence[str]
+    simulation: Steps, start: Array, vector: Array, dt: float, kept: Sequence[str], left_out: Sequence[str]
 ) -> tuple[list[str], tuple[MeasuredDelay, ...], MeasuredDelay | None]:
     """Return what an audit does not examine, the lateness of a discrete action, or of actions whose delay varies at random, and the age of
     observations if it varies."""
@@ -167,6 +167,8 @@ def _limits(
     if left_out:
         what = "wrapper" if len(left_out) == 1 else "wrappers"
         names.insert(0, f"{len(left_out)} {what} ({', '.join(left_out)})")
+    if "MaxAndSkipObservation" in kept:
+        names.append("observations of MaxAndSkipObservation, which are of two states")
     if not simulation.is_observed:
         names.append("observations, which are no real numbers")
     if simulation.draws:

@@ -59,19 +59,42 @@ impl Closest {
         simulation: &BodySimulation,
         request: &BodiesRequest,
     ) -> Option<Encounter> {
-        let ([i, j], distance, t) = simulation.closest_encounter().or(self.found)?;
+        let (pair, distance, t) = simulation.closest_encounter().or(self.found)?;
+        Some(Encounter::new(request, pair, distance, t))
+    }
+}
+
+impl Encounter {
+    fn new(request: &BodiesRequest, [i, j]: [usize; 2], distance: f64, t: f64) -> Self {
         let bodies = &request.system.bodies;
         let mass = bodies.constant() * (bodies.masses()[i] + bodies.masses()[j]);
         let orbit = core::f64::consts::TAU * (distance.powi(3) / mass).sqrt();
         let names = &request.system.names;
         let is_solved =
             matches!(request.integrator, BodyIntegrator::WisdomHolman(_)) && (i == 0 || j == 0);
-        Some(Encounter {
+        Encounter {
             bodies: [names[i].clone(), names[j].clone()],
             distance,
             t,
             steps_per_orbit: (mass > 0.0 && !request.is_adaptive && !is_solved)
                 .then(|| orbit / request.dt.abs()),
-        })
+        }
+    }
+
+    /// The pair with the fewest steps per orbit at the start: near a heavy body an orbit is short also far away. None of many bodies.
+    pub(super) fn shortest_orbit(request: &BodiesRequest) -> Option<Self> {
+        let places: Vec<[f64; 3]> =
+            request.system.bodies.iter().map(|body| body.position).collect();
+        if places.len() > MOST {
+            return None;
+        }
+        let distance = |i: usize, j: usize| {
+            let square = |k: usize| (places[i][k] - places[j][k]).powi(2);
+            (0..3).map(square).sum::<f64>().sqrt()
+        };
+        let pairs = (0..places.len()).flat_map(|i| (i + 1..places.len()).map(move |j| [i, j]));
+        let all = pairs.map(|[i, j]| Encounter::new(request, [i, j], distance(i, j), 0.0));
+        let known = all.filter_map(|own| Some((own.steps_per_orbit?, own)));
+        known.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, own)| own)
     }
 }

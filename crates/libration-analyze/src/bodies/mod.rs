@@ -157,7 +157,7 @@ pub fn simulate(
         encounter: closest.encounter(&simulation, request),
         stopped: stopped.map(|error| named(&error, request).to_string()),
     };
-    audit.verdict = audit.judge();
+    audit.verdict = audit.judge(Encounter::shortest_orbit(request).as_ref());
     Ok(audit)
 }
 

@@ -41,6 +41,9 @@ fn a_motion_whose_energy_is_lost_has_a_fault_and_one_with_a_passed_encounter_is_
         ("figure-eight --integrator rk4 --dt 0.5 --steps 1000", "fault", 1),
         ("figure-eight --integrator explicit-euler --dt 5 --steps 1000", "fault", 1),
         ("figure-eight --integrator leapfrog --dt 0.15 --steps 30", "unknown", 1),
+        // Jupiter's period of 4332.6 d has 10.8 steps.
+        ("outer-solar-system --integrator velocity-verlet --dt 400 --steps 1000", "unknown", 1),
+        ("outer-solar-system --integrator velocity-verlet --dt 100 --steps 1000", "no-fault", 0),
         ("figure-eight --integrator rk4 --dt 0.01 --steps 1000", "no-fault", 0),
     ] {
         let output = libration(&format!("bodies {words} --no-prediction --json")).code(code);

@@ -20,7 +20,7 @@ fn snapshot(words: &str) -> String {
         .output()
         .expect("the program runs");
     let code = output.status.code().expect("no signal");
-    let mut text = format!("$ libration {words}\nexit code {code}\n");
+    let mut text = format!("$ {}\nexit code {code}\n", format!("libration {words}").trim_end());
     for (name, bytes) in [("output", output.stdout), ("errors", output.stderr)] {
         if !bytes.is_empty() {
             let _ = writeln!(text, "--- {name}");
