@@ -7,13 +7,16 @@ use crate::dependence::Dependence;
 use crate::identification::Identification;
 use crate::residuals::CONTRADICTION;
 use crate::summary::seconds;
-use crate::warnings::{Context, is_controller, other_dead_times};
+use crate::warnings::{Context, is_controller, other_dead_times, other_models};
 
 /// Fewest responses behind the first change of a command that tell a form of response from others.
 const FEWEST_FOLLOWERS: usize = 10;
 
 /// Excess kurtosis of residuals from which the likelihood of normal noise says little: that of Student's law with five degrees of freedom.
 const HEAVY: f64 = 6.0;
+
+/// Part of the range of a command that a change in one sample is at least, if it is a step.
+const STEP: f64 = 0.1;
 
 /// The responses behind the first change of the command, after the dead time.
 fn followers(context: &Context<'_>) -> usize {
@@ -22,6 +25,13 @@ fn followers(context: &Context<'_>) -> usize {
     let first = changes.filter(|(pair, _)| pair[0] != pair[1]).map(|(_, time)| *time).next();
     let since = first.unwrap_or(f64::INFINITY) + context.estimate.point.shape[0];
     recording.response_times.iter().filter(|&&time| time >= since).count()
+}
+
+/// Whether no change of a command is a step, which alone tells a dead time from a lag.
+fn is_smooth(commands: &[f64]) -> bool {
+    let low = commands.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = commands.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    commands.windows(2).all(|pair| (pair[1] - pair[0]).abs() < STEP * (high - low))
 }
 
 /// The verdict, with its evidence and what was not examined.
@@ -102,6 +112,9 @@ fn judged(found: &Identification, dependence: &Dependence, context: &Context<'_>
         return Verdict::unknown(
             "the commands do not determine the dead time: no large one is excluded",
         );
+    }
+    if let Some(other) = other_models(found).filter(|_| is_smooth(&context.recording.commands)) {
+        return Verdict::unknown(format!("the command has no step, and {other}"));
     }
     let tests = &found.residuals;
     if tests.excess_kurtosis > HEAVY && tests.normality < CONTRADICTION {

@@ -141,7 +141,7 @@ pub(crate) fn warnings(found: &Identification, context: &Context<'_>) -> Vec<Str
 }
 
 /// Models that fit nearly as well, with a dead time outside of the interval.
-fn other_models(found: &Identification) -> Option<String> {
+pub(crate) fn other_models(found: &Identification) -> Option<String> {
     let interval = found.parameter("dead_time")?.interval?;
     // Lines between commands always fit nearly as well: they count only if they fit far better.
     let is_near = |row: &&CandidateRow| match row.hold == found.hold {

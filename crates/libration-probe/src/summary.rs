@@ -21,6 +21,10 @@ impl ProbeReport {
                 sentences.push(format!("One fault: {}.", self.verdict.evidence));
             }
             (Outcome::Fault, _) => sentences.push(format!("{}.", self.verdict.evidence)),
+            (Outcome::NotResolved, _) => sentences.push(format!(
+                "The step does not follow a growing motion: {}.",
+                self.verdict.evidence
+            )),
             (Outcome::Unknown, _) => sentences.push(format!(
                 "Whether the step has a fault is unknown: {}.",
                 self.verdict.evidence

@@ -9,6 +9,9 @@ use crate::{Finding, Observed, ProbeReport, Subject};
 /// Growth per step that is no rounding.
 const GROWTH: f64 = 1e-9;
 
+/// The factor between the growth rates of a growing mode in the step and in the system up to which the step follows it.
+const FOLLOWED: f64 = 2.0;
+
 /// What the fastest mode of the step says of its stability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Growth {
@@ -59,6 +62,9 @@ impl ProbeReport {
                 number(self.spectral_radius, 6)
             ));
         }
+        if let Some(reason) = self.lost_growth() {
+            return Verdict::new(Outcome::NotResolved, reason);
+        }
         if let Some(reason) = self.uneven_responses.first() {
             return Verdict::unknown(reason.clone());
         }
@@ -77,6 +83,24 @@ impl ProbeReport {
             ),
         };
         Verdict::new(Outcome::NoFault, checks)
+    }
+
+    /// The mode whose growth in the system the step does not follow, in words.
+    fn lost_growth(&self) -> Option<String> {
+        self.modes.iter().find_map(|mode| {
+            let flow = mode.flow?;
+            let (own, system) = (mode.step.growth_rate, flow.growth_rate);
+            let grows = system > 10.0 * mode.error && system * self.dt > GROWTH;
+            let follows = (system / FOLLOWED..=system * FOLLOWED).contains(&own);
+            (grows && !follows).then(|| {
+                format!(
+                    "a mode grows at {} 1/s in the system, and at {} 1/s in the step ({})",
+                    number(system, 4),
+                    number(own, 4),
+                    mode.names()
+                )
+            })
+        })
     }
 
     /// The growth per step that the audit cannot tell from none, in words.

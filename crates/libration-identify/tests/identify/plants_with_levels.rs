@@ -76,3 +76,19 @@ fn a_ramp_leaves_the_dead_time_unknown() {
     assert!(found.verdict.evidence.contains("do not determine the dead time"), "{}", found.verdict);
     assert!(!found.has_loop());
 }
+
+/// A smooth pulse shows the sum of dead time and lag, not which part is which.
+#[test]
+fn smooth_commands_leave_models_with_other_dead_times_and_the_verdict_unknown() {
+    let times: Vec<f64> = (0..400).map(|i| f64::from(i) * 0.01).collect();
+    let commands: Vec<f64> =
+        times.iter().map(|time| 1.0 - (0.5 * core::f64::consts::PI * time).cos()).collect();
+    let arrivals: Vec<(f64, f64)> =
+        times.iter().zip(&commands).map(|(t, u)| (t + 0.0334, *u)).collect();
+    let mut draws = Draws(72);
+    let clean = lag_response(&arrivals, 0.05, 1.0, &times);
+    let responses: Vec<f64> = clean.iter().map(|y| y + 0.01 * draws.normal()).collect();
+    let recording = Recording::new(&times, &commands, &times, &responses).expect("valid");
+    let found = identified(&recording, &quick());
+    assert_eq!(found.verdict.outcome, Outcome::Unknown, "{}", found.answer);
+}

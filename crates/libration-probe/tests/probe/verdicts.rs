@@ -149,6 +149,23 @@ fn a_mode_that_changes_its_sign_in_each_step_has_no_damping_that_the_step_adds()
     assert_eq!(report.verdict.outcome, Outcome::Fault, "{}", report.answer);
 }
 
+/// `x″ = 9x` grows at 3 1/s. Backward Euler has the factors 1/(1 ∓ 3h): −0.2 for h = 2, −1.25 for 0.6, and 1.03093 for 0.01.
+#[test]
+fn a_step_that_does_not_follow_a_growing_mode_is_not_without_fault() {
+    let step = |x: &[f64], _: &[f64], h: f64| {
+        let d = 1.0 - 9.0 * h * h;
+        vec![(x[0] + h * x[1]) / d, (x[1] + 9.0 * h * x[0]) / d]
+    };
+    for (dt, outcome) in
+        [(2.0, Outcome::NotResolved), (0.6, Outcome::NotResolved), (0.01, Outcome::NoFault)]
+    {
+        let subject = Subject::new("falling", vec![0.0, 0.0], vec![], dt);
+        let report = Simulator::new(step).audit(&subject);
+        assert_eq!(report.verdict.outcome, outcome, "{dt}: {}", report.answer);
+        assert_eq!(report.answer.contains("No fault"), outcome.is_good(), "{}", report.answer);
+    }
+}
+
 fn with_action(mut subject: Subject) -> Subject {
     let other = pendulum_subject();
     (subject.inputs, subject.action, subject.action_scale) =

@@ -2,6 +2,7 @@
 
 use libration_analyze::linear_analysis::{LinearAnalysis, StepAnalysis};
 use libration_analyze::{beside_one, is_at_limit, is_within};
+use libration_report::verdict::Outcome;
 
 use super::super::digits::{least, limit, significant};
 use super::Summary;
@@ -46,6 +47,12 @@ pub(super) fn append_steps(analysis: &LinearAnalysis, is_one: bool, summary: &mu
             None => {
                 let reason = step.unknown_stable_dt.map_or(String::new(), |why| format!(", {why}"));
                 (group_of(format!("not known{reason}")), name.to_owned())
+            }
+            // Windows say nothing of modes that grow by themselves, and faster in steps.
+            Some([[Some(0.0), None]])
+                if step.verdict.as_ref().is_some_and(|own| own.outcome == Outcome::Unstable) =>
+            {
+                (1, name.to_owned())
             }
             Some(windows) if analysis.dt.is_some_and(|dt| is_at_limit(windows, dt)) => {
                 (group_of("at the limit of stability".to_owned()), name.to_owned())
