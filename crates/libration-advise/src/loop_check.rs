@@ -14,7 +14,7 @@ use super::stabilising_changes::{StabilisingChanges, rounded_down};
 use super::timed_loop::TimedLoop;
 use super::{AdviseError, TURN};
 
-/// What advice on a loop in a stability window has not.
+/// The part that advice on a loop in a stability window lacks.
 pub(super) const WINDOW: &str = "limits of the stability window";
 
 /// The answer about a loop that is stable as stated, and without imperfections has these motions.

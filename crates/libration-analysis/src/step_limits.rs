@@ -28,7 +28,7 @@ pub struct StepLimits {
 const SHORT: usize = 7;
 
 impl StepLimits {
-    /// Of an integrator, as exact as [`LinearStepper::stable_steps`].
+    /// The limits of an integrator, as exact as [`LinearStepper::stable_steps`].
     pub fn new(method: impl Into<AnyMethod>) -> Self {
         let method = method.into();
         let function = StabilityFunction::of(method);
@@ -77,7 +77,7 @@ impl StepLimits {
             return Some(intersection(exact.into_iter()));
         }
         let last = undamped.last().map_or(0.0, |window| window.to);
-        // Of gyroscopic forces: where an exact mode neither grows nor decays, no search in `f64` tells growth from rounding.
+        // Where gyroscopic forces leave an exact mode that neither grows nor decays, no search in `f64` tells growth from rounding.
         if values.iter().any(|value| value.re == 0.0 && value.im != 0.0) {
             let most = match method {
                 AnyMethod::Explicit(_) => 2.0 * last + 1.0,

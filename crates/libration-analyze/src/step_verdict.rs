@@ -1,9 +1,7 @@
 //! Whether a step lets deviations grow more than exact steps do.
 
-use core::f64::consts::PI;
-
 use libration::linear::Complex64;
-use libration_report::verdict::{Outcome, Verdict};
+use libration_report::verdict::{Outcome, Verdict, follows_growth};
 
 use crate::digits::{beside_one, change_per_step, significant};
 use crate::stable_steps::{is_at_limit, is_within};
@@ -23,9 +21,6 @@ const DEFECTIVE: f64 = 1e-6;
 
 /// A mode of the plant that grows may grow by this part faster in steps: they are inaccurate then, not unstable.
 const FASTER: f64 = 1.5;
-
-/// The factor between the growth rates of a growing mode in steps and in exact steps up to which steps follow it.
-pub(crate) const FOLLOWED: f64 = 2.0;
 
 /// Distance of eigenvalues, relative to their size, up to which they may be one that rounding parted.
 const PARTED: f64 = 1e-6;
@@ -135,14 +130,10 @@ impl StepGrowth<'_> {
     /// A mode that grows in exact steps and that these steps do not follow, in words: they damp it, turn it round, or let it grow at
     /// another rate. None if they follow all of them.
     fn lost_growth(&self, rounding: f64) -> Option<String> {
-        let follows = |growth: f64, exact: f64| {
-            let [own, exact] = [growth, exact].map(f64::ln);
-            own * FOLLOWED >= exact && own <= FOLLOWED * exact
-        };
         let lost = self.modes.iter().find(|mode| {
-            let turned = (mode.angle - mode.exact_angle).abs() > 0.5 * PI;
-            mode.exact_growth > 1.0 + rounding
-                && (turned || !follows(mode.growth, mode.exact_growth))
+            let own = [mode.growth.ln(), mode.angle];
+            let exact = [mode.exact_growth.ln(), mode.exact_angle];
+            mode.exact_growth > 1.0 + rounding && !follows_growth(own, exact)
         });
         if let Some(mode) = lost {
             let own = multiplier(mode.growth, mode.angle);
@@ -151,8 +142,9 @@ impl StepGrowth<'_> {
                 "the steps do not follow a growing motion: a step multiplies it by {own}, an exact one by {exact}"
             ));
         }
-        let exact = (self.exact_rate * self.dt).exp();
-        let radius = self.radius.filter(|radius| self.modes.is_empty() && !follows(*radius, exact));
+        let exact = [self.exact_rate * self.dt, 0.0];
+        let is_lost = |radius: &f64| !follows_growth([radius.ln(), 0.0], exact);
+        let radius = self.radius.filter(|radius| self.modes.is_empty() && is_lost(radius));
         radius.map(|_| "the steps do not follow a growing motion".to_owned())
     }
 

@@ -15,7 +15,7 @@ const FEWEST_FOLLOWERS: usize = 10;
 /// Excess kurtosis of residuals from which the likelihood of normal noise says little: that of Student's law with five degrees of freedom.
 const HEAVY: f64 = 6.0;
 
-/// Part of the range of a command that a change in one sample is at least, if it is a step.
+/// Part of the range of a command that a change in one sample is at least, if it is a step: a smooth one that ten samples follow has less.
 const STEP: f64 = 0.1;
 
 /// The responses behind the first change of the command, after the dead time.

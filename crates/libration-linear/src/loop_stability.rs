@@ -81,7 +81,7 @@ impl LinearLoop {
         found: LoopStability,
         timing: &LoopTiming,
     ) -> Result<LoopStability, LinearLoopError> {
-        // What the plant adds in a period and the commands take away is rounded. A loop that decays does so by the digits that are left.
+        // The commands take away what the plant adds in a period, with its rounding. A loop that decays does so by the digits that are left.
         let plant = self.plant_growth(timing);
         let off = ((0.5 * found.growth).exp() - 1.0).abs();
         if DOUBT * plant > 1e-3 && (off.is_nan() || off <= DOUBT * plant) {

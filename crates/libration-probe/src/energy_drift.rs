@@ -144,7 +144,7 @@ impl EnergyDrift {
             true => None,
             false => {
                 let mut half = Trajectory::run(prober, &start, subject.dt / 2.0, 2 * steps, size)?;
-                // What a step adds is no scale: half of it would not.
+                // Energy that the step adds is no scale: a step of half the length adds less.
                 let exchanged = full.exchanged(prober)?.min(half.exchanged(prober)?);
                 if exchanged > LEFT * size && half.is_finite {
                     full.change_unit(size, exchanged);

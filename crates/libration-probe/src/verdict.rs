@@ -1,16 +1,15 @@
 //! The verdict of an audit: the one source of its sentences, its title and its exit code.
 
+use core::f64::consts::TAU;
+
 use libration_report::notation::{number, plural};
-use libration_report::verdict::{Outcome, Verdict};
+use libration_report::verdict::{Outcome, Verdict, follows_growth};
 
 use crate::FindingKind::{GrowsAlways, UnstableStep};
 use crate::{Finding, Observed, ProbeReport, Subject};
 
 /// Growth per step that is no rounding.
 const GROWTH: f64 = 1e-9;
-
-/// The factor between the growth rates of a growing mode in the step and in the system up to which the step follows it.
-const FOLLOWED: f64 = 2.0;
 
 /// What the fastest mode of the step says of its stability.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,10 +90,15 @@ impl ProbeReport {
             let flow = mode.flow?;
             let (own, system) = (mode.step.growth_rate, flow.growth_rate);
             let grows = system > 10.0 * mode.error && system * self.dt > GROWTH;
-            let follows = (system / FOLLOWED..=system * FOLLOWED).contains(&own);
+            let [re, im] = mode.factor;
+            // The angle of a turn and that of the turn back are one.
+            let turn = (TAU * flow.frequency * self.dt).rem_euclid(TAU);
+            let exact = [system * self.dt, turn.min(TAU - turn)];
+            let follows = follows_growth([own * self.dt, im.atan2(re).abs()], exact);
             (grows && !follows).then(|| {
+                let turns = if im == 0.0 && re < 0.0 { ", with another sign in each" } else { "" };
                 format!(
-                    "a mode grows at {} 1/s in the system, and at {} 1/s in the step ({})",
+                    "a mode grows at {} 1/s in the system, and at {} 1/s in the step{turns} ({})",
                     number(system, 4),
                     number(own, 4),
                     mode.names()

@@ -1,5 +1,6 @@
 //! Verdicts: the one place in which a result is called good, bad or unknown.
 
+use core::f64::consts::FRAC_PI_2;
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
@@ -135,6 +136,16 @@ pub fn exit_code<'a>(verdicts: impl IntoIterator<Item = &'a Verdict>) -> u8 {
         true => GOOD,
         false => NOT_GOOD,
     }
+}
+
+/// The factor between the growth rates of a growing mode in steps and in exact steps up to which steps follow it.
+pub const FOLLOWED: f64 = 2.0;
+
+/// Whether a step follows a mode that grows, by the logarithm of its growth in a step and its angle in rad, of the step and of an exact
+/// one. A mode that the step turns by more than a quarter of a turn moves the other way.
+pub fn follows_growth([own, angle]: [f64; 2], [exact, exact_angle]: [f64; 2]) -> bool {
+    let is_turned = (angle - exact_angle).abs() > FRAC_PI_2;
+    !is_turned && own * FOLLOWED >= exact && own <= FOLLOWED * exact
 }
 
 #[cfg(test)]

@@ -106,7 +106,7 @@ fn advise_unstable(
     let mut advice = LinearAdvice {
         growth: stability.growth,
         unstable_motions,
-        // What stabilises the loop without its latency may not do so in a stability window of the latency.
+        // A change that stabilises the loop without its latency may not do so in a stability window of the latency.
         remedies: as_stated.is_none().then(|| timed.stabilising_changes(&stated)),
         motion: match (&as_stated, request.system_loop()) {
             (Some(own), Some(system)) => system.motion(&timed.linear, &stated, own.growth, work)?,

@@ -66,18 +66,12 @@ impl Closest {
 
 impl Encounter {
     fn new(request: &BodiesRequest, [i, j]: [usize; 2], distance: f64, t: f64) -> Self {
-        let bodies = &request.system.bodies;
-        let mass = bodies.constant() * (bodies.masses()[i] + bodies.masses()[j]);
-        let orbit = core::f64::consts::TAU * (distance.powi(3) / mass).sqrt();
         let names = &request.system.names;
-        let is_solved =
-            matches!(request.integrator, BodyIntegrator::WisdomHolman(_)) && (i == 0 || j == 0);
         Encounter {
             bodies: [names[i].clone(), names[j].clone()],
             distance,
             t,
-            steps_per_orbit: (mass > 0.0 && !request.is_adaptive && !is_solved)
-                .then(|| orbit / request.dt.abs()),
+            steps_per_orbit: steps_per_orbit(request, [i, j], distance),
         }
     }
 
@@ -93,8 +87,18 @@ impl Encounter {
             (0..3).map(square).sum::<f64>().sqrt()
         };
         let pairs = (0..places.len()).flat_map(|i| (i + 1..places.len()).map(move |j| [i, j]));
-        let all = pairs.map(|[i, j]| Encounter::new(request, [i, j], distance(i, j), 0.0));
-        let known = all.filter_map(|own| Some((own.steps_per_orbit?, own)));
-        known.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, own)| own)
+        let steps = |[i, j]: [usize; 2]| steps_per_orbit(request, [i, j], distance(i, j));
+        let known = pairs.filter_map(|pair| Some((steps(pair)?, pair)));
+        let (_, [i, j]) = known.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
+        Some(Encounter::new(request, [i, j], distance(i, j), 0.0))
     }
+}
+
+fn steps_per_orbit(request: &BodiesRequest, [i, j]: [usize; 2], distance: f64) -> Option<f64> {
+    let bodies = &request.system.bodies;
+    let mass = bodies.constant() * (bodies.masses()[i] + bodies.masses()[j]);
+    let orbit = core::f64::consts::TAU * (distance.powi(3) / mass).sqrt();
+    let is_solved =
+        matches!(request.integrator, BodyIntegrator::WisdomHolman(_)) && (i == 0 || j == 0);
+    (mass > 0.0 && !request.is_adaptive && !is_solved).then(|| orbit / request.dt.abs())
 }

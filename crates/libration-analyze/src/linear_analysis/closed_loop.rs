@@ -77,7 +77,7 @@ pub struct StateDeviation {
 /// parts by roots.
 const VANISHED: f64 = 1e-3;
 
-/// What no linearisation shows.
+/// The part of a verdict that no linearisation shows.
 pub const NOT_SIMULATED: &str = "the motion of the nonlinear system";
 
 impl ClosedLoop {

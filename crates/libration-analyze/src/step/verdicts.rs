@@ -6,7 +6,7 @@ use libration::AnySystem;
 use libration::ensemble::dynamics_of;
 use libration::equations::StepProgram;
 use libration::linear::GROWTH_ROUNDING;
-use libration_report::verdict::{Outcome, Verdict};
+use libration_report::verdict::{FOLLOWED, Outcome, Verdict};
 use libration_settings::units;
 use serde::Serialize;
 
@@ -14,7 +14,7 @@ use super::limits::is_free;
 use super::{Analysis, AnalyzeError, LoopAnalysis, Request};
 use crate::digits::change_per_step;
 use crate::motion::{MotionExamination, MotionState, MotionSubject, examine};
-use crate::step_verdict::{FOLLOWED, StepGrowth};
+use crate::step_verdict::StepGrowth;
 
 /// The verdicts on a step of a system of the catalogue. Of a loop there is that of the loop alone.
 #[derive(Clone, Debug, Default, Serialize)]

@@ -45,7 +45,7 @@ fn steps_that_damp_or_turn_a_growing_motion_do_not_resolve_it() {
     let beside = vec![vec![5.0, 0.0, 0.0], vec![0.0, 0.1, -9.0], vec![0.0, 9.0, 0.1]];
     let beside = verdict_on(&beside, Method::ExplicitEuler, 0.02);
     assert_eq!(beside.outcome, Outcome::NotResolved, "{beside}");
-    // What steps follow is stable: within a few per cent of the exact growth.
+    // Steps within a few per cent of the exact growth follow it, and are stable.
     for (rows, method, dt) in [
         (growing.to_vec(), AnyMethod::from(ImplicitMethod::BackwardEuler), 0.1),
         (growing.to_vec(), ImplicitMethod::ImplicitMidpoint.into(), 0.5),

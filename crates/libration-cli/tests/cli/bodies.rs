@@ -33,7 +33,7 @@ fn the_audit_of_bodies_has_a_prediction_for_each_change() {
     }
 }
 
-/// Of the Pythagorean problem the first encounter is at 0.01 after 1.9; steps of 0.1 pass it in one, and throw the bodies out.
+/// The first encounter of the Pythagorean problem is at 0.01 after 1.9; steps of 0.1 pass it in one, and throw the bodies out.
 #[test]
 fn a_motion_whose_energy_is_lost_has_a_fault_and_one_with_a_passed_encounter_is_unknown() {
     for (words, outcome, code) in [

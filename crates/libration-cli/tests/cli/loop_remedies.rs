@@ -1,4 +1,4 @@
-//! What `advise` proposes for a loop that is unstable, or that only its latency stabilises.
+//! Changes that `advise` proposes for a loop that is unstable, or that only its latency stabilises.
 
 use super::advise::libration;
 use super::linear::written;

@@ -97,7 +97,7 @@ fn of_deviation(deviation: &Matrix, zeros: impl Fn() -> usize) -> Growth {
     let Some(mut values) = eigenvalues(deviation) else { return Growth::Unknown };
     let largest = values.iter().map(|value| value.norm()).fold(0.0, f64::max);
     let rounding = ROUNDINGS * values.len() as f64 * largest;
-    // Of a double eigenvalue.
+    // Rounding parts a double eigenvalue by its root.
     let parted = (rounding * largest).sqrt();
     values.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
     let near_zero = values.iter().filter(|value| value.norm() <= 10.0 * parted).count();

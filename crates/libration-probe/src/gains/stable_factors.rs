@@ -29,7 +29,7 @@ pub(super) struct StableFactors {
 impl StableFactors {
     const NONE: Self = StableFactors { least: 0.0, most: 0.0 };
 
-    /// Those of a gain whose given value has this `size`, in units of the gain at which a step is about unstable.
+    /// The stable factors of a gain whose given value has this `size`, in units of the gain at which a step is about unstable.
     pub(super) fn search(size: f64, resolution: f64, growth: impl Fn(f64) -> Growth) -> Self {
         if size == 0.0 {
             let most = if growth(1.0) == Growth::Some { 0.0 } else { f64::INFINITY };

@@ -152,6 +152,14 @@ fn a_mode_that_changes_its_sign_in_each_step_has_no_damping_that_the_step_adds()
 /// `x″ = 9x` grows at 3 1/s. Backward Euler has the factors 1/(1 ∓ 3h): −0.2 for h = 2, −1.25 for 0.6, and 1.03093 for 0.01.
 #[test]
 fn a_step_that_does_not_follow_a_growing_mode_is_not_without_fault() {
+    // Implicit midpoint with h = 1: (1 + 3/2)/(1 − 3/2) = −5, more than half the rate of the exact e³, but with another sign in each step.
+    let midpoint = |x: &[f64], _: &[f64], h: f64| {
+        let (a, d) = (1.0 + 2.25 * h * h, 1.0 - 2.25 * h * h);
+        vec![(a * x[0] + h * x[1]) / d, (9.0 * h * x[0] + a * x[1]) / d]
+    };
+    let turned =
+        Simulator::new(midpoint).audit(&Subject::new("falling", vec![0.0; 2], vec![], 1.0));
+    assert_eq!(turned.verdict.outcome, Outcome::NotResolved, "{}", turned.answer);
     let step = |x: &[f64], _: &[f64], h: f64| {
         let d = 1.0 - 9.0 * h * h;
         vec![(x[0] + h * x[1]) / d, (x[1] + 9.0 * h * x[0]) / d]
