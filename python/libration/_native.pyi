@@ -182,7 +182,7 @@ def _verify_dataset(
     repair: bool,
     threads: int,
     progress: Callable[[int, int, int], Any] | None,
-) -> list[tuple[str, PathLike[str], str, bool]]: ...
+) -> tuple[list[tuple[str, PathLike[str], str, bool]], list[str]]: ...
 @final
 class Trajectories:
     def __new__(

@@ -16,7 +16,7 @@ from ._toml import text_of
 from .equations import EquationSystem, check_system
 from .systems import System, with_commands
 
-__all__ = ["Flaw", "SETTINGS", "Written", "environment_spec", "join", "recover_environment", "verify", "write"]
+__all__ = ["Flaw", "Flaws", "SETTINGS", "Written", "environment_spec", "join", "recover_environment", "verify", "write"]
 
 SETTINGS: str = _native._dataset_settings()
 """Default settings file, with comments."""
@@ -47,6 +47,13 @@ class Flaw:
     """Description of the defect."""
     repaired: bool = False
     """Whether the file was recomputed and replaced."""
+
+
+class Flaws(list[Flaw]):
+    """The defects of a data set."""
+
+    not_examined: tuple[str, ...] = ()
+    """The parts of the data set that were not compared with anything, in words."""
 
 
 @check_keywords
@@ -195,10 +202,11 @@ def verify(
     repair: bool = False,
     threads: int = 0,
     progress: Progress = None,
-) -> list[Flaw]:
-    """Return the defects of a data set, as ``libration verify`` prints them.
+) -> Flaws:
+    """Return the defects of a data set, as ``libration verify`` prints them, and in ``not_examined`` what was not compared.
 
-    With ``replay`` the data set is recomputed from its settings and compared. With ``repair`` missing, truncated or altered files are
+    Without ``replay`` that is whether the settings lead to these files, and the counts of ended episodes; of a data set of another
+    version it is all but checksums. With ``replay`` the data set is recomputed from its settings and compared. With ``repair`` missing, truncated or altered files are
     recomputed and replaced; they are in the list with ``repaired`` true, and have their original bytes.
 
     Raises
@@ -215,8 +223,10 @@ def verify(
 
         threads = count("threads", threads, 0, 1024)
         callback = report if display.enabled else None
-        flaws = _native._verify_dataset(Path(folder), bool(replay), bool(repair), threads, callback)
-    return [Flaw(chunk, Path(path), what, repaired) for chunk, path, what, repaired in flaws]
+        found, not_examined = _native._verify_dataset(Path(folder), bool(replay), bool(repair), threads, callback)
+    flaws = Flaws(Flaw(chunk, Path(path), what, repaired) for chunk, path, what, repaired in found)
+    flaws.not_examined = tuple(not_examined)
+    return flaws
 
 
 def environment_spec(folder: str | os.PathLike[str]) -> Any:

@@ -282,6 +282,13 @@ def test_a_broken_file_is_computed_again_byte_for_byte(tmp_path):
     assert file.read_bytes() == good and libration.datasets.verify(folder) == []
 
 
+def test_a_verification_without_a_replay_names_what_it_did_not_compare(tmp_path):
+    libration.datasets.write(tmp_path / "set", DATA, format="npy")
+    named = libration.datasets.verify(tmp_path / "set").not_examined
+    assert len(named) == 2 and "settings lead to these files" in named[0] and "`ends`" in named[1]
+    assert libration.datasets.verify(tmp_path / "set", replay=True).not_examined == ()
+
+
 @pytest.mark.parametrize(
     "change, error, told",
     [

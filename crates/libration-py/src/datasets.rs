@@ -7,7 +7,8 @@ use std::sync::{Mutex, PoisonError};
 use libration::ensemble::Execution;
 use libration_env::dataset;
 use libration_env::dataset::{
-    DataFormat, Dataset, EquationSource, Flaw, JoinJob, Monitor, Transfer, VerifyOptions, WriteJob,
+    DataFormat, Dataset, EquationSource, Flaw, JoinJob, Monitor, Transfer, Verification,
+    VerifyOptions, WriteJob,
 };
 use pyo3::prelude::*;
 
@@ -150,7 +151,7 @@ fn flaw_entry(flaw: Flaw, repaired: bool) -> FlawEntry {
     (flaw.chunk, flaw.path, keywords(&flaw.what), repaired)
 }
 
-/// Reads a data set, and computes it or what is broken again if asked to. Gives what is or was wrong.
+/// Reads a data set, and computes it or what is broken again if asked to. Gives what is or was wrong, and what was not examined.
 #[pyfunction]
 pub(crate) fn _verify_dataset(
     py: Python<'_>,
@@ -159,7 +160,7 @@ pub(crate) fn _verify_dataset(
     repair: bool,
     threads: usize,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Vec<FlawEntry>> {
+) -> PyResult<(Vec<FlawEntry>, Vec<String>)> {
     let again = Execution::serial().threads(threads).map_err(Raised::raised)?;
     let how = VerifyOptions { replay: replay.then_some(&again), repair: repair.then_some(&again) };
     let (transitions, bytes, repaired) =
@@ -177,10 +178,11 @@ pub(crate) fn _verify_dataset(
         },
         progress_callback(&transitions, &bytes, 0, progress.as_ref()),
     )?;
-    let (_, flaws) = checked.map_err(Raised::raised)?;
+    let Verification { flaws, not_examined, .. } = checked.map_err(Raised::raised)?;
     let repaired = repaired.into_inner().unwrap_or_else(PoisonError::into_inner);
     let repaired = repaired.into_iter().map(|flaw| flaw_entry(flaw, true));
-    Ok(repaired.chain(flaws.into_iter().map(|flaw| flaw_entry(flaw, false))).collect())
+    let flaws = repaired.chain(flaws.into_iter().map(|flaw| flaw_entry(flaw, false))).collect();
+    Ok((flaws, not_examined))
 }
 
 /// Tells how far it is, whenever that has changed.

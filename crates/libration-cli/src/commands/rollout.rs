@@ -8,6 +8,8 @@ use libration_env::dataset::{
     Dataset, DatasetError, EquationSource, JoinJob, Transfer, VerifyOptions, WriteJob,
 };
 use libration_lab::ReportCheck;
+use libration_report::printable::printable;
+use libration_report::verdict::{Outcome, Verdict};
 use libration_settings::ConfigCommand;
 
 use super::dataset_progress::{Watcher, failed, shown};
@@ -116,10 +118,11 @@ pub(crate) fn verify(args: &VerifyArgs, quiet: bool) -> Result<(), Failure> {
     let watcher = Watcher::new(quiet, &args.folder, 0);
     let checked = dataset::verify(&args.folder, how, &watcher);
     watcher.clear();
-    let (manifest, flaws) = checked.map_err(|error| match error {
-        DatasetError::Interrupted => Failure::Interrupted("interrupted".to_owned()),
-        error => failed(error, &args.folder),
-    })?;
+    let dataset::Verification { manifest, flaws, not_examined } =
+        checked.map_err(|error| match error {
+            DatasetError::Interrupted => Failure::Interrupted("interrupted".to_owned()),
+            error => failed(error, &args.folder),
+        })?;
     for flaw in &flaws {
         terminal::error(&shown(flaw, &args.folder));
     }
@@ -134,17 +137,22 @@ pub(crate) fn verify(args: &VerifyArgs, quiet: bool) -> Result<(), Failure> {
         return Err(Failure::Disagreement);
     }
     if !quiet {
-        let what = if args.replay {
-            "as the manifest and the settings say"
-        } else {
-            "as the manifest says"
+        let what = match args.replay {
+            true => "as the manifest and the settings say",
+            false => "with the checksums of the manifest",
         };
-        terminal::print(&format!(
-            "{} chunks, {} files, {:.3} GB: all {what}\n",
+        let files = manifest.chunks.iter().map(|chunk| chunk.files.len()).sum::<usize>();
+        let evidence = format!(
+            "{} chunks, {files} files, {:.3} GB: all {what}",
             manifest.chunks.len(),
-            manifest.chunks.iter().map(|chunk| chunk.files.len()).sum::<usize>(),
             manifest.bytes() as f64 / 1e9
-        ))?;
+        );
+        let verdict = Verdict::new(Outcome::NoFault, evidence);
+        let verdict = not_examined.into_iter().fold(verdict, Verdict::without);
+        let limits = verdict.limits();
+        for line in [&verdict.evidence, &limits].into_iter().filter(|line| !line.is_empty()) {
+            terminal::print(&format!("{}\n", printable(line)))?;
+        }
     }
     Ok(())
 }

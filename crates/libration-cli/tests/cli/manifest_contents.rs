@@ -34,3 +34,46 @@ fn a_manifest_that_states_other_contents_than_the_settings_does_not_pass() {
     fs::write(&manifest, &text).unwrap();
     libration("verify set").current_dir(dir.path()).assert().success();
 }
+
+#[test]
+fn counts_and_settings_that_verify_does_not_recompute_are_named() {
+    let dir = settings(EPISODES);
+    write(&dir, "set", "--format npy").success();
+    let manifest = dir.path().join("set/manifest.jsonl");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let verify = |words: &str| libration(words).current_dir(dir.path()).assert();
+    let count = text.rfind("\"ends\":").unwrap() + "\"ends\":".len();
+    let other = format!(
+        "{}1{}",
+        &text[..count],
+        &text[count..].trim_start_matches(|c: char| c.is_ascii_digit())
+    );
+    for changed in [other, text.replace("\"dt\":0.01", "\"dt\":0.02")] {
+        assert_ne!(changed, text);
+        fs::write(&manifest, changed).unwrap();
+        let named = contains(
+            "Not examined: whether the settings lead to these files, the counts `ends` of the manifest",
+        );
+        verify("verify set").success().stdout(named.and(contains("all with the checksums")));
+        verify("verify set --replay").code(1).stdout("");
+    }
+    fs::write(&manifest, &text).unwrap();
+    verify("verify set --replay").success().stdout(contains("Not examined").not());
+    // Another version may compute other numbers.
+    fs::write(&manifest, text.replace("\"version\":\"0", "\"version\":\"7")).unwrap();
+    verify("verify set")
+        .success()
+        .stdout(contains("Not examined: all but checksums").and(contains("written by version")));
+    for (good, edited, key) in [
+        ("\"unit\":\"m\"", "\"unit\":\"mm\"", "observation"),
+        ("\"symplectic-euler\"", "\"symplectic\"", "integrator"),
+        ("\"groups\":[0,1]", "\"groups\":[0,3]", "groups"),
+    ] {
+        let changed = text.replace(good, edited);
+        assert_ne!(changed, text, "{text}");
+        fs::write(&manifest, changed).unwrap();
+        let said = contains("set/manifest.jsonl has a first line that this version does not write")
+            .and(contains(key));
+        verify("verify set").code(1).stdout("").stderr(said);
+    }
+}

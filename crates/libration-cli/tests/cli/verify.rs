@@ -118,8 +118,9 @@ fn broken_chunks_are_named_with_the_command_that_computes_them_again_byte_for_by
         let said = String::from_utf8(named.get_output().stderr.clone()).unwrap();
         assert_eq!(said.lines().count(), broken + 1, "{said}");
         assert!(said.contains("help: `libration verify --repair set`"), "{said}");
-        let repaired =
-            verify("verify set --repair").success().stdout(contains("as the manifest says"));
+        let repaired = verify("verify set --repair")
+            .success()
+            .stdout(contains("with the checksums of the manifest"));
         let said = String::from_utf8(repaired.get_output().stderr.clone()).unwrap();
         assert_eq!(said.matches("repaired: chunk 0000").count(), broken, "{said}");
         assert!(contents(&path) == whole, "{format}");

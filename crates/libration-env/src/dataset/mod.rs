@@ -34,5 +34,5 @@ pub use libration_data::{DataError, Flaw, Transfer};
 pub use monitor::Monitor;
 pub use settings::{DEFAULT, Dataset, parse, parse_of};
 pub use system_tables::EquationSource;
-pub use verification::{VerifyOptions, verify};
+pub use verification::{Verification, VerifyOptions, verify};
 pub use writer::{WriteJob, write};

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use libration::ensemble::Execution;
 use libration_data::{Chunk, Comparison, Flaw, Folder, Manifest, checksum, find_unlisted};
@@ -28,17 +28,27 @@ pub struct VerifyOptions<'a> {
     pub repair: Option<&'a Execution>,
 }
 
-/// Reads a data set and compares it with its manifest; repairs or recomputes it with the options `how`. Returns the manifest and
-/// the remaining flaws.
+/// A verified data set.
+#[derive(Debug)]
+pub struct Verification {
+    /// Its manifest.
+    pub manifest: Manifest,
+    /// The remaining flaws.
+    pub flaws: Vec<Flaw>,
+    /// What was not compared with anything, each in words.
+    pub not_examined: Vec<String>,
+}
+
+/// Reads a data set and compares it with its manifest; repairs or recomputes it with the options `how`.
 ///
 /// # Errors
-/// If there is no data set, its settings cannot be read, or the work is stopped; for a repair also if another process writes to it,
-/// or a file cannot be written.
+/// If there is no data set or the work is stopped; for a replay or a repair also if its settings cannot be read, and for a repair if
+/// another process writes to it, or a file cannot be written.
 pub fn verify(
     folder: &Path,
     how: VerifyOptions<'_>,
     monitor: &dyn Monitor,
-) -> Result<(Manifest, Vec<Flaw>), DatasetError> {
+) -> Result<Verification, DatasetError> {
     let mut manifest = Manifest::read(folder)?;
     let value = settings(folder, &manifest);
     let (flaws, value) = match how.repair {
@@ -59,29 +69,54 @@ pub fn verify(
             (lost, Ok((dataset, format, groups)))
         }
     };
-    let mut flaws = flaws;
+    let (mut flaws, mut not_examined) = (flaws, Vec::new());
     match (value, how.replay) {
         (Ok((dataset, format, groups)), again) => {
             let incomplete = check_completeness(folder, &manifest, &dataset, groups)?;
-            // A replay compares entries as well. In another order they are those of other chunks.
-            if again.is_none() && incomplete.is_empty() {
-                flaws.extend(check_entries(&manifest, &dataset, format, groups[0]));
-            }
-            flaws.extend(incomplete);
-            if let Some(execution) = again {
-                flaws.extend(compare_recomputed(
+            match again {
+                Some(execution) => flaws.extend(compare_recomputed(
                     &manifest,
                     (&dataset, format, groups),
                     execution,
                     monitor,
-                )?);
+                )?),
+                None => {
+                    // Entries in another order are those of other chunks.
+                    if incomplete.is_empty() {
+                        flaws.extend(check_entries(&manifest, &dataset, format, groups[0]));
+                    }
+                    not_examined.extend(only_recomputed(format));
+                }
             }
+            flaws.extend(incomplete);
         }
         (Err(error), Some(_)) => return Err(error),
-        // Data of another version can only be compared by checksums.
-        (Err(_), None) => {}
+        (Err(error @ DatasetError::Version { .. }), None) => {
+            not_examined.push(format!("all but checksums ({error})"));
+        }
+        (Err(error), None) => {
+            let what = format!("has a first line that this version does not write: {error}");
+            flaws.push(of_all("manifest.jsonl", what));
+        }
     }
-    Ok((manifest, flaws))
+    Ok(Verification { manifest, flaws, not_examined })
+}
+
+/// What a recomputation alone compares.
+fn only_recomputed(format: DataFormat) -> Vec<String> {
+    let counts = match format {
+        DataFormat::Minari => "`ends`, `episodes` and `actions`",
+        DataFormat::Npy | DataFormat::Parquet => "`ends`",
+    };
+    vec![
+        "whether the settings lead to these files".to_owned(),
+        format!("the counts {counts} of the manifest (`--replay` recomputes both)"),
+    ]
+}
+
+/// A flaw of a data set as a whole.
+fn of_all(path: impl Into<PathBuf>, what: String) -> Flaw {
+    Flaw { chunk: String::new(), path: path.into(), what, broken: false }
 }
 
 /// The missing, misplaced and extra chunks, and files that are not in the manifest.
@@ -93,19 +128,15 @@ fn check_completeness(
 ) -> Result<Vec<Flaw>, DatasetError> {
     let (found, chunks) = (manifest.chunks.len() as u64, dataset.chunks());
     let wanted = (end - first) as u64 * chunks;
-    let of_all = |path: &Path, what: String| {
-        let (chunk, path) = (String::new(), path.to_owned());
-        Flaw { chunk, path, what, broken: false }
-    };
     // Chunks after the last are reported below.
     let of_settings = manifest.chunks.get(..wanted as usize).unwrap_or(&manifest.chunks);
     if let Some(what) = find_misplaced(of_settings, [first, end], chunks) {
         let what = format!("cannot be continued: {what}");
-        return Ok(vec![of_all(Path::new("manifest.jsonl"), what)]);
+        return Ok(vec![of_all("manifest.jsonl", what)]);
     }
     if found < wanted {
         let what = format!("is unfinished: {found} of {wanted} chunks; --resume continues it");
-        return Ok(vec![of_all(Path::new("manifest.jsonl"), what)]);
+        return Ok(vec![of_all("manifest.jsonl", what)]);
     }
     let extra = manifest.chunks.get(wanted as usize..).unwrap_or_default().iter();
     let extra = extra.map(|chunk| Flaw {
