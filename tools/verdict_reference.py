@@ -27,10 +27,12 @@ from linear_analysis_reference import implicit, implicit_dampers, splittings, ta
 
 NEAR = 1e-6
 SMALL = 0.01
+# In seconds, for a command that takes one on a machine that does nothing else.
+TIMEOUT = 60
 
 
 def run(program, *words):
-    done = subprocess.run([program, "-q", *map(str, words)], capture_output=True, text=True, timeout=300)
+    done = subprocess.run([program, "-q", *map(str, words)], capture_output=True, text=True, timeout=TIMEOUT)
     return done.returncode, done.stdout, done.stderr
 
 
@@ -230,7 +232,12 @@ def check_nonlinear(program, rng, folder, count, per_system, tally):
         for name in chosen:
             dt, steps = float(f"{10 ** rng.uniform(-2.5, 0.3):.4g}"), 60
             step = ["--system", path, "--integrator", name, "--dt", dt, "--steps", steps]
-            code, text, error = run(program, "analyze", *step)
+            try:
+                code, text, error = run(program, "analyze", *step)
+            except subprocess.TimeoutExpired:
+                tally["too slow"] += 1
+                print(f"nonlinear {number} {name} dt {dt}: no verdict in {TIMEOUT} s\n{path.read_text()}", flush=True)
+                continue
             if code == 2:
                 tally["refused"] += 1
                 continue
@@ -255,7 +262,7 @@ def check_nonlinear(program, rng, folder, count, per_system, tally):
             is_right &= code_is_right
             tally["right" if is_right else "wrong"] += 1
             if not is_right:
-                print(f"nonlinear {number} {name} dt {dt}: {first_sentence(text)!r}, code {code}, error {error}\n{path.read_text()}")
+                print(f"nonlinear {number} {name} dt {dt}: {first_sentence(text)!r}, code {code}, error {error}\n{path.read_text()}", flush=True)
 
 
 def main():

@@ -47,6 +47,8 @@ def description_of(host: Host) -> dict[str, Any]:
         described["measured_inputs"] = [one._asdict() for one in host.measured_inputs]
     if host.measured_observation is not None:
         described["measured_observation"] = host.measured_observation._asdict()
+    if host.stray_results is not None:
+        described["stray_results"] = host.stray_results._asdict()
     if host.operating_point is not None:
         described["operating_point"] = host.operating_point
     if host.delays:

@@ -69,6 +69,23 @@ class Flaky(gymnasium.Wrapper):
         return (before if is_old else self.last, *rest)
 
 
+class Replacing(gymnasium.Wrapper):
+    """Few actions, or observations, are others."""
+
+    def __init__(self, env, probability, of):
+        super().__init__(env)
+        self.probability, self.of = probability, of
+        self.draw = np.random.default_rng(3)
+
+    def step(self, action):
+        is_other = self.draw.random() < self.probability
+        if is_other and self.of == "action":
+            space = self.env.action_space
+            action = (int(action) + 1) % int(space.n) if isinstance(space, Discrete) else self.draw.uniform(-1, 1, space.shape)
+        observation, *rest = self.env.step(action)
+        return (observation + 0.1 if is_other and self.of == "observation" else observation, *rest)
+
+
 class Scaled(gymnasium.ActionWrapper):
     """Half of each action."""
 
@@ -214,6 +231,15 @@ def test_observations_that_are_old_now_and_then_are_found(name, flaky):
     (finding,) = (one for one in report.findings if one["kind"] == "stale-observation")
     assert "changes from step to step" in finding["text"] or "show in no observation" in finding["text"]
     assert report.verdict["outcome"] == "fault" and not report.holds
+
+
+@pytest.mark.parametrize("name", ["Slider", "Pendulum-v1", "CartPole-v1"])
+@pytest.mark.parametrize("of", ["action", "observation"])
+@pytest.mark.parametrize("probability", [0.001, 0.01])
+def test_results_that_a_wrapper_replaces_now_and_then_are_not_called_late(name, of, probability):
+    report = audit(name, lambda env: Replacing(env, probability, of))
+    assert kinds(report) == ["not-reproducible"] and "have no cause in this call or those before" in report.answer
+    assert report.verdict["outcome"] == "fault" and all(not one["late_steps"] for one in report.hidden_latency)
 
 
 @pytest.mark.parametrize("limited", [lambda y: np.clip(y, -0.03, 0.03), lambda y: np.clip(y, -0.003, 0.003), np.sign])

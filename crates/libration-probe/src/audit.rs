@@ -55,7 +55,7 @@ fn examine(
         of_bits(&bits, &mut findings);
     }
     let mut report = ProbeReport::empty(subject, bits);
-    let is_repeatable = report.bits.randomness.is_none();
+    let is_repeatable = report.bits.randomness.is_none() && subject.stray_results.is_none();
     let is_audited = is_repeatable && (is_held || memory.calls.is_some());
     if is_audited {
         report.audit(prober, &memory)?;

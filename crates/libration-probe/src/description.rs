@@ -7,7 +7,9 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use thiserror::Error;
 
-use crate::{MeasuredDelay, OperatingPoint, Recording, Reference, Subject, SubjectError};
+use crate::{
+    MeasuredDelay, OperatingPoint, Recording, Reference, StrayResults, Subject, SubjectError,
+};
 
 /// The description of a simulator.
 #[derive(Clone, Debug, Deserialize)]
@@ -47,6 +49,7 @@ pub struct Description {
     #[serde(default)]
     measured_inputs: Vec<MeasuredDelay>,
     measured_observation: Option<MeasuredDelay>,
+    stray_results: Option<StrayResults>,
     #[serde(default)]
     not_examined: Vec<String>,
     #[serde(default)]
@@ -147,6 +150,7 @@ impl Description {
         subject.direct_inputs = self.direct_inputs;
         subject.measured_inputs = self.measured_inputs;
         subject.measured_observation = self.measured_observation;
+        subject.stray_results = self.stray_results;
         subject.not_examined = self.not_examined;
         subject.validity = self.validity;
         subject.recordings = self.recordings;

@@ -106,5 +106,5 @@ pub use rest::Rest;
 pub use rounding::Rounding;
 pub use running_program::Environment;
 pub use settling::Settling;
-pub use subject::{MeasuredDelay, Recording, Reference, Subject, SubjectError};
+pub use subject::{MeasuredDelay, Recording, Reference, StrayResults, Subject, SubjectError};
 pub use summary::error_in_words;

@@ -4,7 +4,7 @@ use libration_report::notation::{number, plural};
 
 use crate::FindingKind::*;
 use crate::hidden_latency::measured_inputs;
-use crate::{DelayAudit, Finding, MeasuredDelay, Memory, Observed, Subject};
+use crate::{DelayAudit, Finding, MeasuredDelay, Memory, Observed, StrayResults, Subject};
 
 /// Part of a step by which a delay may differ from the stated one.
 const DELAY: f64 = 1e-3;
@@ -141,6 +141,16 @@ pub(crate) fn of_measured(subject: &Subject, delays: &[DelayAudit], found: &mut 
                 ),
             ));
         }
+    }
+    let is_known = found.iter().any(|finding| finding.kind == NotReproducible);
+    if let Some(StrayResults { count, calls }) = subject.stray_results.filter(|_| !is_known) {
+        let (results, have) = if count == 1 { ("result", "has") } else { ("results", "have") };
+        found.push(Finding::fault(
+            NotReproducible,
+            format!(
+                "{count} {results} of {calls} calls {have} no cause in this call or those before: the step, or a wrapper, replaces some of them by itself"
+            ),
+        ));
     }
     if let Some(observation) = &subject.measured_observation {
         found.push(Finding::fault(

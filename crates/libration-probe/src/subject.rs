@@ -56,6 +56,8 @@ pub struct Subject {
     pub measured_inputs: Vec<MeasuredDelay>,
     /// The age of observations, if it changes from step to step.
     pub measured_observation: Option<MeasuredDelay>,
+    /// Results that the adapter could not repeat, if there are any.
+    pub stray_results: Option<StrayResults>,
     /// The parts of the simulator that are not audited, such as wrappers.
     pub not_examined: Vec<String>,
     /// Recordings of the simulator that should have the same bits.
@@ -84,6 +86,16 @@ pub struct MeasuredDelay {
     pub unseen: usize,
     /// Whether the delay changes from step to step.
     pub varies: bool,
+}
+
+/// Results that differ from those of all other calls with the same state and action, after no change of either.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StrayResults {
+    /// The number of these results.
+    pub count: usize,
+    /// The number of calls.
+    pub calls: usize,
 }
 
 /// Two recordings that should have the same bits.
@@ -153,6 +165,7 @@ impl Subject {
             direct_inputs: Vec::new(),
             measured_inputs: Vec::new(),
             measured_observation: None,
+            stray_results: None,
             not_examined: Vec::new(),
             recordings: Vec::new(),
             operating_point: None,

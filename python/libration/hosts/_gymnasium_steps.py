@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import numbers
 import warnings
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
@@ -18,8 +19,56 @@ Array = NDArray[np.float64]
 CALLS = 64
 # Changes of one call from which its effect on later ones shows, also of wrappers that draw random numbers.
 IMPULSES = 16
+# Calls without a change, in which no result differs unless by itself.
+CONTROLS = 2 * CALLS * IMPULSES
 _PLAIN = (numbers.Number, str, bytes, np.ndarray, np.generic, tuple, list, dict, type(None))
 _FIXED = (numbers.Number, str, bytes, np.generic, type(None))
+
+
+class Responses:
+    """The calls that respond to changes of single calls, and those that differ by themselves."""
+
+    def __init__(self) -> None:
+        self.calls = 0
+        self.strays = 0
+        self._found: list[list[dict[int, bytes]]] = [[], []]
+
+    @property
+    def states(self) -> list[set[int]]:
+        """For each change the numbers of the later calls whose states differ: 0 is the call itself."""
+        return [set(one) for one in self._found[0]]
+
+    @property
+    def observations(self) -> list[set[int]]:
+        """The same of observations."""
+        return [set(one) for one in self._found[1]]
+
+    def add(self, base: tuple[bytes, bytes], results: Sequence[tuple[bytes, bytes]]) -> None:
+        """Add the results of a changed call and of those after it, beside those of calls without a change."""
+        self.calls += len(results)
+        for found, own, values in zip(self._found, base, zip(*results)):
+            found.append({call: value for call, value in enumerate(values) if value != own})
+
+    def drop_strays(self, base: tuple[bytes, bytes], controls: Sequence[tuple[bytes, bytes]]) -> None:
+        """Count the results that differ without a change among ``controls``, and late ones that occur only once; both are no responses.
+
+        A response is that of the changed call too, or of another change, or, unless controls differ, another change has one after as many
+        calls.
+        """
+        self.calls += len(controls)
+        self.strays += sum(control != base for control in controls)
+        is_steady = self.strays == 0
+        strays: set[tuple[int, int]] = set()
+        for found, own, values in zip(self._found, base, zip(*controls)):
+            alone = {value for value in values if value != own}
+            values_seen = Counter(value for one in found for value in one.values())
+            calls_seen = Counter(call for one in found for call in one)
+            for change, one in enumerate(found):
+                for call, value in [(call, value) for call, value in one.items() if call > 0]:
+                    if value in alone or (values_seen[value] == 1 and not (is_steady and calls_seen[call] > 1)):
+                        del one[call]
+                        strays.add((change, call))
+        self.strays += len(strays)
 
 
 class Steps:
@@ -119,9 +168,9 @@ class Steps:
         assert self.observation is not None
         return np.tile(self.observation, (len(states), 1))
 
-    def responses(self, state: Array, action: Array, changed: tuple[Array, Array, Any], dt: float) -> list[tuple[set[int], set[int]]] | None:
-        """Return, of calls with another state, action or discrete action, the numbers of the later calls whose states and whose observations
-        differ: 0 is the call itself. None if calls with the same values vary.
+    def responses(self, state: Array, action: Array, changed: tuple[Array, Array, Any], dt: float) -> Responses | None:
+        """Return the calls that respond to single calls with another state, action or discrete action. None if calls with the same values
+        vary from the start.
         """
         base_fixed = self.fixed
 
@@ -129,26 +178,25 @@ class Steps:
             after = self._one(x, u, dt)
             return after.tobytes(), b"" if self.observation is None else self.observation.tobytes()
 
-        found = []
+        def repeated(count: int) -> list[tuple[bytes, bytes]]:
+            return [result(state, action) for _ in range(count)]
+
+        responses = Responses()
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
+            repeated(CALLS)
             for impulse in range(IMPULSES):
                 # Pauses, since a delay may depend on the number of the call.
-                for _ in range((CALLS if impulse == 0 else 0) + impulse % 5):
-                    result(state, action)
-                base = result(state, action)
-                if result(state, action) != base:
+                repeated(impulse % 5)
+                base, again = repeated(2)
+                if base != again:
                     return None
                 self.fixed = changed[2]
-                late: tuple[set[int], set[int]] = (set(), set())
-                for call in range(CALLS + 1):
-                    answer = result(*changed[:2]) if call == 0 else result(state, action)
-                    self.fixed = base_fixed
-                    for place, own, other in zip(late, answer, base):
-                        if own != other:
-                            place.add(call)
-                found.append(late)
-        return found
+                first = result(*changed[:2])
+                self.fixed = base_fixed
+                responses.add(base, [first, *repeated(CALLS)])
+            responses.drop_strays(base, repeated(CONTROLS))
+        return responses
 
     def other_actions(self) -> list[int]:
         """Return the discrete actions besides the one that is fixed."""
@@ -159,9 +207,9 @@ class Steps:
         """Whether results depend on earlier calls; None if they vary by themselves."""
         for changed in changes:
             found = self.responses(state, action, changed, dt)
-            if found is None:
+            if found is None or found.strays:
                 return None
-            if any(call > 0 for both in found for one in both for call in one):
+            if any(call > 0 for both in (*found.states, *found.observations) for call in both):
                 return True
         return False
 

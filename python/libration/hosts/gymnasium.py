@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from .._keywords import check_keywords
 from .._settings import nearest, positive
-from ._gymnasium_steps import IMPULSES, Steps
+from ._gymnasium_steps import IMPULSES, Responses, Steps
 from ._gymnasium_wrappers import unwrapped_copy
 from .host import Host
-from .measured_delay import MeasuredDelay, measured_delay
+from .measured_delay import MeasuredDelay, StrayResults, measured_delay
 
 Array = NDArray[np.float64]
 
@@ -108,7 +108,8 @@ def gymnasium_host(
     if repeated > 1:
         notes.append(f"a step is {repeated} steps of the environment")
     simulation.settle()
-    not_examined, late_inputs, old_observation = _limits(simulation, start, vector, timestep, wrappers, left_out)
+    names = _unexamined(simulation, wrappers, left_out)
+    not_examined, late_inputs, old_observation, strays = _delays(simulation, start, vector, timestep, names)
     if simulation.is_single:
         notes.append("the environment keeps its state in float32: differences have about three digits")
     if angles:
@@ -136,6 +137,7 @@ def gymnasium_host(
         direct_inputs=of_inputs[:count] if action_attribute is not None else (),
         measured_inputs=late_inputs,
         measured_observation=old_observation,
+        stray_results=strays,
     )
 
 
@@ -158,11 +160,8 @@ def _memory(simulation: Steps, start: Array, vector: Array, dt: float, is_wrappe
     return found is True or (found is None and is_wrapped)
 
 
-def _limits(
-    simulation: Steps, start: Array, vector: Array, dt: float, kept: Sequence[str], left_out: Sequence[str]
-) -> tuple[list[str], tuple[MeasuredDelay, ...], MeasuredDelay | None]:
-    """Return what an audit does not examine, the lateness of a discrete action, or of actions whose delay varies at random, and the age of
-    observations if it varies."""
+def _unexamined(simulation: Steps, kept: Sequence[str], left_out: Sequence[str]) -> list[str]:
+    """Return what an audit does not examine, apart from the lateness of actions."""
     names = ["rewards and ends of episodes", f"delays of fewer than one in {IMPULSES} steps"]
     if left_out:
         what = "wrapper" if len(left_out) == 1 else "wrappers"
@@ -173,31 +172,45 @@ def _limits(
         names.append("observations, which are no real numbers")
     if simulation.draws:
         names.append("random numbers of the environment, which are the same in each step")
+    return names
+
+
+_Delays = tuple[list[str], tuple[MeasuredDelay, ...], MeasuredDelay | None, StrayResults | None]
+
+
+def _delays(simulation: Steps, start: Array, vector: Array, dt: float, names: list[str]) -> _Delays:
+    """Return ``names`` and what else is not examined, the lateness of a discrete action, or of actions whose delay varies at random, the
+    age of observations if it varies, and results that differ by themselves."""
+    late: MeasuredDelay | None = None
+    tried: list[Responses] = []
     if simulation.fixed is None:
-        calls = simulation.responses(start, vector, (start, vector + 0.01 * np.maximum(1.0, np.abs(vector)), None), dt) or []
-        late = measured_delay("action", [own for own, _ in calls])
-        # A delay that does not vary is found by the audit itself.
-        return names, (late,) if late is not None and late.varies else (), _age(simulation, start, vector, dt)
-    vector = vector + np.maximum(1.0, np.abs(vector))
-    age = _age(simulation, start, vector, dt)
-    for other in simulation.other_actions():
-        calls = simulation.responses(start, vector, (start, vector, other), dt) or []
-        late = measured_delay("discrete action", [own for own, _ in calls])
-        if late is not None:
-            return names, (late,), age
-    names.append("lateness of discrete actions")
-    return names, (), age
-
-
-def _age(simulation: Steps, start: Array, vector: Array, dt: float) -> MeasuredDelay | None:
-    """Return the age of observations of a changed state, if it varies."""
+        changed = vector + 0.01 * np.maximum(1.0, np.abs(vector))
+        if (calls := simulation.responses(start, vector, (start, changed, None), dt)) is not None:
+            tried.append(calls)
+            late = measured_delay("action", calls.states)
+        if late is not None and not late.varies:
+            # The audit itself finds it.
+            late = None
+    else:
+        vector = vector + np.maximum(1.0, np.abs(vector))
+        for other in simulation.other_actions():
+            if (calls := simulation.responses(start, vector, (start, vector, other), dt)) is not None:
+                tried.append(calls)
+                late = measured_delay("discrete action", calls.states)
+            if late is not None:
+                break
+        else:
+            names = [*names, "lateness of discrete actions"]
     moved = start + 0.01 * np.maximum(1.0, np.abs(start))
-    calls = simulation.responses(start, vector, (moved, vector, simulation.fixed), dt) or []
-    # A late state is one of the audit itself.
-    if any(own != {0} for own, _ in calls):
-        return None
-    age = measured_delay("observation", [seen for _, seen in calls])
-    return age if age is not None and age.varies else None
+    age = None
+    if (calls := simulation.responses(start, vector, (moved, vector, simulation.fixed), dt)) is not None:
+        tried.append(calls)
+        # A late state is one of the audit itself.
+        if all(own == {0} for own in calls.states):
+            age = measured_delay("observation", calls.observations)
+    strays = sum(calls.strays for calls in tried)
+    found = StrayResults(strays, sum(calls.calls for calls in tried)) if strays else None
+    return names, () if late is None else (late,), age if age is not None and age.varies else None, found
 
 
 def _clock(inner: Any, name: str | None, title: str, is_given: bool) -> str | None:

@@ -8,7 +8,7 @@ from typing import Any, Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from .measured_delay import MeasuredDelay
+from .measured_delay import MeasuredDelay, StrayResults
 
 Array = NDArray[np.float64]
 Step = Callable[[Array, Array, float], Array]
@@ -86,6 +86,8 @@ class Host:
     """Inputs whose lateness the host measures: discrete ones and those whose delay varies at random."""
     measured_observation: MeasuredDelay | None = None
     """The age of observations, if it varies."""
+    stray_results: StrayResults | None = None
+    """Results that calls with equal states and actions do not repeat, if there are any."""
     operating_point: dict[str, Any] | None = None
     """Where the point is from a requested one from which it was searched for: its changes, its residual and changed contacts."""
     reset: Callable[[], None] = field(default=lambda: None)

@@ -7,6 +7,15 @@ from typing import NamedTuple, Sequence
 import numpy as np
 
 
+class StrayResults(NamedTuple):
+    """Results that differ from those of all other calls with the same state and action, after no change of either."""
+
+    count: int
+    """The number of these results."""
+    calls: int
+    """The number of calls."""
+
+
 class MeasuredDelay(NamedTuple):
     """A delay that a host has measured."""
 
