@@ -2,16 +2,14 @@
 
 use core::cell::OnceCell;
 
-use libration_core::AnyMethod;
 use libration_core::system::DampedOscillator;
+use libration_core::{AnyMethod, Integrator};
 use num_complex::Complex64;
 
 use super::neutral_steps::neutral_windows;
 use super::stable_steps::without_rounding;
 use super::step_search::{DAMPED, searched_windows};
-use super::{
-    LinearStepper, StabilityFunction, StabilityWindow, StepWindow, Tableau, oscillator_windows,
-};
+use super::{LinearStepper, StabilityFunction, StabilityWindow, StepWindow, oscillator_windows};
 
 /// The stable time steps of an integrator on many plants. What depends on the integrator alone is computed once.
 #[derive(Debug)]
@@ -24,8 +22,8 @@ pub struct StepLimits {
     searches: bool,
 }
 
-/// The most kicks and drifts of a step whose polynomials on a damped oscillator take no more time than a search.
-const SHORT: usize = 7;
+/// The most forces of a step whose polynomials on a damped oscillator take no more time than a search.
+const SHORT: usize = 3;
 
 impl StepLimits {
     /// The limits of an integrator, as exact as [`LinearStepper::stable_steps`].
@@ -35,15 +33,12 @@ impl StepLimits {
         StepLimits { method, function, undamped: OnceCell::new(), searches: false }
     }
 
-    /// The same, by the search of [`LinearStepper::stable_steps`] also on damped oscillators if a step has many kicks and
-    /// drifts: its exact polynomials take seconds for each.
+    /// The same, by the search of [`LinearStepper::stable_steps`] also on damped oscillators if a step evaluates many forces: its exact
+    /// polynomials take seconds for each.
     pub fn searched(method: impl Into<AnyMethod>) -> Self {
         let own = StepLimits::new(method);
         let is_long = match own.method {
-            AnyMethod::Explicit(method) => {
-                let word = Tableau::new(method).and_then(|tableau| tableau.word());
-                word.is_some_and(|word| word.len() > SHORT)
-            }
+            AnyMethod::Explicit(method) => method.evaluations() > SHORT,
             AnyMethod::Implicit(_) => false,
         };
         StepLimits { searches: is_long, ..own }

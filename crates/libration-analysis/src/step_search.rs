@@ -19,8 +19,8 @@ const POINT: f64 = 1e-6;
 /// The range of a search where damping is implicit, times the size of the fastest mode: damping lengthens stable steps.
 pub(crate) const DAMPED: [f64; 2] = [0.1, 1e3];
 
-/// Where the spectral radius is at most 1, up to a step in which the fastest mode has `|hλ| = most`; none if it still is there under an
-/// implicit method. Steps are evenly spaced, or from `first` on by equal factors.
+/// Where the spectral radius is at most 1, up to a step in which the fastest mode has `|hλ| = most`; where it still is there, up to twice
+/// that under an explicit method, and none under an implicit one. Steps are evenly spaced, or from `first` on by equal factors.
 pub(crate) fn searched_windows(
     stepper: &LinearStepper,
     method: AnyMethod,
@@ -48,8 +48,14 @@ pub(crate) fn searched_windows(
         part => most * part,
     };
     let states: Vec<bool> = (1..=points).map(|k| is_stable(place(k))).collect();
-    if states[points - 1] && matches!(method, AnyMethod::Implicit(_)) {
-        return None;
+    if states[points - 1] {
+        return match method {
+            // The step is a polynomial, which is large in the end: the stable steps go on beyond the range.
+            AnyMethod::Explicit(_) => {
+                searched_windows(stepper, method, values, [first, 2.0 * most])
+            }
+            AnyMethod::Implicit(_) => None,
+        };
     }
     let mut cuts = Vec::new();
     for k in 1..points {
@@ -104,6 +110,19 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_search_whose_range_ends_in_stable_steps_goes_on_to_their_end() {
+        let a = oscillator(0.0945, 0.046);
+        let stepper = LinearStepper::new(&a).unwrap();
+        let values = eigenvalues(&a).unwrap();
+        let method = Method::from_name("dormand-prince-rkn-6").unwrap();
+        let exact = stepper.stable_steps(method, &values).unwrap();
+        let found = searched_windows(&stepper, method.into(), &values, [0.0, 1.0]).unwrap();
+        let [[found], [exact]] = [&found[..], &exact[..]] else { panic!("{found:?} {exact:?}") };
+        // As above; without damping no step is stable, so that the range has no other end.
+        assert!((found.to / exact.to - 1.0).abs() < 1e-10 && found.from == 0.0, "{found:?}");
     }
 
     #[test]

@@ -16,6 +16,47 @@ pub(crate) struct IntegerPoly {
     coefficients: Vec<BigInt>,
 }
 
+/// The prime of residues, 2⁶¹ − 1.
+const PRIME: u64 = (1 << 61) - 1;
+
+fn residues(coefficients: &[BigInt]) -> Vec<u64> {
+    let residue = |c: &BigInt| c.mod_floor(&PRIME.into()).iter_u64_digits().next().unwrap_or(0);
+    coefficients.iter().map(residue).collect()
+}
+
+fn times(a: u64, b: u64) -> u64 {
+    (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64
+}
+
+/// The inverse of a residue that is not zero, by Fermat's theorem.
+fn inverse(a: u64) -> u64 {
+    let (mut power, mut square, mut exponent) = (1, a, PRIME - 2);
+    while exponent > 0 {
+        if exponent & 1 == 1 {
+            power = times(power, square);
+        }
+        square = times(square, square);
+        exponent >>= 1;
+    }
+    power
+}
+
+/// The remainder of a division of polynomials of residues; the leading one of `divisor` is not zero.
+fn remainder_of_residues(mut rest: Vec<u64>, divisor: &[u64]) -> Vec<u64> {
+    let unit = divisor.last().map_or(0, |leading| inverse(*leading));
+    while rest.len() >= divisor.len() {
+        let shift = rest.len() - divisor.len();
+        let factor = rest.pop().map_or(0, |leading| times(leading, unit));
+        for (r, d) in rest[shift..].iter_mut().zip(divisor) {
+            *r = (*r + PRIME - times(factor, *d)) % PRIME;
+        }
+    }
+    while rest.last() == Some(&0) {
+        rest.pop();
+    }
+    rest
+}
+
 impl IntegerPoly {
     /// The polynomial with these coefficients, that of `x⁰` first, divided by their content.
     pub(crate) fn new(mut coefficients: Vec<BigInt>) -> Self {
@@ -112,11 +153,28 @@ impl IntegerPoly {
 
     /// The greatest common divisor.
     pub(crate) fn gcd(&self, other: &Self) -> Self {
+        if self.are_coprime_by_residues(other) {
+            return IntegerPoly { coefficients: vec![BigInt::from(1)] };
+        }
         let (mut a, mut b) = (self.clone(), other.clone());
         while !b.is_zero() {
             (a, b) = (b.clone(), a.remainder(&b));
         }
         a
+    }
+
+    /// Whether the residues of both modulo a prime have no common factor: then they have none either, as the leading coefficients
+    /// stay (von zur Gathen, Gerhard: Modern Computer Algebra, 3rd ed., lemma 6.25). The remainders of whole numbers would take their
+    /// digits for the same answer.
+    fn are_coprime_by_residues(&self, other: &Self) -> bool {
+        let [mut a, mut b] = [self, other].map(|p| residues(&p.coefficients));
+        if [&a, &b].iter().any(|p| p.last().is_none_or(|leading| *leading == 0)) {
+            return false;
+        }
+        while b.len() > 1 {
+            (a, b) = (b.clone(), remainder_of_residues(a, &b));
+        }
+        !b.is_empty()
     }
 
     /// The polynomial divided by the highest power of `x` that divides it.

@@ -163,10 +163,15 @@ impl SturmChain {
 }
 
 impl IntegerPoly {
-    /// Whether this has a root in the interval of `root`.
+    /// Whether this has a root in the interval of `root`, which has no more than one, and none at its lower end unless that is its
+    /// upper one.
     pub(crate) fn vanishes_within(&self, root: &Root) -> bool {
-        self.sign_at(&root.high) == 0
-            || SturmChain::new(self.square_free()).count(&root.low, &root.high) > 0
+        if self.sign_at(&root.high) == 0 {
+            return true;
+        }
+        // A root without others is a change of sign.
+        let p = self.square_free();
+        p.sign_at(&root.low) * p.sign_at(&root.high) < 0
     }
 }
 
@@ -218,6 +223,20 @@ mod tests {
         for pair in found.windows(2) {
             assert!(pair[0].high.order(&pair[1].low).is_lt(), "{pair:?}");
         }
+    }
+
+    #[test]
+    fn factors_that_polynomials_share_are_found_and_those_of_their_residues_alone_are_none() {
+        // (x − 1)(x − 2) and (x − 2)(x − 3); x − 1 and x − 2⁶¹, which have the same residues.
+        let common = poly(&[2, -3, 1]).gcd(&poly(&[6, -5, 1]));
+        assert!(common == poly(&[-2, 1]) || common == poly(&[2, -1]), "{common:?}");
+        let same = poly(&[-1, 1]).gcd(&poly(&[-(1 << 61), 1]));
+        assert!(same.is_constant() && !same.is_zero());
+        let touched = poly(&[1, -2, 1]);
+        let [root] = &positive_roots(&[&touched])[..] else { panic!() };
+        assert!(touched.vanishes_within(root) && !poly(&[-2, 1]).vanishes_within(root));
+        let [near] = &positive_roots(&[&poly(&[-2, 0, 1])])[..] else { panic!() };
+        assert!(poly(&[4, 0, -4, 0, 1]).vanishes_within(near));
     }
 
     #[test]
