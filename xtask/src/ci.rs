@@ -4,14 +4,17 @@ use std::fmt::Write;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::{Outcome, codegen, command, dependencies, lints, processor_time, python, test, tidy};
+use crate::{
+    Outcome, codegen, command, dependencies, lints, processor_time, python, size, test, tidy,
+};
 
 /// Name and function of a step.
 type Step = (&'static str, fn() -> Outcome);
 
-const STEPS: [Step; 6] = [
+const STEPS: [Step; 7] = [
     ("format", || command::run(&mut command::cargo("fmt --all --check"))),
     ("tidy", tidy::run),
+    ("size", size::check),
     ("dependencies", dependencies::run),
     ("codegen", codegen::unless_read),
     ("lints", || command::run(&mut command::cargo("test --workspace --no-run"))),

@@ -14,6 +14,7 @@ mod python;
 mod release;
 mod report;
 mod scratch;
+mod size;
 mod suites;
 mod test;
 mod tidy;
@@ -41,7 +42,7 @@ enum Action {
     With(fn(&[String]) -> Outcome),
 }
 
-const TASKS: [Task; 14] = [
+const TASKS: [Task; 15] = [
     Task {
         name: "ci",
         summary: "all of the below up to `report`, with format, lints and documentation",
@@ -101,6 +102,11 @@ const TASKS: [Task; 14] = [
         name: "release",
         summary: "a source distribution and a Linux wheel of the Python package, checked and tried",
         action: Action::Plain(release::run),
+    },
+    Task {
+        name: "size",
+        summary: "lines, public types, functions, kernels and bytes of each crate; `--record` keeps them",
+        action: Action::With(size::run),
     },
     Task {
         name: "torture",

@@ -17,7 +17,7 @@ mod purity;
 mod safety;
 mod simd;
 mod size;
-mod source;
+pub(crate) mod source;
 mod studies;
 mod test_items;
 mod unfinished;

@@ -20,18 +20,18 @@ const PRODUCTS: [&str; 4] = [".git", ".venv", "node_modules", "target"];
 const REPORT: &str = "libration-report";
 
 /// One text file of the project.
-pub(super) struct Source {
+pub(crate) struct Source {
     /// From the root of the workspace, separated by `/`.
-    pub(super) path: String,
+    pub(crate) path: String,
     /// All of it.
-    pub(super) text: String,
+    pub(crate) text: String,
     /// Rust without comments and the insides of literals, line for line; empty for other files.
-    pub(super) code: String,
+    pub(crate) code: String,
 }
 
 impl Source {
     /// The file at `path` with this text.
-    pub(super) fn new(path: &str, text: &str) -> Self {
+    pub(crate) fn new(path: &str, text: &str) -> Self {
         let code = if path.ends_with(".rs") { code::of(text) } else { String::new() };
         Source { path: path.to_owned(), text: text.to_owned(), code }
     }
@@ -42,12 +42,12 @@ impl Source {
     }
 
     /// The lines of code, counted from one.
-    pub(super) fn code_lines(&self) -> impl Iterator<Item = (usize, &str)> {
+    pub(crate) fn code_lines(&self) -> impl Iterator<Item = (usize, &str)> {
         (1..).zip(self.code.lines())
     }
 
     /// The folder `…/src/` of the crate whose Rust this is; none for tests and examples.
-    pub(super) fn crate_folder(&self) -> Option<&str> {
+    pub(crate) fn crate_folder(&self) -> Option<&str> {
         let crates = if self.path.starts_with("xtask/") { "" } else { "crates/" };
         let (name, _) = self.path.strip_prefix(crates)?.split_once("/src/")?;
         let is_crate = self.path.ends_with(".rs") && !name.contains('/');
@@ -61,7 +61,7 @@ impl Source {
 }
 
 /// The sources that git tracks; all that lie in `root` where it is no checkout.
-pub(super) fn tracked(root: &Path) -> Result<Vec<Source>, String> {
+pub(crate) fn tracked(root: &Path) -> Result<Vec<Source>, String> {
     let mut list = command::program("git");
     list.args(["ls-files", "-z"]).current_dir(root);
     let mut paths: Vec<String> = match command::output(&mut list) {

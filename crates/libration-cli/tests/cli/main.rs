@@ -15,6 +15,7 @@ mod closed_loop;
 mod compare;
 mod comparison;
 mod deadline_misses;
+mod doors;
 mod durations;
 mod equations;
 mod exit_codes;
