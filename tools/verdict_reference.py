@@ -225,6 +225,8 @@ def check_nonlinear(program, rng, folder, count, per_system, tally):
     listed = json.loads(run(program, "list", "--json")[1])
     names = [one["name"] for one in listed["integrators"]]
     for number in range(count):
+        if number:
+            print(f"nonlinear: {number} systems, {dict(tally)}", file=sys.stderr, flush=True)
         size, rates, start = random_nonlinear(rng)
         path = folder / "nonlinear.toml"
         nonlinear_file(size, rates, start, path)

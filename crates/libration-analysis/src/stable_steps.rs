@@ -43,7 +43,8 @@ impl LinearStepper {
     /// The time steps in s at which no mode grows that does not grow in exact steps, for the eigenvalues of the plant in 1/s.
     ///
     /// With a stability function they are exact, also if other modes of the plant grow. Of a mechanical plant without damping or with
-    /// modal damping they are those of its oscillators, from exact polynomials. With other damping the spectral radius of the update
+    /// modal damping they are those of its oscillators, from exact polynomials. With other damping, and with modal damping under steps of
+    /// more than 15 forces, the spectral radius of the update
     /// matrix is searched up to about twice the limit of the fastest mode without damping, at distances of about a hundredth of it:
     /// narrower windows and those beyond may be missed. Where damping is implicit it is searched from 0.1 to 1000 times the time of the fastest
     /// mode, at distances of a few per cent, and not known if it is stable there. Where a mode oscillates for ever under forces of

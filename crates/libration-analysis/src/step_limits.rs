@@ -25,23 +25,29 @@ pub struct StepLimits {
 /// The most forces of a step whose polynomials on a damped oscillator take no more time than a search.
 const SHORT: usize = 3;
 
+/// The most forces of a step whose polynomials on a damped oscillator take a few seconds.
+const LONG: usize = 15;
+
 impl StepLimits {
     /// The limits of an integrator, as exact as [`LinearStepper::stable_steps`].
     pub fn new(method: impl Into<AnyMethod>) -> Self {
-        let method = method.into();
-        let function = StabilityFunction::of(method);
-        StepLimits { method, function, undamped: OnceCell::new(), searches: false }
+        StepLimits::with_exact(method.into(), LONG)
     }
 
     /// The same, by the search of [`LinearStepper::stable_steps`] also on damped oscillators if a step evaluates many forces: its exact
     /// polynomials take seconds for each.
     pub fn searched(method: impl Into<AnyMethod>) -> Self {
-        let own = StepLimits::new(method);
-        let is_long = match own.method {
-            AnyMethod::Explicit(method) => method.evaluations() > SHORT,
+        StepLimits::with_exact(method.into(), SHORT)
+    }
+
+    /// Those from exact polynomials on damped oscillators up to `most` forces of a step.
+    fn with_exact(method: AnyMethod, most: usize) -> Self {
+        let searches = match method {
+            AnyMethod::Explicit(method) => method.evaluations() > most,
             AnyMethod::Implicit(_) => false,
         };
-        StepLimits { searches: is_long, ..own }
+        let function = StabilityFunction::of(method);
+        StepLimits { method, function, undamped: OnceCell::new(), searches }
     }
 
     /// As [`LinearStepper::stable_steps`].
