@@ -10,7 +10,6 @@ from math import inf
 from typing import Any, Mapping
 
 from . import _native
-from ._catalogue_equations import commanded
 from ._episode_numbers import episode_number, is_varied, scaled_law
 from ._presets import Preset
 from ._settings import CATALOGUE, count, ends, law, native, refuse_of_preset
@@ -78,7 +77,7 @@ def native_varied(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
         costs.pop("bound")
         parameters = {name: value for name, value in parameters.items() if name != "bound"}
     system = EquationSystem(
-        acceleration=commanded(preset.system, bool(mass)),
+        acceleration=dict(_native._commanded((preset.system, list(own.items())))[0]),
         parameters={**own, **costs},
         inputs=["u"],
         task={**task, "start": starts},

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence, TypedDict, o
 import numpy as np
 
 from . import _native
-from ._catalogue_equations import equations_of
 from ._settings import nearest, number
 from .equations import EquationSystem
 from .linear import LinearPlant
@@ -19,6 +18,9 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 __all__ = ["CustomSystem", "IMPLICIT_INTEGRATORS", "INTEGRATORS", "RUNGE_KUTTA_METHODS", "SPLITTING_METHODS", "SYSTEMS", "System"]
+
+# Starts of systems by equations whose motion from zero is none.
+_STARTS: Mapping[str, Mapping[str, float]] = {"kepler": {"x": 1.0, "y'": 1.0}}
 
 INTEGRATORS: Mapping[str, str] = MappingProxyType(dict(_native._integrators()))
 """Description of each integrator, by name. ``"exact"`` is for linear systems only, not for ensembles or environments."""
@@ -137,7 +139,15 @@ class System:
         >>> System("kepler").equations().inputs
         ('u_x', 'u_y')
         """
-        return equations_of(self, **keywords)
+        accelerations, inputs = _native._commanded((self.name, list(self.parameters.items())))
+        given: dict[str, Any] = {
+            "acceleration": dict(accelerations),
+            "parameters": dict(self.parameters),
+            "inputs": inputs,
+            "start": _STARTS.get(self.name),
+            "name": self.name,
+        }
+        return EquationSystem(**{**given, **keywords})
 
     @property
     def dimensions(self) -> range:

@@ -2,6 +2,7 @@
 //!
 //! This crate does no input or output, reads no clock and prints nothing.
 
+mod catalogue;
 mod definitions;
 mod derivative_programs;
 mod dynamics;

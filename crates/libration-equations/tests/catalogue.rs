@@ -1,22 +1,11 @@
 //! Systems of the catalogue, written as equations.
 
+use libration_core::catalog::{Actuation, ENTRIES, build};
 use libration_core::system::{
     DampedOscillator, DrivenOscillator, Duffing, HenonHeiles, Kepler, Oscillator, Pendulum,
 };
-use libration_core::{Float, Integrator, Method, Model, State};
-use libration_equations::{Definitions, Equations, StepProgram};
-
-fn definitions(accelerations: &[(&str, &str)], parameters: &[(&str, f64)]) -> Definitions {
-    let texts = |pairs: &[(&str, &str)]| -> Vec<(String, String)> {
-        pairs.iter().map(|(a, b)| (a.to_string(), b.to_string())).collect()
-    };
-    Definitions {
-        coordinates: accelerations.iter().map(|(name, _)| name.to_string()).collect(),
-        accelerations: texts(accelerations),
-        parameters: parameters.iter().map(|(name, value)| (name.to_string(), *value)).collect(),
-        ..Definitions::default()
-    }
-}
+use libration_core::{AnySystem, Float, Integrator, Method, Model, State, with_system};
+use libration_equations::{Definitions, Dynamics, Equations, StepProgram};
 
 /// Asserts that ten steps have the same bits.
 fn check<S: Float, M: Model<D>, const D: usize>(
@@ -40,61 +29,81 @@ fn check<S: Float, M: Model<D>, const D: usize>(
     }
 }
 
-fn all<M: Model<D>, const D: usize>(model: M, equations: &Definitions, start: State<f64, D>) {
-    let equations = Equations::new(equations).unwrap_or_else(|error| panic!("{error}"));
-    for method in Method::ALL {
-        check::<f64, M, D>(method, model, &equations, start);
-        check::<f32, M, D>(method, model, &equations, start);
-        check::<half::f16, M, D>(method, model, &equations, start);
+#[test]
+fn steps_of_the_catalogue_written_as_equations_have_the_bits_of_the_compiled_ones() {
+    for system in [
+        AnySystem::Oscillator(Oscillator { omega2: 10.3 }),
+        AnySystem::DampedOscillator(DampedOscillator { omega2: 10.3, gamma: 0.3 }),
+        AnySystem::DrivenOscillator(DrivenOscillator {
+            omega2: 10.3,
+            gamma: 0.3,
+            amplitude: 0.7,
+            drive: 3.1,
+        }),
+        AnySystem::Pendulum(Pendulum { omega2: 9.81 }),
+        AnySystem::Duffing(Duffing { alpha: -1.1, beta: 0.7 }),
+        AnySystem::Kepler(Kepler { mu: 1.1 }),
+        AnySystem::HenonHeiles(HenonHeiles { lambda: 0.9 }),
+    ] {
+        let free = Definitions::of_catalogue(system, Actuation::Acceleration);
+        let equations = Equations::new(&free).unwrap_or_else(|error| panic!("{error}"));
+        let d = *system.entry().dimensions.start();
+        with_system!(
+            system,
+            d,
+            |model, D| {
+                // The driven oscillator has its time as a degree of its own.
+                let start = match system {
+                    AnySystem::DrivenOscillator(_) => ([0.4, 0.0], [-0.2, 1.0]),
+                    _ => ([0.4, 0.1], [-0.2, 1.9]),
+                };
+                let part = |of: [f64; 2]| core::array::from_fn::<f64, D, _>(|i| of[i]);
+                let start = State { q: part(start.0), v: part(start.1) };
+                for method in Method::ALL {
+                    check::<f64, _, D>(method, model, &equations, start);
+                    check::<f32, _, D>(method, model, &equations, start);
+                    check::<half::f16, _, D>(method, model, &equations, start);
+                }
+            },
+            panic!("{} has {d} dimensions", system.name())
+        );
     }
 }
 
 #[test]
-fn steps_of_the_catalogue_written_as_equations_have_the_bits_of_the_compiled_ones() {
-    let start = State { q: [1.3], v: [-0.4] };
-    all(
-        Oscillator { omega2: 10.3 },
-        &definitions(&[("x", "-omega2 * x")], &[("omega2", 10.3)]),
-        start,
-    );
-    all(Pendulum { omega2: 9.81 }, &definitions(&[("x", "-g * sin(x)")], &[("g", 9.81)]), start);
-    all(
-        Duffing { alpha: -1.1, beta: 0.7 },
-        &definitions(&[("x", "-alpha * x - beta * x^3")], &[("alpha", -1.1), ("beta", 0.7)]),
-        start,
-    );
-    all(
-        DampedOscillator { omega2: 10.3, gamma: 0.3 },
-        &definitions(&[("x", "-omega2 * x - gamma * x'")], &[("omega2", 10.3), ("gamma", 0.3)]),
-        start,
-    );
-    let start = State { q: [0.4, 0.1], v: [-0.2, 1.9] };
-    all(
-        Kepler { mu: 1.1 },
-        &definitions(
-            &[
-                ("x", "-mu * (1 / sqrt(x*x + y*y))^3 * x"),
-                ("y", "-mu * (1 / sqrt(x*x + y*y))^3 * y"),
-            ],
-            &[("mu", 1.1)],
-        ),
-        start,
-    );
-    all(
-        HenonHeiles { lambda: 0.9 },
-        &definitions(
-            &[("x", "-x - lambda * (x*y + x*y)"), ("y", "-y - lambda * (x*x - y*y)")],
-            &[("lambda", 0.9)],
-        ),
-        start,
-    );
-    let start = State { q: [0.4, 0.0], v: [-0.2, 1.0] };
-    all(
-        DrivenOscillator { omega2: 10.3, gamma: 0.3, amplitude: 0.7, drive: 3.1 },
-        &definitions(
-            &[("x", "-omega2*x - gamma*x' + amplitude*cos(drive*t)")],
-            &[("omega2", 10.3), ("gamma", 0.3), ("amplitude", 0.7), ("drive", 3.1)],
-        ),
-        start,
-    );
+fn energies_and_commands_of_the_catalogue_are_those_of_the_compiled_systems() {
+    let at = [0.7, -0.3, 0.4, 0.9];
+    for entry in ENTRIES {
+        let none: [(&str, f64); 0] = [];
+        let system = AnySystem::build(entry.name, &none).unwrap();
+        let free = Definitions::of_catalogue(system, Actuation::Acceleration);
+        let own = Equations::new(&free).unwrap();
+        let d = *entry.dimensions.start();
+        let other = with_system!(system, d, |model, D| Dynamics::of::<D>(&model, None), {
+            panic!("{} has {d} dimensions", entry.name)
+        });
+        let state: Vec<f64> = [&at[..d], &at[2..2 + d]].concat();
+        let energy = |dynamics: &Dynamics| -> f64 {
+            dynamics.energy().unwrap().on::<f64>().run(&state).next().unwrap()
+        };
+        let [own, other] = [own.dynamics(), &other].map(energy);
+        // Both are sums of a few terms of order one, rounded.
+        assert!((own - other).abs() < 1e-14, "{}: {own} is not {other}", entry.name);
+    }
+    // A force of 3 N on 2 kg at 1 m on a spring of 8 N/m.
+    let (system, actuation) = build("oscillator", &[("m", 2.0), ("k", 8.0)]).unwrap();
+    let commanded = Definitions::of_catalogue(system, actuation).commanded(actuation);
+    let equations = Equations::new(&commanded).unwrap();
+    let acceleration: Vec<f64> =
+        equations.dynamics().accelerations().on::<f64>().run(&[1.0, 0.0, 3.0]).collect();
+    assert_eq!((acceleration, commanded.inputs), (vec![-2.5], vec!["u".to_owned()]));
+    let [x, y] = build("kepler", &[("mu", 1.0)])
+        .map(|(system, actuation)| {
+            Definitions::of_catalogue(system, actuation).commanded(actuation)
+        })
+        .unwrap()
+        .inputs
+        .try_into()
+        .unwrap();
+    assert_eq!([x, y], ["u_x", "u_y"]);
 }

@@ -1,6 +1,7 @@
 //! Systems, integrators and studies for Python.
 
 use libration::catalog::ENTRIES;
+use libration::equations::Definitions;
 use libration::integrator::{RungeKuttaTable, SplittingTable};
 use libration::{ImplicitMethod, Method};
 use libration_analyze::Stepping;
@@ -59,6 +60,14 @@ pub(crate) fn _implicit_integrators() -> Vec<(&'static str, &'static str)> {
 #[pyfunction]
 pub(crate) fn _studies() -> Vec<(&'static str, &'static str)> {
     STUDIES.studies.iter().map(|study| (study.name(), study.question())).collect()
+}
+
+/// Returns the accelerations of a system with commands, and their names: of the parameters only whether there is a mass counts.
+#[pyfunction]
+pub(crate) fn _commanded(system: SystemRequest) -> PyResult<(Vec<(String, String)>, Vec<String>)> {
+    let (system, actuation) = request::system(&system)?;
+    let definitions = Definitions::of_catalogue(system, actuation).commanded(actuation);
+    Ok((definitions.accelerations, definitions.inputs))
 }
 
 /// Returns all parameters of a system, with defaults.

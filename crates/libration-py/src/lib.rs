@@ -47,8 +47,8 @@ mod _native {
     use crate::bodies::{_check_bodies, _named_bodies, _read_bodies, _simulate_bodies};
     #[pymodule_export]
     use crate::catalogue::{
-        _implicit_integrators, _integrators, _parameters, _runge_kutta_methods, _splitting_methods,
-        _studies, _systems,
+        _commanded, _implicit_integrators, _integrators, _parameters, _runge_kutta_methods,
+        _splitting_methods, _studies, _systems,
     };
     #[pymodule_export]
     use crate::checked_mutex::_forked;
