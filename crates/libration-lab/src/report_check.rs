@@ -150,7 +150,8 @@ impl ReportCheck {
             verdict.without(format!("`{file}`, which the results do not name"))
         });
         let verdict = verdict.without("the page `report.html`");
-        verdict.without("claims, tables, machine and times in `results.json`")
+        verdict
+            .without("claims, tables, machine, times, `command` and `complete` in `results.json`")
     }
 
     /// Recomputes a study and compares all findings but times, and all data files.
@@ -194,6 +195,10 @@ fn compare(
     let computed: Vec<Value> =
         record.findings.iter().filter_map(|finding| serde_json::to_value(finding).ok()).collect();
     let mut findings = 0;
+    let mut known = BTreeSet::new();
+    for old in stored.findings.iter().filter(|old| !known.insert(id(old))) {
+        differences.push(format!("the finding `{}` is in the report twice", id(old)));
+    }
     for old in stored.findings.iter().filter(|old| is_time(&id(old))) {
         if !computed.iter().any(|new| id(new) == id(old)) {
             differences.push(format!("the finding `{}` is not computed any more", id(old)));

@@ -191,6 +191,9 @@ impl ResultsComparison {
         let is_another = first.unit != second.unit || first.relation != second.relation;
         match (verdict(first), verdict(second)) {
             (Agreement::Agrees, Agreement::Agrees) if is_lost => self.regressions.push(change()),
+            (Agreement::Agrees, Agreement::Agrees) if is_loosened(first, second) => {
+                self.regressions.push(change());
+            }
             (Agreement::Agrees | Agreement::Measured, Agreement::Disagrees) => {
                 self.regressions.push(change())
             }
@@ -230,6 +233,14 @@ fn verdict(own: &Finding) -> Agreement {
         }
         _ => own.verdict,
     }
+}
+
+/// Whether the second agrees with theory by a wider tolerance alone.
+fn is_loosened(first: &Finding, second: &Finding) -> bool {
+    let [before, after] = [first, second].map(|finding| finding.tolerance.tolerance);
+    let is_wider = before.zip(after).is_some_and(|(before, after)| after > before);
+    let holds = |predicted| second.relation.holds(predicted, second.measured, before);
+    is_wider && second.predicted.is_some_and(|predicted| !holds(predicted))
 }
 
 /// Whether measurements and predictions differ by no more than the tolerances of both.

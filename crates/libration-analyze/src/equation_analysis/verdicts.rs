@@ -12,6 +12,7 @@ use super::motion::is_affine;
 use super::step::spectral_radius;
 use super::{EquationMotion, MotionSteps};
 use crate::linear_analysis::LinearAnalysis;
+use crate::step::of_rest;
 use crate::step_verdict::{StepGrowth, has_multiple};
 
 /// The verdicts on a system by equations.
@@ -22,8 +23,9 @@ pub struct EquationVerdicts {
     /// from the equilibrium.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub step: Option<Verdict>,
-    /// Whether the steps resolve the motion.
-    pub motion: Verdict,
+    /// Whether the steps resolve the motion; none of a system that rests at its start, if the step has a verdict.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<Verdict>,
 }
 
 impl EquationVerdicts {
@@ -45,16 +47,19 @@ impl EquationVerdicts {
             _ if is_affine(system) => of_affine(system, method, motion.dt),
             _ => None,
         };
+        if let (Some(step), true) = (&step, motion.examination.is_at_rest()) {
+            return EquationVerdicts { step: Some(of_rest(step)), motion: None };
+        }
         // The motion shows what rounding hides at the equilibrium, and whether steps follow a growing mode for as long as it is asked for.
         let is_decided =
             |verdict: &Verdict| !matches!(verdict.outcome, Outcome::Unknown | Outcome::NotResolved);
         let step = step.filter(is_decided);
-        EquationVerdicts { step, motion: motion.examination.verdict.clone() }
+        EquationVerdicts { step, motion: Some(motion.examination.verdict.clone()) }
     }
 
     /// All that there are.
     pub fn all(&self) -> impl Iterator<Item = &Verdict> {
-        self.step.iter().chain([&self.motion])
+        self.step.iter().chain(&self.motion)
     }
 
     /// Whether an instability of the step is known.

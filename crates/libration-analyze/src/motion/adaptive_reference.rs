@@ -22,6 +22,9 @@ const SHORTEST: f64 = 1e-15;
 /// Steps are shortened to this part for what forces may do between their evaluations.
 const LEAST_LOOK: f64 = 1e-12;
 
+/// The most steps whose ends are kept.
+const MOST_KNOTS: usize = 1 << 17;
+
 /// Steps between two checks of the stop flag.
 const CHUNK: u64 = 1 << 10;
 
@@ -83,6 +86,9 @@ pub(super) fn follow(
             if off <= 1.0 {
                 stepper.accept();
                 done = if is_last { span } else { done + own };
+                if samples.knots.len() < MOST_KNOTS {
+                    samples.knots.push(before + done);
+                }
                 // A step that was cut off at a sample says little about the next.
                 length = if is_last { length.max(own * change) } else { own * change };
             } else {

@@ -9,7 +9,6 @@ use serde::Serialize;
 use super::energy::EnergyOf;
 use super::judgement::Excess;
 use super::reference::Reference;
-use super::sample_steps::sample_steps;
 use super::undefined_function::undefined_function;
 use super::{EnergyChange, MotionState, MotionSubject, SMALL, StepRun, most_steps};
 use crate::AnalyzeError;
@@ -29,8 +28,10 @@ const LEAST_RANGE_WITHOUT_UNIT: f64 = 1e-9;
 pub struct MotionExamination {
     /// Number of steps of the request.
     pub requested_steps: u64,
-    /// Number of steps that were compared with the exact motion.
+    /// Number of steps up to which the motion was compared with the exact one.
     pub examined_steps: u64,
+    /// Number of steps after which the states were compared: of many steps not all, but more where the motion is fast.
+    pub compared_steps: usize,
     /// The exact motion: `exponential` of a system with constant derivatives, else `adaptive`, steps of order eight with their own error
     /// control.
     pub reference: &'static str,
@@ -82,7 +83,8 @@ pub(crate) fn examine(
     stop: &AtomicBool,
 ) -> Result<MotionExamination, AnalyzeError> {
     let steps = requested.min(most_steps(step));
-    let numbers = sample_steps(steps);
+    let reference = Reference::new(subject, steps, dt, stop)?;
+    let numbers = &reference.numbers;
     let run = StepRun { start: subject.start, step, dt, substeps: 1 };
     let mut energy_of = EnergyOf::new(subject);
     let mut energy = energy_of.as_mut().map(|of| EnergyChange::new(of, subject, steps));
@@ -101,8 +103,6 @@ pub(crate) fn examine(
         }
         before.copy_from_slice(state);
     })?;
-    let times: Vec<f64> = numbers.iter().map(|&number| number as f64 * dt).collect();
-    let reference = Reference::new(subject, &times, stop)?;
     let known = reference.known();
     let mut ranges = reference.exact.ranges.clone();
     if known == 0 {
@@ -116,6 +116,7 @@ pub(crate) fn examine(
     let mut found = MotionExamination {
         requested_steps: requested,
         examined_steps: known.checked_sub(1).map_or(0, |last| numbers[last]),
+        compared_steps: known.min(samples.len()),
         reference: reference.kind,
         reference_error: 0.0,
         states: Vec::new(),

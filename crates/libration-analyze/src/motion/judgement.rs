@@ -18,6 +18,11 @@ pub(super) struct Excess {
 }
 
 impl MotionExamination {
+    /// Whether states were compared after each examined step.
+    fn compares_all(&self) -> bool {
+        self.compared_steps as u64 >= self.examined_steps
+    }
+
     /// The verdict on the motion over `steps` steps of `dt` seconds, fewer than those of the request where they take long.
     pub(super) fn judge(
         &self,
@@ -40,10 +45,11 @@ impl MotionExamination {
         if let Some(Excess { step, state, is_known: true }) = excess {
             let StateExamination { name, .. } = &self.states[state];
             let worst = 100.0 * self.states[state].relative_error();
+            let least = if self.compares_all() { "" } else { "at least " };
             return Verdict::new(
                 Outcome::NotResolved,
                 format!(
-                    "the error of {name} is above {} % of its motion from step {step} on ({} s), and reaches {} %",
+                    "the error of {name} is above {} % of its motion from step {step} on ({} s), and reaches {least}{} %",
                     100.0 * SMALL,
                     time(step),
                     significant(worst, 3)
@@ -75,6 +81,9 @@ impl MotionExamination {
                 time(self.requested_steps)
             ));
         }
+        if self.is_at_rest() {
+            return Verdict::unknown("the system rests at its start, so that no error shows");
+        }
         let worst =
             self.states.iter().max_by(|a, b| a.relative_error().total_cmp(&b.relative_error()));
         let moved = worst.filter(|worst| worst.largest_error > 0.0);
@@ -82,7 +91,11 @@ impl MotionExamination {
             || "it has no error".to_owned(),
             |worst| {
                 let percent = significant(100.0 * worst.relative_error(), 2);
-                format!("the largest error is {percent} % of the motion of {}", worst.name)
+                let after = match self.compares_all() {
+                    true => String::new(),
+                    false => format!(" after {} of them", self.compared_steps),
+                };
+                format!("the largest error{after} is {percent} % of the motion of {}", worst.name)
             },
         );
         let (examined, requested) = (self.examined_steps, self.requested_steps);

@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 use libration::analysis::jacobian;
 use libration::linear::{Matrix, exponential};
 
+use super::sample_steps::{sample_steps, with_knots};
 use super::{MotionSubject, adaptive_reference};
 use crate::AnalyzeError;
 
@@ -38,12 +39,14 @@ pub(super) struct Samples {
     pub(super) end: Option<End>,
     /// The first time in s about which forces may do more than evaluations show.
     pub(super) unseen: Option<f64>,
+    /// The ends of adaptive steps, times in s.
+    pub(super) knots: Vec<f64>,
 }
 
 impl Samples {
     pub(super) fn new(subject: &MotionSubject<'_>) -> Self {
         let ranges = subject.start.iter().map(|&x| [x; 2]).collect();
-        Samples { states: Vec::new(), ranges, end: None, unseen: None }
+        Samples { states: Vec::new(), ranges, end: None, unseen: None, knots: Vec::new() }
     }
 
     pub(super) fn push(&mut self, state: &[f64]) {
@@ -56,27 +59,39 @@ impl Samples {
 
 /// The exact motion, and one of less accuracy whose distance bounds its error.
 pub(super) struct Reference {
+    /// The numbers of the steps after which there are samples.
+    pub(super) numbers: Vec<u64>,
     pub(super) kind: &'static str,
     pub(super) exact: Samples,
     pub(super) coarse: Samples,
 }
 
 impl Reference {
+    /// The motion over `steps` steps of `dt` seconds.
     pub(super) fn new(
         subject: &MotionSubject<'_>,
-        times: &[f64],
+        steps: u64,
+        dt: f64,
         stop: &AtomicBool,
     ) -> Result<Self, AnalyzeError> {
-        if let Some(exact) = exponentials(subject, times) {
-            return Ok(Reference { kind: "exponential", coarse: exact.clone(), exact });
-        }
-        let follow = |tolerance, times, operations| {
-            adaptive_reference::follow(subject, times, tolerance, operations, true, stop)
+        let mut numbers = sample_steps(steps);
+        let times = |numbers: &[u64]| -> Vec<f64> {
+            numbers.iter().map(|&number| number as f64 * dt).collect()
         };
-        let coarse = follow(TOLERANCES[0], times, MOST_OPERATIONS)?;
-        let times = &times[..coarse.states.len()];
-        let exact = follow(TOLERANCES[1], times, 2 * MOST_OPERATIONS)?;
-        Ok(Reference { kind: "adaptive", exact, coarse })
+        if let Some(exact) = exponentials(subject, &times(&numbers)) {
+            return Ok(Reference { numbers, kind: "exponential", coarse: exact.clone(), exact });
+        }
+        let follow = |tolerance, numbers: &[u64], operations| {
+            adaptive_reference::follow(subject, &times(numbers), tolerance, operations, true, stop)
+        };
+        let mut coarse = follow(TOLERANCES[0], &numbers, MOST_OPERATIONS)?;
+        // Between few samples of many steps the motion may be fast.
+        if (numbers.len() as u64) < steps && coarse.end.is_none() {
+            numbers = with_knots(&numbers, &coarse.knots, dt);
+            coarse = follow(TOLERANCES[0], &numbers, 3 * MOST_OPERATIONS)?;
+        }
+        let exact = follow(TOLERANCES[1], &numbers[..coarse.states.len()], 4 * MOST_OPERATIONS)?;
+        Ok(Reference { numbers, kind: "adaptive", exact, coarse })
     }
 
     /// Number of samples that both reach.

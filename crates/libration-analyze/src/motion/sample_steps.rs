@@ -12,8 +12,15 @@ const SPREAD: u64 = 512;
 /// The golden ratio less one: samples at its multiples meet no oscillation at the same phase.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
-/// The numbers of the steps in ascending order: the first ones, a geometric sequence, and numbers that are spread over all of `steps`.
+/// The most steps of which all are compared.
+const ALL: u64 = 2048;
+
+/// The numbers of the steps in ascending order: all of few, else the first ones, a geometric sequence, and numbers that are spread over all
+/// of `steps`.
 pub(super) fn sample_steps(steps: u64) -> Vec<u64> {
+    if steps <= ALL {
+        return (1..=steps).collect();
+    }
     let mut numbers: Vec<u64> = (1..=steps.min(FIRST)).collect();
     let mut next = FIRST as f64;
     while next < steps as f64 {
@@ -27,4 +34,15 @@ pub(super) fn sample_steps(steps: u64) -> Vec<u64> {
     numbers.sort_unstable();
     numbers.dedup();
     numbers
+}
+
+/// The same with those nearest to the `knots` of an adaptive motion, times in s: where it moves fast, they are many.
+pub(super) fn with_knots(numbers: &[u64], knots: &[f64], dt: f64) -> Vec<u64> {
+    let last = numbers.last().copied().unwrap_or(0);
+    let near = knots.iter().map(|time| (time / dt).round() as u64);
+    let mut all: Vec<u64> =
+        near.filter(|number| (1..=last).contains(number)).chain(numbers.iter().copied()).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
 }

@@ -33,6 +33,7 @@ use modes::{Modes, flow_radius_minus_one};
 pub use request::{Request, Stepping};
 pub use timing::{LatencyOption, Timing};
 pub use verdicts::StepVerdicts;
+pub(crate) use verdicts::of_rest;
 
 /// Analyses one step of the request.
 ///
@@ -98,7 +99,7 @@ pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, A
         Err(request.system.entry().wrong_dimension(dimension).into())
     )?;
     analysis.motion = verdicts::motion(request, stop)?;
-    analysis.verdicts = StepVerdicts::new(&analysis, request);
+    analysis.verdicts = StepVerdicts::new(&analysis, request).of_clocks(request, stop)?;
     analysis.newton_residual = implicit_step::residual(request, stop);
     Ok(analysis)
 }

@@ -3,6 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use libration::AnySystem;
+use libration::control::Jitter;
 use libration::ensemble::dynamics_of;
 use libration::equations::StepProgram;
 use libration::linear::GROWTH_ROUNDING;
@@ -11,8 +12,8 @@ use libration_settings::units;
 use serde::Serialize;
 
 use super::limits::is_free;
-use super::{Analysis, AnalyzeError, LoopAnalysis, Request};
-use crate::digits::change_per_step;
+use super::{Analysis, AnalyzeError, LoopAnalysis, Request, analyze_until};
+use crate::digits::{change_per_step, significant};
 use crate::motion::{MotionExamination, MotionState, MotionSubject, examine};
 use crate::step_verdict::StepGrowth;
 
@@ -34,24 +35,108 @@ impl StepVerdicts {
     pub(super) fn new(analysis: &Analysis, request: &Request) -> Self {
         let closed_loop = analysis.timing.as_ref().and_then(of_loop);
         let is_loop = closed_loop.is_some();
+        let is_at_rest = analysis.motion.as_ref().is_some_and(MotionExamination::is_at_rest);
+        let motion = analysis.motion.as_ref().filter(|_| !is_at_rest);
         StepVerdicts {
-            closed_loop,
-            step: match &analysis.motion {
-                _ if is_loop => None,
-                _ if request.system.is_linear() => Some(of_step(analysis, request)),
-                // A motion at rest is followed, whatever becomes of deviations that grow.
-                Some(motion) if motion.is_at_rest() => {
-                    Some(at_rest(analysis)).filter(|own| own.outcome != Outcome::NotResolved)
-                }
-                _ => None,
+            closed_loop: closed_loop.map(|own| at_start(own, request)),
+            step: match (is_loop, request.system.is_linear()) {
+                (true, _) => None,
+                (false, true) => Some(of_step(analysis, request)),
+                (false, false) => is_at_rest.then(|| of_rest(&at_rest(analysis))),
             },
-            motion: analysis.motion.as_ref().map(|motion| motion.verdict.clone()),
+            motion: motion.map(|motion| under_clocks(motion.verdict.clone(), request)),
         }
+    }
+
+    /// The same for the clocks of an ensemble: a good verdict on the stated step holds for all of them, or it is none.
+    ///
+    /// # Errors
+    /// As [`analyze_until`](super::analyze_until).
+    pub(super) fn of_clocks(
+        self,
+        request: &Request,
+        stop: &AtomicBool,
+    ) -> Result<Self, AnalyzeError> {
+        let Some(law) = request.timing.skew else { return Ok(self) };
+        let StepVerdicts { mut closed_loop, mut step, motion } = self;
+        for error in clock_errors(law) {
+            if ![&closed_loop, &step].into_iter().flatten().any(Verdict::is_good) {
+                break;
+            }
+            let mut own = request.clone();
+            own.dt *= 1.0 + error;
+            own.timing.skew = None;
+            let found = analyze_until(&own, stop)?.verdicts;
+            for (all, one) in [(&mut closed_loop, found.closed_loop), (&mut step, found.step)] {
+                let is_worse = |one: &Verdict| !one.is_good();
+                if let (Some(all), Some(one)) = (all, one.filter(is_worse)) {
+                    let percent = significant(100.0 * error.abs(), 3);
+                    let how = if error > 0.0 { "longer" } else { "shorter" };
+                    all.outcome = one.outcome;
+                    all.evidence = format!(
+                        "steps of a clock that are {percent} % {how} ({} s): {}",
+                        significant(own.dt, 4),
+                        one.evidence
+                    );
+                }
+            }
+        }
+        Ok(StepVerdicts { closed_loop, step, motion })
     }
 
     /// All that there are.
     pub fn all(&self) -> impl Iterator<Item = &Verdict> {
         self.closed_loop.iter().chain(&self.step).chain(&self.motion)
+    }
+}
+
+/// Relative errors of the steps of clocks: those of a Gaussian law up to four standard deviations, of which one clock in 16,000 has more,
+/// those of a uniform one up to its ends.
+fn clock_errors(law: Jitter) -> impl Iterator<Item = f64> {
+    let last = match law {
+        Jitter::Gaussian(rms) => 4.0 * rms,
+        Jitter::Uniform(_) => law.largest(),
+    };
+    let parts = [1.0, 0.75, 0.5, 0.25];
+    parts.into_iter().flat_map(move |part| [part * last, -part * last]).filter(|e| *e > -1.0)
+}
+
+/// A verdict on deviations from a system that rests at its start.
+pub(crate) fn of_rest(step: &Verdict) -> Verdict {
+    let evidence = format!("the system rests at its start; {}", step.evidence);
+    Verdict { evidence, ..step.clone() }.without("a motion")
+}
+
+/// The verdict on a motion whose steps have random lengths or clocks: what is compared are steps of the stated length.
+fn under_clocks(motion: Verdict, request: &Request) -> Verdict {
+    let is_random = request.timing.jitter.is_some() || request.timing.skew.is_some();
+    match is_random && motion.is_good() {
+        true => Verdict::unknown(format!(
+            "the motion is compared in steps of the stated length alone, not with jitter or skew; in these {}",
+            motion.evidence
+        )),
+        false => motion,
+    }
+}
+
+/// The verdict on a loop around a nonlinear system: that of its linearisation decides where its start is an equilibrium.
+fn at_start(own: Verdict, request: &Request) -> Verdict {
+    let feedback = request.timing.feedback.filter(|_| !request.system.is_linear());
+    let (Some(gains), true) = (feedback, own.is_good()) else { return own };
+    let dynamics = dynamics_of(request.system, request.q.len());
+    let command = gains.position * request.q[0] + gains.velocity * request.v[0];
+    let left = dynamics.and_then(|dynamics| {
+        let state = [request.q[0], request.v[0]];
+        dynamics.accelerations().on::<f64>().run(&state).next()
+    });
+    let left = left.map(|a| (a - command / request.actuation.mass()).abs());
+    let size = 1e-9 * (command.abs() + request.q[0].abs());
+    match left {
+        Some(left) if left <= size && request.v[0] == 0.0 => own,
+        _ => Verdict::unknown(format!(
+            "the start is no equilibrium of the loop, and the loop is not simulated from it; linearised there, {}",
+            own.evidence
+        )),
     }
 }
 
@@ -165,7 +250,7 @@ pub(super) fn motion(
         return Ok(None);
     };
     let dynamics = dynamics_of(request.system, dimension);
-    let Some(dynamics) = dynamics.filter(|_| request.timing.first().is_none()) else {
+    let Some(dynamics) = dynamics.filter(|_| request.timing.feedback.is_none()) else {
         return Ok(None);
     };
     let step = StepProgram::of(method, &dynamics);

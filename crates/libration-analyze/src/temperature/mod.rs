@@ -109,6 +109,8 @@ pub struct ThermostatReport {
     pub configuration: TemperatureBias,
     /// The temperature of velocities: `⟨m v²⟩` for each degree of freedom.
     pub kinetic: TemperatureBias,
+    /// Number of measured trajectories that became infinite.
+    pub infinite: usize,
     /// Why a number is missing or uncertain; none if none is.
     pub note: Option<String>,
 }
@@ -254,6 +256,7 @@ fn predicted(prediction: &Prediction<'_>, dt: f64) -> ThermostatReport {
         stable_dt: prediction.stable_dt(),
         configuration: temperature(0),
         kinetic: temperature(1),
+        infinite: 0,
         note: None,
     }
 }
@@ -262,6 +265,7 @@ fn predicted(prediction: &Prediction<'_>, dt: f64) -> ThermostatReport {
 fn write_measurement(report: &mut ThermostatReport, trajectories: &[Option<Means>]) {
     let finite: Vec<Means> = trajectories.iter().copied().flatten().collect();
     let (count, all) = (finite.len(), trajectories.len());
+    report.infinite = all - count;
     if count < all {
         report.note = Some(format!(
             "not measured: {} of {all} trajectories became infinite: dt is too long for their forces, or the potential has no bound",

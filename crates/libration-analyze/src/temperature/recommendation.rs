@@ -27,10 +27,11 @@ fn range(temperature: &TemperatureBias) -> [f64; 2] {
 /// The name of the thermostat with the least bias of positions: of those that measurements do not exclude the one with the least
 /// prediction, then with the fewest force evaluations, then with the least bias of velocities.
 pub(super) fn recommended(thermostats: &[ThermostatReport]) -> Option<String> {
-    // What became infinite has a note, and so has what was not measured at all: then none has a measurement.
     let is_measured = thermostats.iter().any(|one| one.configuration.measured_bias.is_some());
     let fits = |one: &&ThermostatReport| {
-        one.stable && (!is_measured || one.configuration.measured_bias.is_some())
+        one.stable
+            && one.infinite == 0
+            && (!is_measured || one.configuration.measured_bias.is_some())
     };
     let candidates: Vec<&ThermostatReport> = thermostats.iter().filter(fits).collect();
     let least =

@@ -54,7 +54,9 @@ fn describe(analysis: &EquationAnalysis) -> String {
     if let Some(step) = &analysis.verdicts.step {
         text += &format!("  verdict on the step  {step}\n");
     }
-    text += &format!("  of the motion        {}\n", analysis.verdicts.motion);
+    if let Some(motion) = &analysis.verdicts.motion {
+        text += &format!("  of the motion        {motion}\n");
+    }
     describe_motion(motion, system.smooth, &mut text);
     let steps = summary::along_motion(&analysis.steps_along_motion, motion);
     text += &format!("\nalong the motion: {steps}\n");

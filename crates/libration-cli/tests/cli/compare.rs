@@ -57,6 +57,14 @@ fn findings_that_became_worse_fail_the_comparison_and_are_named() {
     let left = path("left", [1.1, 1e9, 0.5], "agrees");
     let said = compared(&[&first, &left], 1);
     assert!(said.contains("agreed with theory at 1, now disagrees: measured 1.1"), "{said}");
+    // A tolerance that was widened until the measurement fits.
+    let wide = path("wide", [1.1, 1e9, 0.5], "agrees");
+    let file = Path::new(&wide).join("results.json");
+    let mut all: Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
+    all["studies"][0]["findings"][0]["tolerance"] = json!(1.0);
+    fs::write(&file, all.to_string()).unwrap();
+    let said = compared(&[&first, &wide], 1);
+    assert!(said.contains("measured 1.1, predicted 1, tolerance 1"), "{said}");
     // A prediction that nobody checks any more, unless the study was not asked for.
     let lost = path("lost", [1.0, 1e9, 0.5], "agrees");
     let file = Path::new(&lost).join("results.json");

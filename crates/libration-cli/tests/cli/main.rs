@@ -81,4 +81,5 @@ mod temperature;
 #[cfg(unix)]
 mod terminal_text;
 mod timing;
+mod unseen_parts;
 mod verify;

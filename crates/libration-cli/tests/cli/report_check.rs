@@ -113,6 +113,11 @@ fn a_report_with_a_part_that_cannot_be_recomputed_is_not_verified() {
         studies[0]["findings"].as_array_mut().unwrap().push(own);
     };
     verify(&timed, "fault: 1 difference");
+    let copied = |studies: &mut Vec<Value>| {
+        let own = studies[0]["findings"][0].clone();
+        studies[0]["findings"].as_array_mut().unwrap().push(own);
+    };
+    verify(&copied, "fault: 1 difference");
     verify(&|studies| studies[0]["data"] = serde_json::json!([]), "fault: ");
     verify(&|studies| studies[0]["figures"] = serde_json::json!([]), "fault: ");
 }

@@ -126,7 +126,7 @@ fn windows(record: &Record) -> Result<Figure, RecordError> {
     Ok(Figure::new("windows", "Time steps with bounded orbits")
         .caption(
             "Bars: windows of stability, isolated exactly. The composition of three nearly equal \
-             Verlet steps is unstable in a very narrow range near z = π, by a resonance of its substeps. \
+             Verlet steps is unstable in a very narrow range near z = 3, where a step turns by half a period. \
              A sweep misses this range; a long run inside it does not.",
         )
         .description("A bar for each interval of stable steps, a row for each integrator.")

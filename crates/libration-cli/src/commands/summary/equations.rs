@@ -10,6 +10,7 @@ use super::super::repeat_command::{SYSTEM, of_subcommand, with_option};
 use super::linear_plant::verdict;
 use super::linear_steps::append_steps;
 use super::motion::{energy_change, sentence};
+use super::step::in_words;
 use super::{Summary, numbers, words};
 
 /// Largest number of states.
@@ -95,20 +96,23 @@ fn shorter(analysis: &EquationAnalysis) -> f64 {
     let step = linear.as_ref().and_then(|linear| linear.steps.iter().find(own));
     let end = step.and_then(|step| step.stable_dt.as_deref()?.first()?[1]);
     let along = analysis.steps_along_motion.largest_stable_dt;
-    0.5 * [end, along].into_iter().flatten().fold(motion.dt, f64::min)
+    let limits = [end, along].into_iter().flatten().filter(|limit| *limit > 0.0);
+    0.5 * limits.fold(motion.dt, f64::min)
 }
 
 /// The first sentence is about an instability of the step, if there is one, else about the motion.
 fn verdicts_in_words(analysis: &EquationAnalysis) -> String {
     let EquationAnalysis { system, motion, verdicts, .. } = analysis;
     let step = format!("{} in steps of {} s", motion.integrator, significant(motion.dt, 6));
-    let of_step = verdicts.step.as_ref().filter(|_| verdicts.is_unstable()).map(|verdict| {
-        format!("{step} is {} on {}: {}. ", verdict.outcome, system.name, verdict.evidence)
-    });
-    let on = format!("{step} on {}", system.name);
-    let subject = if of_step.is_some() { "It" } else { &on };
-    let of_motion = sentence(subject, &verdicts.motion, &motion.examination, motion.dt);
-    of_step.unwrap_or_default() + &of_motion.replace("Whether It", "Whether it")
+    let scope = format!(" on {}", system.name);
+    let own = verdicts.step.as_ref();
+    let of_step = own.filter(|_| verdicts.is_unstable() || verdicts.motion.is_none());
+    let of_step = of_step.map(|verdict| in_words(&step, &step, &scope, verdict));
+    let Some(of_motion) = &verdicts.motion else { return of_step.unwrap_or_default() };
+    let subject = if of_step.is_some() { "It".to_owned() } else { step + &scope };
+    let of_motion = sentence(&subject, of_motion, &motion.examination, motion.dt);
+    let of_step = of_step.map_or_else(String::new, |text| text + " ");
+    of_step + &of_motion.replace("Whether It", "Whether it")
 }
 
 /// Whether all verdicts are good.

@@ -42,7 +42,7 @@ pub(crate) fn of_step(analysis: &Analysis, request: &Request) -> String {
 }
 
 /// A verdict as a sentence about `subject`, which is `inside` of a sentence.
-fn in_words(subject: &str, inside: &str, scope: &str, verdict: &Verdict) -> String {
+pub(super) fn in_words(subject: &str, inside: &str, scope: &str, verdict: &Verdict) -> String {
     let Verdict { outcome, evidence, .. } = verdict;
     match outcome {
         Outcome::Unknown => {
