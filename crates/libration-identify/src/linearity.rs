@@ -22,6 +22,8 @@ pub struct LinearityTests {
     pub response_levels: Option<f64>,
     /// The probability for the direction of command and response.
     pub directions: Option<f64>,
+    /// The probability for parameters that change in the course of the log.
+    pub course: Option<f64>,
 }
 
 /// A column with less than this part of its length left is explained by the others: what is left is mostly the error of derivatives.
@@ -46,7 +48,7 @@ impl LinearityTests {
         let window = model.window(recording);
         let whitened = model.whitened(window, &estimate.point);
         let innovations = scores.unwrap_or(&estimate.regression.residuals);
-        let known = nuisances(estimate, window, &whitened);
+        let (known, effects) = nuisances(estimate, window, &whitened);
         let plant = model.response.dynamics(&estimate.point.shape[1..]);
         let dead_time = estimate.point.shape[0];
         let roots: Vec<f64> = whitened.scales.iter().map(|scale| scale.sqrt()).collect();
@@ -94,6 +96,7 @@ impl LinearityTests {
                 .probability(innovations, levels(&recording.commands).map(commanded)),
             response_levels: known.probability(innovations, levels(&predicted).map(beside)),
             directions: known.probability(innovations, directions.into_iter()),
+            course: known.robust_probability(innovations, effects.into_iter().map(ramped)),
         }
     }
 
@@ -111,6 +114,11 @@ impl LinearityTests {
                 self.response_levels,
             ),
             ("the direction of the motion", "backlash or friction", self.directions),
+            (
+                "the time",
+                "a dead time, gain or offset that changes in the course of the log",
+                self.course,
+            ),
         ];
         named
             .into_iter()
@@ -167,16 +175,56 @@ impl Basis {
     }
 }
 
+impl Basis {
+    /// The same where the power of innovations may be another one at each of them, as random dead times make it behind changes of the
+    /// command (H. White, Econometrica 48, 1980).
+    fn robust_probability(
+        &self,
+        innovations: &[f64],
+        columns: impl Iterator<Item = Vec<f64>>,
+    ) -> Option<f64> {
+        let mut basis = self.clone();
+        let (mut statistic, mut count) = (0.0, 0);
+        for column in columns {
+            let Some(left) = basis.left(column) else { continue };
+            let products = left.iter().zip(innovations).map(|(x, y)| x * y);
+            let (share, power) =
+                products.fold((0.0, 0.0), |(sum, squares), p| (sum + p, squares + p * p));
+            if power > 0.0 {
+                statistic += share * share / power;
+                count += 1;
+            }
+            basis.0.push(left);
+        }
+        (count > 0).then(|| chi_squared_tail(statistic, f64::from(count)))
+    }
+}
+
+/// A column that grows from one end of the log to the other.
+fn ramped(column: Vec<f64>) -> Vec<f64> {
+    let last = column.len().max(2) as f64 - 1.0;
+    column.into_iter().enumerate().map(|(k, x)| x * (k as f64 / last - 0.5)).collect()
+}
+
 fn length(column: &[f64]) -> f64 {
     column.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// The changes of the innovations by each parameter of a fit, to both sides: the likelihood has a kink where an arrival meets a sample.
-fn nuisances(estimate: &Estimate<'_>, window: Window<'_>, whitened: &Whitened) -> Basis {
+/// What they span, and each of them.
+fn nuisances(
+    estimate: &Estimate<'_>,
+    window: Window<'_>,
+    whitened: &Whitened,
+) -> (Basis, Vec<Vec<f64>>) {
     let model = &estimate.model;
     let columns = whitened.columns;
-    let mut basis = Basis::default();
-    let mut add = |column: Vec<f64>| basis.0.extend(basis.left(column));
+    let (mut basis, mut effects) = (Basis::default(), Vec::new());
+    let mut add = |column: Vec<f64>| {
+        let left = basis.left(column);
+        effects.extend(left.clone());
+        basis.0.extend(left);
+    };
     for column in 0..columns {
         let regressor = whitened.regressors.iter().skip(column).step_by(columns);
         add(regressor.zip(&whitened.scales).map(|(x, scale)| x / scale.sqrt()).collect());
@@ -200,7 +248,7 @@ fn nuisances(estimate: &Estimate<'_>, window: Window<'_>, whitened: &Whitened) -
             }
         }
     }
-    basis
+    (basis, effects)
 }
 
 /// Functions of a signal that bend at some of its levels.

@@ -192,7 +192,9 @@ impl ResultsComparison {
         match (verdict(first), verdict(second)) {
             (Agreement::Agrees, Agreement::Agrees) if is_lost => self.regressions.push(change()),
             (Agreement::Agrees, Agreement::Agrees) if is_loosened(first, second) => {
-                self.regressions.push(change());
+                let verdicts = [Agreement::Agrees, Agreement::Disagrees];
+                let tolerance = first.tolerance.tolerance;
+                self.regressions.push(Change { tolerance, verdicts, ..change() });
             }
             (Agreement::Agrees | Agreement::Measured, Agreement::Disagrees) => {
                 self.regressions.push(change())

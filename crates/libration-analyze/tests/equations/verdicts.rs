@@ -130,7 +130,7 @@ fn a_motion_with_errors_as_large_as_itself_is_not_resolved_over_all_steps() {
         (plane(["-x+0.1*y", "-y+0.1*x"], "x = 1.0", ""), "leapfrog", 0.4, 2000),
     ] {
         let found = examined(&system, method, dt, steps);
-        let motion = &found.verdicts.motion;
+        let motion = &found.motion.examination.verdict;
         assert_eq!(motion.outcome, Outcome::NotResolved, "{method} {dt}: {motion}");
         assert_eq!(exit_code(found.verdicts.all()), 1);
     }
@@ -162,10 +162,10 @@ fn small_errors_are_resolved_whatever_ratio_they_have() {
     ] {
         let found = examined(&system, method, dt, steps);
         assert_eq!(
-            found.verdicts.motion.outcome,
+            found.motion.examination.verdict.outcome,
             Outcome::Resolved,
             "{method}: {}",
-            found.verdicts.motion
+            found.motion.examination.verdict
         );
         assert_eq!(exit_code(found.verdicts.all()), 0, "{method}: {:?}", found.verdicts);
     }
@@ -180,13 +180,13 @@ fn what_the_reference_cannot_reach_is_unknown_and_no_success() {
         (&lorenz, "dormand-prince-8", 0.002, 50_000),
     ] {
         let found = examined(system, method, dt, steps);
-        let motion = &found.verdicts.motion;
+        let motion = &found.motion.examination.verdict;
         assert!(!motion.is_good(), "{method}: {motion}");
         assert_eq!(exit_code(found.verdicts.all()), 1);
     }
     // A motion that ends: x = 1/(1 − t).
     let found = examined(&rate("x^2", 1.0), "backward-euler", 0.1, 20);
-    assert!(!found.verdicts.motion.is_good(), "{}", found.verdicts.motion);
+    assert!(!found.motion.examination.verdict.is_good(), "{}", found.motion.examination.verdict);
 }
 
 #[test]

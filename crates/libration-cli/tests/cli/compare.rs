@@ -64,7 +64,7 @@ fn findings_that_became_worse_fail_the_comparison_and_are_named() {
     all["studies"][0]["findings"][0]["tolerance"] = json!(1.0);
     fs::write(&file, all.to_string()).unwrap();
     let said = compared(&[&first, &wide], 1);
-    assert!(said.contains("measured 1.1, predicted 1, tolerance 1"), "{said}");
+    assert!(said.contains("now disagrees: measured 1.1, predicted 1, tolerance 0.001"), "{said}");
     // A prediction that nobody checks any more, unless the study was not asked for.
     let lost = path("lost", [1.0, 1e9, 0.5], "agrees");
     let file = Path::new(&lost).join("results.json");

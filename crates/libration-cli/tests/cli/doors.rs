@@ -4,7 +4,6 @@
 //! columns zero; until then a change shows which way it goes. `LIBRATION_RENEW_SNAPSHOTS=1` writes the table anew.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
 use std::{env, fs};
@@ -55,7 +54,9 @@ fn collect(path: &str, value: &Value, values: &mut BTreeMap<String, Value>) {
             let items = items.iter().enumerate();
             items.for_each(|(i, value)| collect(&format!("{path}[{i}]"), value, values));
         }
-        other => drop(values.insert(path.to_owned(), other.clone())),
+        other => {
+            values.insert(path.to_owned(), other.clone());
+        }
     }
 }
 
@@ -78,7 +79,7 @@ fn row(command: &str, system: &str, doors: [Option<BTreeMap<String, Value>>; 2])
 fn systems_by_name_and_by_equations_have_as_much_in_common_as_is_kept() {
     let columns = ["same", "differ", "by name", "by file"];
     let mut table = format!("{:<10}{:<20}", "command", "system");
-    columns.iter().for_each(|column| drop(write!(table, "{column:>10}")));
+    columns.iter().for_each(|column| table += &format!("{column:>10}"));
     table.push('\n');
     for (command, by_name, by_file) in COMMANDS {
         for system in SYSTEMS {

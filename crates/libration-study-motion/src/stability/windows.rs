@@ -15,7 +15,7 @@ use libration_study::{Lab, StudyError};
 
 use crate::growth::grows;
 
-/// Three Verlet steps of nearly equal size: a composition that loses stability near z = π, in a gap
+/// Three Verlet steps of nearly equal size: a composition that loses stability near z = 3, in a gap
 /// that a sweep easily steps over, and finds it again.
 const UNEVEN_THIRDS: Composition<VelocityVerlet, 3> =
     Composition { base: VelocityVerlet, weights: [0.33, 0.34, 0.33] };
