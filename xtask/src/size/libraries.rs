@@ -18,7 +18,7 @@ pub(super) fn of_release_program() -> Result<BTreeMap<String, Compiled>, String>
     let mut found = BTreeMap::new();
     for message in messages.lines() {
         let message: Value = serde_json::from_str(message).map_err(|error| error.to_string())?;
-        for (name, library) in own_library(&message) {
+        if let Some((name, library)) = own_library(&message) {
             let mut nm = command::program("nm");
             nm.args(["--print-size", "--defined-only", library]);
             found.insert(name.to_owned(), functions(&command::output(&mut nm)?));

@@ -131,9 +131,9 @@ fn settings_are_read_back_from_a_manifest_whatever_they_are() {
         write(&job, &Count::default()).unwrap();
         let again = Execution::serial().threads(3).unwrap();
         let count = Count::default();
-        let (_, flaws) =
+        let verification =
             verify(&out, VerifyOptions { replay: Some(&again), repair: None }, &count).unwrap();
-        assert_eq!(flaws, [], "{text}");
+        assert_eq!(verification.flaws, [], "{text}");
         assert_eq!(u128::from(count.0.into_inner()), dataset.len());
     }
     assert_eq!(Dataset::default().len(), 4096 * 1024);
@@ -229,7 +229,7 @@ fn a_data_set_of_equations_holds_the_bits_of_the_compiled_system_in_each_format(
         fs::rename(&system, dir.path().join("elsewhere")).unwrap();
         let execution = Execution::serial();
         let how = VerifyOptions { replay: Some(&execution), repair: None };
-        let (_, flaws) = verify(&found, how, &Count::default()).unwrap();
+        let flaws = verify(&found, how, &Count::default()).unwrap().flaws;
         assert!(flaws.is_empty(), "{flaws:?}");
         fs::rename(dir.path().join("elsewhere"), &system).unwrap();
     }

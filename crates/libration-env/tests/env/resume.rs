@@ -176,7 +176,7 @@ fn an_unfinished_data_set_has_no_flaw_for_its_state() {
     let (written, _) = write_until(700, (SETTINGS, DataFormat::Npy, [1, 1]), &out);
     assert!(written.is_err() && out.join(STATE).exists());
     let flaws =
-        |out: &Path| verify(out, VerifyOptions::default(), &Watch::until(u64::MAX)).unwrap().1;
+        |out: &Path| verify(out, VerifyOptions::default(), &Watch::until(u64::MAX)).unwrap().flaws;
     let found = flaws(&out);
     assert!(found.len() == 1 && found[0].what.contains("is unfinished"), "{found:?}");
     let state = fs::read(out.join(STATE)).unwrap();
@@ -216,7 +216,7 @@ fn joined_shards_are_the_data_set_of_one_run_byte_for_byte_in_any_order_linked_o
         assert!(contents(&out) == contents(&whole), "{of}");
         let execution = Execution::serial();
         let how = VerifyOptions { replay: Some(&execution), repair: None };
-        assert_eq!(verify(&out, how, &Watch::until(u64::MAX)).unwrap().1, []);
+        assert_eq!(verify(&out, how, &Watch::until(u64::MAX)).unwrap().flaws, []);
         parts.iter().for_each(|part| fs::remove_dir_all(part).unwrap());
         assert!(contents(&out) == contents(&whole), "{of}");
     }
