@@ -224,7 +224,9 @@ fn entry(i: usize, centre: f64, noise: f64, pairs: &[Pair<'_>]) -> (f64, f64) {
     let values = || estimates.iter().map(|(value, _)| *value);
     let spread = values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min);
     error = error.max(spread);
-    if let (true, Some(last)) = (bends.len() > 2, bends.last()) {
+    // Longer steps than the last ones may leave the neighbourhood in which both slopes are constant.
+    let bends = &bends[bends.len().saturating_sub(LEAST_STEPS)..];
+    if let (true, Some(last)) = (bends.len() == LEAST_STEPS, bends.last()) {
         // Half the difference of the slopes falls by 4 from step to step if the function is smooth, and grows by 4 by rounding.
         let most = bends.iter().copied().fold(0.0, f64::max);
         let least = bends.iter().copied().fold(f64::MAX, f64::min);

@@ -163,7 +163,8 @@ pub(crate) fn _gains(
         let names: Vec<&str> = ServoIntegrator::names().collect();
         unknown("integrator", integrator, names)
     })?;
-    let mut report = gains(&servos, dt, substeps, found, described.notes);
+    let mut report = gains(&servos, dt, substeps, found, described.notes)
+        .with_inert_servos(described.saturated, described.idle);
     if let (Some(step), Some(description)) = (step, described.step) {
         let subject = description.subject().map_err(|error| wrong(&error))?;
         let mut black_box = PythonStep {

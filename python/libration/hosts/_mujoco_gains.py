@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from .._descriptions import description_of
 from .._keywords import check_keywords
 from .._settings import count, positive
+from ._mujoco_force_limits import free_forces, idle_servos
 from ._mujoco_names import name_of, number_of_actuators, state_names
 from ._mujoco_operating_point import servos_of
 from ._mujoco_point import copy_of, model_of
@@ -125,12 +126,14 @@ def mujoco_gains(
         own.opt.disableflags = own.opt.disableflags & ~flag if is_implicit else own.opt.disableflags | flag
     part = whole / count("substeps", substeps, 1, 1000)
     host, own, point = host_at_point(own, data, keyframe=keyframe, state=state, dt=part, memory=False, is_audited=False)
+    saturated, of_limits = free_forces(own, point)
     gains = ServoGains(own, point)
     described = mujoco_servos(own, point)
+    described.update(saturated=saturated, idle=idle_servos(own, gains.moments, gains.servos))
     described["dt"] = whole
     if is_own:
         # Notes on contacts are those of the step, in which they act.
         of_model = [note for note in described["notes"] if note == NO_GAINS]
-        described.update(notes=[*host.notes, *host.validity, *of_model], step=description_of(host), servos=gains.described())
+        described.update(notes=[*host.notes, *host.validity, *of_limits, *of_model], step=description_of(host), servos=gains.described())
         described["other_servos"] = [name_of(own, "actuator", k) for k in gains.others]
     return described, host, gains

@@ -40,7 +40,8 @@ pub(crate) fn run(args: &GainsArgs) -> Result<(), Failure> {
             ))
         })?,
     };
-    let mut report = gains(&servos, dt, args.substeps, integrator, description.notes);
+    let mut report = gains(&servos, dt, args.substeps, integrator, description.notes)
+        .with_inert_servos(description.saturated, description.idle);
     // Torques that a simulator holds are not those of its own servos.
     let step = description.step.filter(|_| !args.held_torque);
     if let (Some(child), Some(step)) = (&mut child, step) {

@@ -101,6 +101,9 @@ pub(super) fn actions(report: &GainReport) -> Vec<String> {
         ];
     }
     let mut all = Vec::new();
+    if report.verdict.outcome == Outcome::Unknown && report.is_inert() {
+        return vec!["Examine a point at which all servos act within their force limits.".into()];
+    }
     if report.verdict.outcome == Outcome::Unknown && report.measured.is_none() {
         all.push("Add damping or take another integrator: rounding decides with this one.".into());
         return all;

@@ -107,7 +107,7 @@ impl MeasuredGains {
                 "At a point that is no equilibrium only fast modes count; `--settle` (Python: state=\"settled\") searches for the equilibrium near it.".into(),
             );
         }
-        if self.neutral_modes > 0 && self.is_differentiable {
+        if self.neutral_modes > 0 && self.is_differentiable && report.saturated.is_empty() {
             sentences.push(format!(
                 "{} neutral within errors, as those of a free base, or of joints without damping or stiffness.",
                 match self.neutral_modes {

@@ -55,6 +55,12 @@ pub struct GainReport {
     /// Whether it is known if a motion of the servo model grows.
     #[serde(skip)]
     pub(super) is_known: bool,
+    /// Forces at a limit, where gains have no derivative, in words.
+    #[serde(skip)]
+    pub(super) saturated: Vec<String>,
+    /// Servos that do not act, in words.
+    #[serde(skip)]
+    pub(super) idle: Vec<String>,
     /// The largest factor of all gains of position, with the same gains of velocity.
     #[serde(serialize_with = "limit")]
     pub largest_factor: f64,
@@ -201,6 +207,8 @@ pub fn gains(
         spectral_radius_minus_one: own.spectral_radius_minus_one,
         is_at_limit: !own.holds && own.is_known && shorter == Growth::None,
         is_known: own.is_known,
+        saturated: Vec::new(),
+        idle: Vec::new(),
         largest_factor: own.largest_factor,
         least_factor: own.least_factor,
         fewest_substeps: own.fewest_substeps,

@@ -59,6 +59,12 @@ pub struct ServosDescription {
     /// Actuators whose forces depend on the motion in another way.
     #[serde(default)]
     pub other_servos: Vec<String>,
+    /// Forces at a limit, where gains have no derivative, in words.
+    #[serde(default)]
+    pub saturated: Vec<String>,
+    /// Servos that do not act, in words.
+    #[serde(default)]
+    pub idle: Vec<String>,
 }
 
 #[derive(Clone, Debug, Deserialize)]

@@ -43,12 +43,60 @@ impl GainReport {
         self
     }
 
+    /// The same where forces are at a limit, or where servos do not act: the gains have no effect that a derivative has, so that nothing is
+    /// known of them. A mode that grows without the servos that do not act grows all the same.
+    #[must_use]
+    pub fn with_inert_servos(mut self, saturated: Vec<String>, idle: Vec<String>) -> Self {
+        (self.saturated, self.idle) = (saturated, idle);
+        self.conclude();
+        self
+    }
+
+    /// Whether a force is at a limit, or a servo does not act.
+    pub(super) fn is_inert(&self) -> bool {
+        !(self.saturated.is_empty() && self.idle.is_empty())
+    }
+
+    /// Why nothing is known of the gains, whatever the step does; none if all servos act.
+    fn inert(&self, verdict: &Verdict) -> Option<Verdict> {
+        let grows = verdict.outcome == Outcome::Unstable;
+        let idle = self.idle.iter().filter(|_| !(grows && self.saturated.is_empty()));
+        let reasons: Vec<&str> = self.saturated.iter().chain(idle).map(String::as_str).collect();
+        let unknown = Verdict::unknown(reasons.join("; "));
+        (!reasons.is_empty())
+            .then(|| Verdict { not_examined: verdict.not_examined.clone(), ..unknown })
+    }
+
+    /// Removes all limits of gains, which would be read as gains that hold.
+    fn withhold(&mut self) {
+        (self.largest_factor, self.least_factor, self.fewest_substeps) = (f64::NAN, 0.0, None);
+        for joint in &mut self.joints {
+            (joint.largest_kp, joint.largest_kv) = (f64::NAN, f64::NAN);
+            joint.largest_turn = f64::NAN;
+        }
+        for row in &mut self.integrators {
+            (row.holds, row.is_known) = (false, false);
+            (row.largest_factor, row.least_factor, row.fewest_substeps) = (f64::NAN, 0.0, None);
+        }
+        if let Some(measured) = &mut self.measured {
+            (measured.largest_factor, measured.least_factor) = (f64::NAN, 0.0);
+            measured.fewest_substeps = None;
+            measured.not_searched.splice(0..0, measured.servos.drain(..).map(|servo| servo.name));
+        }
+    }
+
     /// Sets the verdict and the answer.
     pub(super) fn conclude(&mut self) {
-        self.verdict = match &self.measured {
+        let of_step = |report: &Self| match &report.measured {
             Some(measured) => measured.verdict(),
-            None => self.verdict_of_model(),
+            None => report.verdict_of_model(),
         };
+        self.verdict = of_step(self);
+        if self.inert(&self.verdict).is_some() {
+            self.withhold();
+            let of_step = of_step(self);
+            self.verdict = self.inert(&of_step).unwrap_or(of_step);
+        }
         self.holds = self.verdict.is_good();
         self.answer = match &self.measured {
             Some(measured) => measured.summary(self),
@@ -131,6 +179,9 @@ impl GainReport {
     }
 
     fn summary(&self) -> String {
+        if self.verdict.outcome == Outcome::Unknown && self.is_inert() {
+            return format!("Whether the gains hold is unknown: {}.", self.verdict.evidence);
+        }
         let integrator = ServoIntegrator::label(self.integrator);
         let of = self.steps();
         let limits = format!("This servo model has no {NOT_MODELLED}.");

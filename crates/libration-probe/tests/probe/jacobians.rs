@@ -32,6 +32,15 @@ fn a_kink_and_a_jump_have_an_error_of_their_size() {
 }
 
 #[test]
+fn a_kink_of_a_function_that_saturates_nearby_has_an_error_of_its_size() {
+    // The slopes are 0 and 1 on both sides: half of the difference.
+    for width in [1e-4, 4.6e-4, 1e-3, 1e-2, 1.0] {
+        let found = of(|z| vec![z[0].clamp(0.0, width)], &[0.0], &[1.0]);
+        assert!(found.errors[(0, 0)] >= 0.5, "{width} {found:?}");
+    }
+}
+
+#[test]
 fn points_at_which_the_function_is_not_finite_are_left_out() {
     let found = of(|z| vec![z[0].sqrt()], &[0.01], &[1.0]);
     assert!((found.values[(0, 0)] - 5.0).abs() <= found.errors[(0, 0)], "{found:?}");

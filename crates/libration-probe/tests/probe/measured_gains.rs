@@ -181,3 +181,22 @@ fn a_step_without_a_derivative_has_no_verdict() {
     let found = MeasuredGains::measure(&mut kink, &subject, &[], 1).unwrap();
     assert!(!found.is_differentiable);
 }
+
+#[test]
+fn gains_of_servos_at_a_force_limit_or_without_effect_are_unknown_and_have_no_limits() {
+    let one = || vec!["`servo 0` is at its force limit".to_owned()];
+    let stable = || measured(Sliders::new(&[0.0], &[100.0], &[3.0]), DT);
+    assert_eq!(stable().verdict.outcome, Outcome::Stable);
+    for (saturated, idle) in [(one(), vec![]), (vec![], one())] {
+        let found = stable().with_inert_servos(saturated, idle);
+        assert_eq!(found.verdict.outcome, Outcome::Unknown);
+        assert!(found.answer.contains("`servo 0` is at its force limit"), "{}", found.answer);
+        assert!(found.largest_factor.is_nan() && found.joints[0].largest_kp.is_nan());
+        assert!(found.measured.as_ref().unwrap().servos.is_empty());
+        assert!(found.integrators.iter().all(|row| !row.holds && row.largest_factor.is_nan()));
+    }
+    // 8·10⁴ N/m is the limit without damping: growth without a servo that does not act is growth, but the mean of two slopes is none.
+    let unstable = || measured(Sliders::new(&[1e5], &[100.0], &[3.0]), DT);
+    assert_eq!(unstable().with_inert_servos(vec![], one()).verdict.outcome, Outcome::Unstable);
+    assert_eq!(unstable().with_inert_servos(one(), vec![]).verdict.outcome, Outcome::Unknown);
+}
