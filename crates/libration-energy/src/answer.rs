@@ -4,7 +4,7 @@ use libration_report::notation::{number, plural};
 use libration_report::verdict::Outcome;
 
 use crate::interval::exponent;
-use crate::{DriftCause, EnergyReport, LargestDt, OscillationCause};
+use crate::{DriftCause, EnergyReport, FindingKind, LargestDt, OscillationCause};
 
 /// The answer in a few sentences.
 pub(crate) fn answer(report: &EnergyReport) -> String {
@@ -36,6 +36,8 @@ pub(crate) fn answer(report: &EnergyReport) -> String {
         _ => String::new(),
     };
     let drift = match (report.drift_cause, report.drift_law) {
+        // A slow change that is no line is told as a fault or as unclear.
+        (DriftCause::Unresolved, _) if changes_slowly(report) => String::new(),
         (DriftCause::Unresolved, _) => {
             let bound = report.runs.iter().map(|run| run.drift_rate.largest_size());
             format!(
@@ -56,6 +58,12 @@ pub(crate) fn answer(report: &EnergyReport) -> String {
     };
     let largest = report.largest_dt.as_ref().map_or_else(String::new, longest);
     format!("{names}{kept}.{limits}{order}{drift}{assumed}{largest}")
+}
+
+fn changes_slowly(report: &EnergyReport) -> bool {
+    report.findings.iter().any(|finding| {
+        matches!(finding.kind, FindingKind::StepIndependentDrift | FindingKind::UnclearDrift)
+    })
 }
 
 fn longest(largest: &LargestDt) -> String {

@@ -6,6 +6,7 @@ use crate::answer::answer;
 use crate::cause::OscillationCause;
 use crate::findings::findings;
 use crate::power_law::PowerLaw;
+use crate::slow_change::SlowChange;
 use crate::trace::checked;
 use crate::verdicts::{of_faults, of_tolerance};
 use crate::{
@@ -39,11 +40,16 @@ pub fn audit(traces: &[EnergyTrace], requirement: Requirement) -> Result<EnergyR
     let drift_law = law(&|run| run.drifts().then_some(run.drift_rate));
     let walk_law = law(&|run| run.present_walk().map(|walk| walk.diffusion));
     let walk_cause = WalkCause::of(&runs, walk_law);
+    // What a drift or an oscillation explains is theirs.
+    let is_explained = oscillation_cause == OscillationCause::StepIndependent
+        || drift_cause == DriftCause::StepIndependent;
+    let slow = SlowChange::of(&sorted, &runs).filter(|_| !is_explained);
     let search = LargestDt::search(
         &runs,
         requirement,
         (oscillation_cause, drift_cause, walk_cause),
         (drift_law.map(|law| law.exponent.value), walk_law.map(|law| law.exponent.value)),
+        slow,
     );
     let (largest_dt, predicted) = search.unzip();
     let mut report = EnergyReport {
@@ -64,7 +70,7 @@ pub fn audit(traces: &[EnergyTrace], requirement: Requirement) -> Result<EnergyR
         libration_version: env!("CARGO_PKG_VERSION"),
         repeat_command: String::new(),
     };
-    report.findings = findings(&report, &sorted, requirement.scale);
+    report.findings = findings(&report, &sorted, requirement.scale, slow);
     report.verdict = of_faults(&report);
     if let (Some(largest), Some(predicted), Some(_)) =
         (largest_dt, predicted, requirement.tolerance)

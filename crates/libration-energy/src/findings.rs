@@ -6,6 +6,7 @@ use crate::FindingKind as Kind;
 use crate::convergence::Convergence;
 use crate::interval::{exponent, interval};
 use crate::local_deviations::Roughness;
+use crate::slow_change::SlowChange;
 use crate::{DriftCause, EnergyReport, EnergyTrace, Finding, PowerLaw, Run, WalkCause};
 use crate::{local_findings, oscillation_findings};
 
@@ -23,6 +24,7 @@ pub(crate) fn findings(
     report: &EnergyReport,
     traces: &[&EnergyTrace],
     scale: Option<f64>,
+    slow: Option<SlowChange>,
 ) -> Vec<Finding> {
     let roughness: Vec<Roughness> =
         traces.iter().zip(&report.runs).map(|(trace, run)| Roughness::of(trace, run)).collect();
@@ -33,6 +35,13 @@ pub(crate) fn findings(
     found.extend(oscillation_findings::first_order(report));
     found.extend(oscillation_findings::unclear(report));
     found.extend(walk(report));
+    // A jump is told with its time.
+    let local = local_findings::local(&report.runs, &roughness);
+    if local.is_none() && !found.iter().any(|finding| finding.is_fault) {
+        let is_told = found.iter().any(|finding| finding.kind == Kind::UnclearDrift);
+        let slow = slow.filter(|slow| slow.is_of_all || !is_told);
+        found.extend(slow.and_then(|slow| slow.finding(&report.runs)));
+    }
     if convergence.is_saturated {
         // How such energies depend on the step says nothing of the program, but for a drift of first order, which diverges.
         found.retain(|finding| finding.kind == Kind::FirstOrderDrift);
@@ -41,7 +50,7 @@ pub(crate) fn findings(
         found.extend(convergence.reason.map(|reason| Finding::new(Kind::NotConverged, reason)));
     }
     if !convergence.is_saturated {
-        found.extend(local_findings::local(&report.runs, &roughness));
+        found.extend(local);
     }
     found.extend(short_run(report));
     found.extend(different_start(&report.runs));

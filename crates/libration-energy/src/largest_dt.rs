@@ -4,6 +4,7 @@ use libration_report::notation::number;
 use serde::Serialize;
 
 use crate::estimate::NORMAL_95;
+use crate::slow_change::SlowChange;
 use crate::{DriftCause, Estimate, OscillationCause, Run, TraceError, WalkCause};
 
 /// How far below the shortest step laws are continued.
@@ -197,6 +198,16 @@ fn walk(runs: &[Run], cause: WalkCause, exponent: Option<f64>) -> Law {
     Law { points: runs.iter().map(point).collect(), exponent_below, is_known }
 }
 
+/// A slow change by as much at each step. The oscillation may contain it.
+fn constant(dt: f64, slow: Option<SlowChange>) -> Law {
+    let point = |slow: SlowChange| (dt, Estimate { value: slow.size, low: 0.0, high: slow.size });
+    Law {
+        points: slow.map(point).into_iter().collect(),
+        exponent_below: 0.0,
+        is_known: slow.is_none_or(|slow| slow.is_of_all),
+    }
+}
+
 impl LargestDt {
     /// The allowed deviation: `10⁻⁴ of the energy at the start`.
     pub(crate) fn allowed_in_words(&self) -> String {
@@ -214,6 +225,7 @@ impl LargestDt {
         requirement: Requirement,
         causes: (OscillationCause, DriftCause, WalkCause),
         exponents: (Option<f64>, Option<f64>),
+        slow: Option<SlowChange>,
     ) -> Option<(Self, Vec<[f64; 2]>)> {
         let (first, last) = (runs.first()?, runs.last()?);
         let horizon = requirement.horizon.unwrap_or(first.duration);
@@ -229,11 +241,12 @@ impl LargestDt {
             oscillation(runs, causes.0, causes.1),
             drift(runs, causes.1, exponents.0),
             walk(runs, causes.2, exponents.1),
+            constant(first.dt, slow),
         ];
         let deviation = |dt: f64, end: End, is_counted: fn(&Law) -> bool| {
             let size = |law: &Law| if is_counted(law) { law.at(dt, end) } else { 0.0 };
-            let [oscillation, drift, walk] = laws.each_ref().map(size);
-            oscillation + drift * horizon + NORMAL_95 * (walk * horizon).sqrt()
+            let [oscillation, drift, walk, slow] = laws.each_ref().map(size);
+            slow + oscillation + drift * horizon + NORMAL_95 * (walk * horizon).sqrt()
         };
         let shortest_dt = SHORTER * first.dt;
         let search = |end: End, is_counted: fn(&Law) -> bool| {

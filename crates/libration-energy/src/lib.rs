@@ -27,6 +27,7 @@ mod power_law;
 mod report;
 mod run;
 mod single_precision;
+mod slow_change;
 mod trace;
 mod verdicts;
 mod walk;

@@ -8,5 +8,6 @@ mod honest;
 mod local_deviations;
 mod molecular_dynamics;
 mod programs;
+mod slow_changes;
 mod theory;
 mod verdicts;
