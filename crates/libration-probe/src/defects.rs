@@ -57,7 +57,8 @@ impl Defects {
                 halved = Some(irreversibility(prober, pairs, subject.dt / 2.0)?);
             }
         }
-        let energy = EnergyDrift::measure(prober, longest_period(flow), is_at_rest)?;
+        let velocities = pairs.filter(|pairs| !pairs.is_empty());
+        let energy = EnergyDrift::measure(prober, longest_period(flow), is_at_rest, velocities)?;
         Ok(Defects {
             volume_rate: known(volume_rate, rounding),
             flow_volume_rate: flow.map(of_flow),

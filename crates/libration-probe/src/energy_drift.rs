@@ -27,6 +27,8 @@ const WHOLE: f64 = 1.0;
 /// A motion that exchanges more than this times the energy of its start has left the neighbourhood of the equilibrium, whose energy is no
 /// scale of it.
 const LEFT: f64 = 4.0;
+/// Part of the size by the scales below which energy that a motion exchanges is no scale of it: it hardly moves.
+const SCARCE: f64 = 1e-3;
 /// Parts of a step whose trajectory shows what the system does by itself, and the most steps of it.
 const PARTS: usize = 8;
 const MOST_PARTS: usize = 200_000;
@@ -37,9 +39,10 @@ const LATER: f64 = 1.8;
 /// The drift of the energy.
 #[derive(Clone, Debug, Serialize)]
 pub struct EnergyDrift {
-    /// Rate of the energy in 1/s, relative to that of a displacement from an equilibrium; off one to a size that does not depend on the
-    /// zero of the energy: half of its slope along a state times the scale of this state. Of a motion that leaves its equilibrium, relative to
-    /// the largest energy that a single state of it adds.
+    /// Rate of the energy in 1/s, relative to that of a displacement from an equilibrium. Off one relative to the kinetic energy of the motion,
+    /// which does not depend on the zero of the energy. Without velocities, and of a motion that leaves its equilibrium, relative to the
+    /// largest energy that a single state of it adds; if none adds any, to half of the slope of the energy along a state times the scale of
+    /// this state. Of a system that changes its energy, that of an exponential.
     pub rate: f64,
     /// The same with half the step.
     pub rate_halved: Option<f64>,
@@ -49,7 +52,7 @@ pub struct EnergyDrift {
     pub resolution: f64,
     /// The reason.
     pub reason: DriftReason,
-    /// Change of the energy from the first eighth of the trajectory to the last, relative as the rate. None: it leaves the finite numbers.
+    /// Change of the energy over the trajectory, relative as the rate. None: it leaves the finite numbers.
     pub change: Option<f64>,
     /// Whether the energy changes in one direction: no eighth of the trajectory takes back a part of the change.
     pub is_steady: bool,
@@ -103,6 +106,7 @@ impl EnergyDrift {
         prober: &mut Prober<'_>,
         longest_period: f64,
         is_at_rest: bool,
+        pairs: Option<&[(usize, usize)]>,
     ) -> Result<Option<Self>, BlackBoxError> {
         let subject = prober.subject;
         let start = displaced(prober, DISPLACEMENT);
@@ -140,20 +144,31 @@ impl EnergyDrift {
             return Ok(Some(found));
         }
         let mut size = size;
-        let halved = match subject.has_fixed_dt {
+        let mut half = match subject.has_fixed_dt {
             true => None,
-            false => {
-                let mut half = Trajectory::run(prober, &start, subject.dt / 2.0, 2 * steps, size)?;
-                // Energy that the step adds is no scale: a step of half the length adds less.
-                let exchanged = full.exchanged(prober)?.min(half.exchanged(prober)?);
-                if exchanged > LEFT * size && half.is_finite {
-                    full.change_unit(size, exchanged);
-                    half.change_unit(size, exchanged);
-                    size = exchanged;
-                }
-                half.is_finite.then(|| half.rate().0)
-            }
+            false => Some(Trajectory::run(prober, &start, subject.dt / 2.0, 2 * steps, size)?)
+                .filter(|half| half.is_finite),
         };
+        // Energy that the step adds is no scale: a step of half the length adds less.
+        let of = |trajectory: &Trajectory, prober: &mut Prober<'_>| match pairs {
+            Some(pairs) if !is_at_rest => trajectory.kinetic(prober, pairs),
+            _ => trajectory.exchanged(prober),
+        };
+        let exchanged = match &half {
+            Some(half) => of(&full, prober)?.min(of(half, prober)?),
+            None => of(&full, prober)?,
+        };
+        let is_scale = match is_at_rest {
+            true => exchanged > LEFT * size && half.is_some(),
+            false => exchanged > SCARCE * size,
+        };
+        if is_scale {
+            for trajectory in [Some(&mut full), half.as_mut()].into_iter().flatten() {
+                trajectory.change_unit(size, exchanged);
+            }
+            size = exchanged;
+        }
+        let halved = half.map(|half| half.rate().0);
         let (change, is_steady) = full.change();
         let (rate, wobble) = full.rate();
         let rounding = ROUNDING / subject.dt * (energy.abs() / size).max(1.0);
@@ -173,7 +188,15 @@ impl EnergyDrift {
                 }
             }
         };
-        (found.rate, found.rate_halved) = (rate, halved);
+        // A line is less steep than the exponential at the start of the trajectory.
+        let mut steeper = 1.0;
+        if found.reason == DriftReason::System {
+            match full.exponential_rate(change).filter(|own| own * rate > 0.0) {
+                Some(own) => steeper = own / rate,
+                None => found.reason = DriftReason::Unclear,
+            }
+        }
+        (found.rate, found.rate_halved) = (steeper * rate, halved.map(|half| steeper * half));
         (found.change, found.is_steady) = (Some(change), is_steady);
         let is_asked = !subject.is_conservative && !subject.has_fixed_dt;
         if is_asked && found.exceeds(change, GROWN) {
