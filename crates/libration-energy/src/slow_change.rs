@@ -6,9 +6,11 @@ use crate::batches::Batches;
 use crate::{EnergyTrace, Finding, FindingKind, Run};
 
 /// Batches of a run. Changes within one are no slow ones; longer ones leave less of the oscillation of the step.
-const BATCHES: [usize; 3] = [32, 16, 8];
+const BATCHES: [usize; 4] = [32, 16, 8, 4];
 /// The exponent in the middle between 0, of what does not depend on the step, and 1, of the lowest order.
 const MIDDLE: f64 = 0.5;
+/// The same for the two shortest steps of a fault, where all that falls with the step is smallest.
+const SAME: f64 = 0.25;
 /// Ratio of steps below which the two exponents make little difference.
 const APART: f64 = 1.4;
 /// Part of the range of a change from which on it is one from the start to the end.
@@ -22,7 +24,7 @@ pub(crate) struct SlowChange {
     /// The part of it in the run of the longest step.
     of_longest: f64,
     is_one_way: bool,
-    /// Whether all of at least three runs share it.
+    /// Whether all of at least three runs share it, and the shortest steps alike.
     pub(crate) is_of_all: bool,
 }
 
@@ -41,13 +43,14 @@ impl SlowChange {
         let all: Vec<Vec<f64>> =
             traces.iter().map(|trace| profile(count, trace, duration)).collect();
         let (own, others) = all.split_first()?;
-        let is_shared = |(other, run): &(&Vec<f64>, &Run)| {
+        let differs_less = |(other, run): &(&Vec<f64>, &Run), exponent: f64| {
             let apart: Vec<f64> = own.iter().zip(*other).map(|(a, b)| a - b).collect();
-            norm(&apart) < (1.0 - (runs[0].dt / run.dt).powf(MIDDLE)) * norm(other)
+            norm(&apart) < (1.0 - (runs[0].dt / run.dt).powf(exponent)) * norm(other)
         };
         let coarser: Vec<(&Vec<f64>, &Run)> =
             others.iter().zip(&runs[1..]).filter(|(_, run)| run.dt > APART * runs[0].dt).collect();
-        let shared = coarser.iter().filter(|pair| is_shared(pair)).count();
+        let shared = coarser.iter().filter(|pair| differs_less(pair, MIDDLE)).count();
+        let is_same = coarser.first().is_some_and(|next| differs_less(next, SAME));
         let is_one_way = change(own) > ONE_WAY * range(own);
         let size = if is_one_way { change(own) } else { range(own) };
         let common = |other: &Vec<f64>| {
@@ -58,7 +61,7 @@ impl SlowChange {
             size,
             of_longest: all.last().map_or(0.0, common),
             is_one_way,
-            is_of_all: shared == coarser.len() && shared > 1,
+            is_of_all: shared == coarser.len() && shared > 1 && is_same,
         })
     }
 
@@ -68,11 +71,11 @@ impl SlowChange {
         let (kind, why) = match (self.is_of_all, self.is_one_way) {
             (true, true) => (
                 FindingKind::StepIndependentDrift,
-                "by as much whatever the step: the system or its forces change it",
+                "which does not fall with the step: the system or its forces change it",
             ),
             (true, false) => (
                 FindingKind::StepIndependentOscillation,
-                "by as much whatever the step: it is not the energy that the simulation conserves",
+                "which does not fall with the step: it is not the energy that the simulation conserves",
             ),
             (false, _) => (
                 FindingKind::UnclearDrift,

@@ -98,6 +98,12 @@ fn two_runs_that_share_a_slow_change_are_unknown() {
 }
 
 #[test]
+fn a_slow_change_of_order_one_half_is_unknown() {
+    let found = audited(&STEPS, &|t, h| of_step(t, h) + 1e-4 * t * (h / 0.04).sqrt());
+    assert_eq!(found.verdict.outcome, Outcome::Unknown, "{}", found.answer);
+}
+
+#[test]
 fn slow_changes_that_fall_with_the_step_are_no_fault() {
     // Orders 1 to 4; the exponent 1 is the lowest.
     for order in 1..=4 {

@@ -9,6 +9,7 @@ mod child_start;
 mod command_option;
 #[path = "../../src/decay.rs"]
 mod decay;
+mod energy_losses;
 mod faults;
 mod finding_kinds;
 mod first_difference;
