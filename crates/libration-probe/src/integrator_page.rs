@@ -44,11 +44,10 @@ fn allowed(distance: f64) -> String {
 fn candidates(page: &mut Page, name: &str, found: &Match) {
     let mut table = Table::new(name, &["integrator", "distance from the step", "agrees"]);
     for candidate in found.candidates.iter().take(found.methods.len() + OTHERS) {
-        let agrees = if found.methods.contains(&candidate.method) { "yes" } else { "no" };
         table.push([
             candidate.title.clone().into(),
             Cell::rounded(candidate.distance, 3),
-            agrees.into(),
+            found.agreement(candidate.method).into(),
         ]);
     }
     page.table(&table, 3);

@@ -3,13 +3,21 @@
 use libration::AnyMethod;
 use libration::live::{MOST_DEGREES, Setting};
 use libration_report::live::LiveSetting;
+use libration_report::verdict::Outcome;
 
 use crate::ProbeReport;
 use crate::noise_free_matrix::without_noise;
 
+/// Why the page of an unknown verdict has no live section.
+pub(crate) const NO_LIVE_SECTION: &str = "The page has no live section: its verdict would be that of the matrices, and that of the step is unknown.";
+
 /// The linearised simulator in steps of its length, from which a reader may change gains and timing; none of a simulator whose steps have
-/// one length only, or that is too large.
+/// one length only, that is too large, or of which the verdict is unknown.
 pub(crate) fn live_settings(audit: &ProbeReport) -> Vec<LiveSetting> {
+    // The live section has a verdict of its own, on the matrices.
+    if audit.verdict.outcome == Outcome::Unknown {
+        return Vec::new();
+    }
     let Some(flow) = audit.flow.as_ref().filter(|flow| flow.a.rows() <= MOST_DEGREES) else {
         return Vec::new();
     };

@@ -4,11 +4,12 @@ use libration_report::notation::{number, plural};
 use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 use libration_report::report;
+use libration_report::verdict::Outcome;
 
 use crate::ProbeReport;
 use crate::first_screen::{actions, numbers, title};
 use crate::integrator_page::{defects, integrator};
-use crate::live_setting::live_settings;
+use crate::live_setting::{NO_LIVE_SECTION, live_settings};
 use crate::mode_plane::mode_plane;
 use crate::summary::{capitalised, error_in_words};
 
@@ -17,6 +18,9 @@ pub fn page(audit: &ProbeReport) -> String {
     let mut page = Page { title: title(audit), ..Page::default() };
     page.answer.clone_from(&audit.answer);
     page.live = live_settings(audit);
+    if audit.verdict.outcome == Outcome::Unknown {
+        page.note(NO_LIVE_SECTION);
+    }
     page.highlights = numbers(audit);
     page.actions = actions(audit);
     findings(&mut page, audit);
@@ -73,7 +77,9 @@ fn limits(page: &mut Page, audit: &ProbeReport) {
 
 /// How much longer the step might be; empty if that is unknown.
 fn longer_step(audit: &ProbeReport) -> String {
-    let Some(limit) = audit.largest_dt.as_ref().filter(|limit| !limit.grows_always) else {
+    let is_known = audit.verdict.outcome != Outcome::Unknown;
+    let limit = audit.largest_dt.as_ref().filter(|limit| is_known && !limit.grows_always);
+    let Some(limit) = limit else {
         return String::new();
     };
     let longest = limit.dt.unwrap_or(limit.tried_up_to);

@@ -9,6 +9,7 @@ use crate::BlackBoxError;
 use crate::convergence::displaced;
 use crate::prober::Prober;
 use crate::rates::NumericalSystem;
+use crate::summary::is_unknown_error;
 
 /// States up to which all implicit methods are compared, also after one agrees.
 const MOST_STATES_OF_ALL: usize = 12;
@@ -55,6 +56,15 @@ pub struct Candidate {
 }
 
 impl Match {
+    /// Whether an integrator agrees, in a word; unknown if errors of unknown size may explain its distance.
+    pub fn agreement(&self, method: &str) -> &'static str {
+        match self.methods.contains(&method) {
+            true => "yes",
+            false if is_unknown_error(self.allowed) => "unknown",
+            false => "no",
+        }
+    }
+
     /// Compares the step from a displaced state with that of each integrator, on rates from short steps of the simulator itself. Implicit
     /// ones of a higher order than the step has are left out.
     pub(crate) fn by_results(

@@ -189,7 +189,12 @@ impl ProbedMode {
 
 /// A relative error of a result; one above 1 says nothing but that the result is wrong.
 pub fn error_in_words(error: f64) -> String {
-    if error <= 1.0 { number(error, 2) } else { "unknown".into() }
+    if is_unknown_error(error) { "unknown".into() } else { number(error, 2) }
+}
+
+/// Whether an error exceeds its result, or is no number.
+pub(crate) fn is_unknown_error(error: f64) -> bool {
+    error.is_nan() || error > 1.0
 }
 
 pub(crate) fn capitalised(text: &str) -> String {

@@ -139,7 +139,11 @@ fn integrator(report: &ProbeReport, text: &mut String) {
         let _ = writeln!(text, "{:<32} {:>12}", format!("integrator, {by}"), "distance");
         // The rest is on the page.
         for candidate in found.candidates.iter().take(4) {
-            let agrees = if found.methods.contains(&candidate.method) { "agrees" } else { "" };
+            let agrees = match found.agreement(candidate.method) {
+                "yes" => "agrees",
+                "no" => "",
+                unknown => unknown,
+            };
             let _ = writeln!(
                 text,
                 "{}",
