@@ -107,6 +107,11 @@ pub struct StateSpace {
 }
 
 impl Identification {
+    /// Whether numbers have intervals: those of a model that is contradicted, or not known to be right, would say nothing.
+    pub fn has_intervals(&self) -> bool {
+        self.verdict.is_good()
+    }
+
     /// The range of dead times; of a dead time that is not known, only with its interval.
     pub(crate) fn dead_times(&self, known: Option<f64>) -> Option<[f64; 2]> {
         let value = |key: &str| self.parameter(key).map_or(0.0, |parameter| parameter.value);

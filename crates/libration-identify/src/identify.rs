@@ -137,7 +137,6 @@ pub fn identify(
     found.other_dead_times = rivals.unwrap_or_default();
     work.check()?;
     let context = warnings::Context { estimate: &estimate, recording, all, longest_lag, lead };
-    found.warnings = warnings::warnings(&found, &context);
     let unprofiled = found.parameters.iter().filter(|parameter| parameter.is_unprofiled);
     not_examined.extend(unprofiled.map(|parameter| {
         let name = &parameter.name;
@@ -165,7 +164,8 @@ pub fn identify(
         );
     }
     found.verdict = verdict(&found, &dependence, &context, not_examined);
-    let is_good = found.verdict.is_good();
+    found.warnings = warnings::warnings(&found, &context);
+    let is_good = found.has_intervals();
     found.parameters.iter_mut().for_each(|parameter| parameter.judge(is_good));
     found.delay_range = found.dead_times(estimate.model.known[0]).filter(|_| is_good);
     found.answer = summary::answer(&found);

@@ -22,11 +22,14 @@ pub fn page(found: &Identification) -> String {
     if found.depends_on_command {
         parameters(&mut page, found);
         fit(&mut page, found);
-        told_apart(&mut page, found);
+        // Errors by a model that is not right, or not known to be, mean nothing.
+        if found.has_intervals() {
+            told_apart(&mut page, found);
+        }
         residuals(&mut page, found);
     }
     candidates(&mut page, found);
-    if found.depends_on_command {
+    if found.depends_on_command && found.has_intervals() {
         repeats(&mut page, found);
     }
     if found.has_loop() {
@@ -68,6 +71,18 @@ fn title(found: &Identification) -> String {
 
 fn parameters(page: &mut Page, found: &Identification) {
     page.heading("What are the parameters?");
+    if !found.has_intervals() {
+        let mut table = Table::new("parameters", &["number", "estimate", "key"]);
+        for parameter in &found.parameters {
+            let value = with_unit(parameter.value, &parameter.unit);
+            let key = format!("`{}`", parameter.key);
+            table.push([parameter.name.clone().into(), value.into(), key.into()]);
+        }
+        page.table(&table, 4);
+        let outcome = found.verdict.outcome;
+        page.paragraph(format!("The numbers have no intervals, as the verdict is “{outcome}”."));
+        return;
+    }
     let mut table =
         Table::new("parameters", &["number", "estimate", "95 % interval", "standard error", "key"]);
     for parameter in &found.parameters {
@@ -142,7 +157,7 @@ fn told_apart(page: &mut Page, found: &Identification) {
                 Some(correlation) => format!(
                     "The errors of both have the correlation {correlation:.2}: at −1 only their sum would be known."
                 ),
-                None => "The region has no ellipse: the likelihood is not smooth here.".to_owned(),
+                None => "The region is that of the likelihood, which is not smooth here: no ellipse has its form.".to_owned(),
             })
             .panel(panel),
     );

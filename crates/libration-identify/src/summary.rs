@@ -85,7 +85,8 @@ pub(crate) fn answer(found: &Identification) -> String {
         numbers.join(", "),
         found.noise.in_words()
     );
-    if let Some(correlation) = found.correlation.filter(|correlation| *correlation < -0.9) {
+    let correlation = found.correlation.filter(|_| found.has_intervals());
+    if let Some(correlation) = correlation.filter(|correlation| *correlation < -0.9) {
         text += &format!(
             " With this command the errors of dead time and lag have the correlation {correlation:.2}: their sum is known better than each of them."
         );

@@ -27,7 +27,7 @@ pub(crate) struct Context<'a> {
 /// Models whose Bayesian criterion is larger by less than this may be the right ones.
 const NEARLY_AS_GOOD: f64 = 20.0;
 
-/// Sentences, the gravest first.
+/// Sentences, the gravest first; the verdict is known, and with it whether the numbers have intervals.
 pub(crate) fn warnings(found: &Identification, context: &Context<'_>) -> Vec<String> {
     let &Context { estimate, recording, all, longest_lag, lead } = context;
     let mut warnings = Vec::new();
@@ -51,7 +51,10 @@ pub(crate) fn warnings(found: &Identification, context: &Context<'_>) -> Vec<Str
             "{missing} commands seem to be missing from the log: the responses behind them follow commands that are unknown"
         ));
     }
-    warnings.extend(other_models(found));
+    let of_intervals = |words: &'static str| if found.has_intervals() { words } else { "" };
+    if let Some(other) = other_models(found).filter(|_| found.depends_on_command) {
+        warnings.push(other + of_intervals("; intervals are those of the chosen model"));
+    }
     if let Some(lag) = longest_lag.filter(|lag| found.depends_on_command && *lag > found.interval) {
         warnings.push(format!(
             "a shorter dead time with a lag fits as well: lags up to {} are not excluded; help: random steps",
@@ -67,7 +70,7 @@ pub(crate) fn warnings(found: &Identification, context: &Context<'_>) -> Vec<Str
     let tests = &found.residuals;
     if tests.whiteness < CONTRADICTION {
         warnings.push(format!(
-            "the residuals are correlated (p = {}, neighbours {:+.2}): no candidate explains the correlation, and the intervals are too narrow",
+            "the residuals are correlated (p = {}, neighbours {:+.2}): no candidate explains the correlation",
             number(tests.whiteness, 2),
             tests.correlation
         ));
@@ -80,8 +83,9 @@ pub(crate) fn warnings(found: &Identification, context: &Context<'_>) -> Vec<Str
     }
     if tests.excess_kurtosis > 1.5 && tests.normality < CONTRADICTION {
         warnings.push(format!(
-            "the residuals have outliers (excess kurtosis {}): the intervals are those of normal noise",
-            number(tests.excess_kurtosis, 2)
+            "the residuals have outliers (excess kurtosis {}): the {} normal noise",
+            number(tests.excess_kurtosis, 2),
+            if found.has_intervals() { "intervals are those of" } else { "model has" }
         ));
     }
     let dead_time = estimate.point.shape[0];
@@ -91,7 +95,8 @@ pub(crate) fn warnings(found: &Identification, context: &Context<'_>) -> Vec<Str
             seconds(found.largest_dead_time)
         ));
     }
-    let reached = found.likelihood.is_none()
+    let reached = found.has_intervals()
+        && found.likelihood.is_none()
         && found.parameters.iter().any(|p| p.interval.is_some_and(|i| i.high.is_none()));
     if reached {
         warnings.push("the upper end of a parameter is unknown".to_owned());
@@ -99,12 +104,12 @@ pub(crate) fn warnings(found: &Identification, context: &Context<'_>) -> Vec<Str
     let known = estimate.model.response.parameters().iter().zip(&estimate.model.known);
     let known: Vec<&str> =
         known.filter(|(_, known)| known.is_some()).map(|(name, _)| name.key).collect();
-    for parameter in found.parameters.iter().filter(|parameter| parameter.interval.is_none()) {
+    for parameter in found.parameters.iter().filter(|own| own.interval.is_none()) {
         let is_asked = matches!(
             &*parameter.key,
             "dead_time" | "lag" | "time_constant" | "jitter" | "loss" | "second_dead_time"
         );
-        if is_asked && !known.contains(&&*parameter.key) {
+        if is_asked && found.has_intervals() && !known.contains(&&*parameter.key) {
             warnings.push(format!(
                 "the {} has no interval: the likelihood is not smooth enough here",
                 parameter.name
@@ -117,12 +122,15 @@ pub(crate) fn warnings(found: &Identification, context: &Context<'_>) -> Vec<Str
             && interval.high.is_some_and(|high| high - interval.low > 2.0 * value)
     };
     if dead_time.is_some_and(is_vague) {
-        warnings.push("the dead time is hardly known: its interval is wider than twice the dead time; help: commands that change less often".to_owned());
+        let width = of_intervals(": its interval is wider than twice the dead time");
+        warnings.push(format!(
+            "the dead time is hardly known{width}; help: commands that change less often"
+        ));
     }
     if let Some(warning) = quantisation(estimate, recording) {
-        warnings.push(warning);
+        warnings.push(warning + of_intervals(", and the intervals may be too narrow"));
     }
-    for row in &found.bootstrap {
+    for row in found.bootstrap.iter().filter(|_| found.has_intervals()) {
         if row.ratio.is_some_and(|ratio| !(0.6..1.6).contains(&ratio)) {
             warnings.push(format!(
                 "the standard error of `{}` by Fisher's information disagrees with simulated recordings by a factor of {}; its interval is that of the likelihood",
@@ -153,7 +161,7 @@ pub(crate) fn other_models(found: &Identification) -> Option<String> {
         .filter(|row| !interval.contains(row.dead_time))
         .min_by(|a, b| a.excess.total_cmp(&b.excess))?;
     Some(format!(
-        "another model fits as well and has a dead time of {}: {} response, {} hold, {} noise, {} arrivals; intervals are those of the chosen model",
+        "another model fits as well and has a dead time of {}: {} response, {} hold, {} noise, {} arrivals",
         seconds(rival.dead_time),
         rival.response,
         rival.hold.name(),
@@ -247,7 +255,7 @@ fn quantisation(estimate: &Estimate<'_>, recording: &Recording) -> Option<String
     let deviation = estimate.white_deviation();
     (deviation < quantum).then(|| {
         format!(
-            "the responses have steps of {}, as of an encoder, and noise of {}: rounding errors are not independent, and the intervals may be too narrow",
+            "the responses have steps of {}, as of an encoder, and noise of {}: rounding errors are not independent",
             number(quantum, 3),
             number(deviation, 2)
         )

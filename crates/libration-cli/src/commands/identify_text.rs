@@ -17,12 +17,14 @@ pub(super) fn describe(found: &Identification) -> String {
         let _ = writeln!(text, "repeat with: {}", found.repeat_command);
         return text;
     }
-    let _ = writeln!(text, "\n{:<32} {:>14}   95 % interval", "number", "estimate");
+    let head = if found.has_intervals() { "   95 % interval" } else { "" };
+    let _ = writeln!(text, "\n{:<32} {:>14}{head}", "number", "estimate");
     for parameter in &found.parameters {
         let value = with_unit(parameter.value, &parameter.unit);
-        let _ = writeln!(text, "{:<32} {value:>14}   {}", parameter.name, interval(parameter));
+        let row = format!("{:<32} {value:>14}   {}", parameter.name, interval(parameter));
+        let _ = writeln!(text, "{}", row.trim_end());
     }
-    if let Some(correlation) = found.correlation {
+    if let Some(correlation) = found.correlation.filter(|_| found.has_intervals()) {
         let _ = writeln!(
             text,
             "\nthe errors of dead time and lag have the correlation {correlation:.2} with this command"
@@ -63,7 +65,7 @@ pub(super) fn describe(found: &Identification) -> String {
             number(row.excess, 4)
         );
     }
-    for row in &found.bootstrap {
+    for row in found.bootstrap.iter().filter(|_| found.has_intervals()) {
         let unit = found.parameter(&row.key).map_or("", |parameter| &*parameter.unit);
         let _ = writeln!(
             text,

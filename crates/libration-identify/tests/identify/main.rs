@@ -4,6 +4,7 @@ mod budgets;
 mod coverage;
 mod errors;
 mod imperfections;
+mod intervals_on_pages;
 mod loops;
 mod plants_with_levels;
 mod robustness;
