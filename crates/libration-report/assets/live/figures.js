@@ -232,7 +232,7 @@ const judgeLoop = (view, limits, setting, growth) => {
   if (limits["latency.from"]) {
     const window = latencyWindow(limits, latency);
     if (window && Number.isNaN(window[0])) more = "";
-    else if (!window) more = `${without} is stable with no latency up to ${short(single(limits, "latency.tried"))} s.`;
+    else if (!window) more = `${without} is unstable with every latency from 0 to ${short(single(limits, "latency.tried"))} s.`;
     else if (window[0] > 0) more = `${without} is stable with latencies of ${latencyText(limits, latency)} s, not below.`;
     else more = `${without} is stable up to a latency of ${latencyText(limits, latency)} s.`;
   }
