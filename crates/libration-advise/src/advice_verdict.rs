@@ -7,7 +7,43 @@ use libration_report::verdict::{Outcome, Verdict};
 
 use super::advice::{Advice, LoopAdvice, ToleranceAnswer};
 
+/// Why a result that was computed does not decide about the loop itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Doubt {
+    /// The record has another rate than the loop.
+    OtherClock,
+    /// The measured latencies change over time.
+    ChangingLatency,
+}
+
+impl Doubt {
+    /// Makes a verdict unknown, and gives its answer the reason first and what it holds for.
+    pub(super) fn apply(self, verdict: &mut Verdict, answer: &mut String) {
+        let [reason, premise] = match self {
+            Doubt::OtherClock => [
+                "the record is not the clock of this loop",
+                "For a loop that has the clock of the record",
+            ],
+            Doubt::ChangingLatency => {
+                ["the latencies change over time", "For a constant latency of this size"]
+            }
+        };
+        let not_examined = core::mem::take(&mut verdict.not_examined);
+        *verdict = Verdict { not_examined, ..Verdict::unknown(reason) };
+        *answer = format!("Whether the loop is stable is unknown: {reason}. {premise}: {answer}");
+    }
+}
+
 impl Advice {
+    /// Makes the verdict on the loop unknown. A loop that is unstable without imperfections stays so: no clock or latency decides that.
+    pub fn doubt(&mut self, doubt: Doubt) {
+        let is_unstable_alone = self.verdict.outcome == Outcome::Unstable
+            && self.looped.as_ref().is_some_and(|looped| looped.budgets.is_empty());
+        if !is_unstable_alone {
+            doubt.apply(&mut self.verdict, &mut self.answer);
+        }
+    }
+
     /// Whether an integrator meets the tolerance, with what was not tried.
     pub(super) fn judge_integrators(&self) -> Verdict {
         let most = self.tolerance.most;

@@ -49,6 +49,7 @@ use libration::{AnySystem, with_system};
 use thiserror::Error;
 
 pub use advice::{Advice, FloatChoice, LoopAdvice, ToleranceAnswer};
+pub use advice_verdict::Doubt;
 pub use advised_system::AdvisedSystem;
 pub use budget::{Budget, FirstFailure, rounded};
 pub use combined_effect::{CombinedEffect, SimulatedCost};

@@ -1,12 +1,13 @@
 //! Output of advice.
 
-use libration_advise::AdviseError;
+use libration_advise::{AdviseError, Doubt};
 use libration_report::verdict::{self, Verdict};
 use libration_work::Work;
 use serde::Serialize;
 
 use super::log_warnings;
 use super::result_file::ResultFile;
+use super::time_stamps::RecordNotes;
 use crate::args::AdviseArgs;
 use crate::error::Failure;
 use crate::progress::Reporter;
@@ -21,6 +22,8 @@ pub(super) struct AdviceOutput<A> {
     pub(super) page: fn(&A) -> String,
     pub(super) verdict: fn(&A) -> &Verdict,
     pub(super) warnings: fn(&mut A) -> &mut Vec<String>,
+    /// Makes the verdict unknown.
+    pub(super) doubt: fn(&mut A, Doubt),
 }
 
 impl<A: Serialize> AdviceOutput<A> {
@@ -29,12 +32,16 @@ impl<A: Serialize> AdviceOutput<A> {
         &self,
         args: &AdviseArgs,
         quiet: bool,
-        log_warnings: &[String],
+        notes: RecordNotes,
         compute: impl FnOnce(&Work<'_>) -> Result<A, AdviseError>,
     ) -> Result<(), Failure> {
         let file = ResultFile::create("--page", args.page.as_deref())?;
+        let is_doubtful = notes.other_clock.is_some();
+        let log_warnings: Vec<String> =
+            notes.warnings.into_iter().chain(notes.other_clock).collect();
         let log = args.jitter_file.as_deref();
-        let log_warnings = log.map_or_else(Vec::new, |path| log_warnings::warn(path, log_warnings));
+        let log_warnings =
+            log.map_or_else(Vec::new, |path| log_warnings::warn(path, &log_warnings));
         let reporter = Reporter::new(quiet);
         let advice = interrupt::compute(|stop| compute(&Work::new(&reporter, stop)));
         reporter.clear();
@@ -42,6 +49,9 @@ impl<A: Serialize> AdviceOutput<A> {
             terminal::warn(&format!("`{}` (--page) is not written", page.display()));
         }
         let mut advice = advice.map_err(failure)?;
+        if is_doubtful {
+            (self.doubt)(&mut advice, Doubt::OtherClock);
+        }
         // The text leaves out what is on stderr.
         let text = match args.verbose {
             true => (self.describe)(&advice),

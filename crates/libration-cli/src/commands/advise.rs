@@ -4,13 +4,15 @@ use std::fmt::Write as _;
 use std::ops::RangeInclusive;
 
 use libration_advise as advise;
-use libration_advise::{Advice, Budget, LoopAdvice, Request, linear, rounded};
+use libration_advise::{Advice, AdviseError, Budget, Doubt, LoopAdvice, Request, linear, rounded};
+use libration_report::Verdict;
 use libration_report::notation::cut_off;
 use libration_settings::ConfigCommand;
 use libration_work::Work;
 
 use super::advice_output::{AdviceOutput, failure};
 use super::repeat_command::command_line;
+use super::time_stamps::RecordNotes;
 use super::{config_file, equation_file, summary, time_stamps};
 use crate::args::AdviseArgs;
 use crate::error::Failure;
@@ -26,10 +28,10 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
         return Ok(terminal::print(advise::DEFAULT)?);
     }
     args.topic.ensure_file("--jitter-file", args.jitter_file.as_deref())?;
-    if let Some((request, warnings)) = super::advise_linear::load_request(args)? {
-        return super::advise_linear::run(args, request, warnings, quiet);
+    if let Some((request, notes)) = super::advise_linear::load_request(args)? {
+        return super::advise_linear::run(args, request, notes, quiet);
     }
-    let (request, warnings) = load_request(args, quiet)?;
+    let (request, notes) = load_request(args, quiet)?;
     let compute = |work: &Work<'_>| advise::advise(work, &request);
     let output = AdviceOutput {
         describe,
@@ -37,52 +39,64 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
         page: advise::page,
         verdict: |advice| &advice.verdict,
         warnings: |advice| &mut advice.warnings,
+        doubt: Advice::doubt,
     };
-    output.deliver(args, quiet, &warnings, compute)
+    output.deliver(args, quiet, notes, compute)
 }
 
 /// The part of advice on a loop that a clock changes.
-pub(super) struct Verdict {
+pub(super) struct ClockAdvice {
     pub(super) answer: String,
+    pub(super) verdict: Verdict,
     pub(super) warnings: Vec<String>,
     pub(super) budgets: Vec<Budget>,
-    /// The period of the loop in s; none without a loop.
-    pub(super) period: Option<f64>,
-    /// The growth rate of second moments per period; none without a loop.
-    pub(super) growth: Option<f64>,
-    pub(super) holds: bool,
 }
 
-/// Computes advice on a loop, without printing it; `command` repeats it.
-pub(super) fn verdict(args: &AdviseArgs, command: &str, quiet: bool) -> Result<Verdict, Failure> {
-    // `clock` prints the warnings about its file itself.
-    if let Some((mut request, _)) = super::advise_linear::load_request(args)? {
+/// Computes advice on a loop, without printing it; `command` repeats it. It decides nothing if the record is not the clock of the loop, or
+/// if the latency `is_changing`.
+pub(super) fn of_clock(
+    args: &AdviseArgs,
+    command: &str,
+    is_changing: bool,
+    quiet: bool,
+) -> Result<ClockAdvice, Failure> {
+    let doubt = |notes: &RecordNotes| match notes.other_clock {
+        Some(_) => Some(Doubt::OtherClock),
+        None => is_changing.then_some(Doubt::ChangingLatency),
+    };
+    // `clock` prints the other warnings about its file itself.
+    if let Some((mut request, notes)) = super::advise_linear::load_request(args)? {
         command.clone_into(&mut request.invocation);
-        let reporter = Reporter::new(quiet);
-        let advice =
-            interrupt::compute(|stop| linear::advise(&Work::new(&reporter, stop), &request));
-        reporter.clear();
-        let advice = advice.map_err(failure)?;
-        let holds = advice.holds();
-        let linear::LinearAdvice { answer, warnings, budgets, period, growth, .. } = advice;
-        let (period, growth) = (Some(period), Some(growth));
-        return Ok(Verdict { answer, warnings, budgets, period, growth, holds });
+        let advice = computed(quiet, |work| linear::advise(work, &request));
+        let mut advice = advice?;
+        doubt(&notes).into_iter().for_each(|doubt| advice.doubt(doubt));
+        let linear::LinearAdvice { answer, verdict, mut warnings, budgets, .. } = advice;
+        warnings.splice(0..0, notes.other_clock);
+        return Ok(ClockAdvice { answer, verdict, warnings, budgets });
     }
-    let (mut request, _) = load_request(args, quiet)?;
+    let (mut request, notes) = load_request(args, quiet)?;
     command.clone_into(&mut request.invocation);
-    let reporter = Reporter::new(quiet);
-    let advice = interrupt::compute(|stop| advise::advise(&Work::new(&reporter, stop), &request));
-    reporter.clear();
-    let advice = advice.map_err(failure)?;
-    let holds = advice.holds();
-    let period = advice.looped.as_ref().map(|looped| looped.period);
-    let growth = advice.looped.as_ref().map(|looped| looped.combined.growth);
-    let budgets = advice.looped.map_or_else(Vec::new, |looped| looped.budgets);
-    Ok(Verdict { answer: advice.answer, warnings: advice.warnings, budgets, period, growth, holds })
+    let mut advice = computed(quiet, |work| advise::advise(work, &request))?;
+    doubt(&notes).into_iter().for_each(|doubt| advice.doubt(doubt));
+    let Advice { answer, verdict, mut warnings, looped, .. } = advice;
+    warnings.splice(0..0, notes.other_clock);
+    let budgets = looped.map_or_else(Vec::new, |looped| looped.budgets);
+    Ok(ClockAdvice { answer, verdict, warnings, budgets })
 }
 
-/// Returns the request of the file or of the options, and the warnings about the log.
-fn load_request(args: &AdviseArgs, quiet: bool) -> Result<(Request, Vec<String>), Failure> {
+/// Computes advice, with its progress on stderr.
+fn computed<A: Send>(
+    quiet: bool,
+    compute: impl FnOnce(&Work<'_>) -> Result<A, AdviseError>,
+) -> Result<A, Failure> {
+    let reporter = Reporter::new(quiet);
+    let advice = interrupt::compute(|stop| compute(&Work::new(&reporter, stop)));
+    reporter.clear();
+    advice.map_err(failure)
+}
+
+/// Returns the request of the file or of the options, and what is to be said of its record.
+fn load_request(args: &AdviseArgs, quiet: bool) -> Result<(Request, RecordNotes), Failure> {
     args.ensure_no_linear_options()?;
     let mut request = match &args.config {
         Some(path) => {
@@ -100,7 +114,7 @@ fn load_request(args: &AdviseArgs, quiet: bool) -> Result<(Request, Vec<String>)
     };
     request.map = args.page.is_some();
     request.invocation = command_line();
-    let mut warnings = Vec::new();
+    let mut notes = RecordNotes::default();
     if let Some(path) = &args.jitter_file {
         let Some(control) = request.control.take() else {
             return Err(Failure::usage(
@@ -112,9 +126,9 @@ fn load_request(args: &AdviseArgs, quiet: bool) -> Result<(Request, Vec<String>)
         let (replaying, own) =
             time_stamps::read_for_period(path, &options, period, INTERVALS, replay)?;
         request.control = Some(replaying);
-        warnings = own;
+        notes = own;
     }
-    Ok((request, warnings))
+    Ok((request, notes))
 }
 
 /// Returns the answer as text.

@@ -11,6 +11,7 @@ use libration_work::Work;
 use super::advice_output::AdviceOutput;
 use super::digits::{exact, significant};
 use super::repeat_command::command_line;
+use super::time_stamps::RecordNotes;
 use super::{config_file, summary, time_stamps};
 use crate::args::AdviseArgs;
 use crate::error::Failure;
@@ -19,10 +20,10 @@ use crate::error::Failure;
 /// below a skew of 8, the limit of the analysis.
 const INTERVALS: RangeInclusive<f64> = 0.01..=8.9;
 
-/// Returns the request of the file or of the options, if it is about a linear plant, and the warnings about the log.
+/// Returns the request of the file or of the options, if it is about a linear plant, and what is to be said of its record.
 pub(super) fn load_request(
     args: &AdviseArgs,
-) -> Result<Option<(LinearRequest, Vec<String>)>, Failure> {
+) -> Result<Option<(LinearRequest, RecordNotes)>, Failure> {
     let request = match (&args.config, args.linear_request()) {
         (_, Some(request)) => Some(request?),
         (Some(path), None) => config_file::read(path, |text, name| {
@@ -38,21 +39,20 @@ pub(super) fn load_request(
     request.map = args.page.is_some();
     request.redesign = args.linear.redesign;
     request.invocation = command_line();
-    let mut warnings = Vec::new();
+    let mut notes = RecordNotes::default();
     if let Some(path) = &args.jitter_file {
         let (options, period) = (args.topic.options(), request.period());
         let replay = |stamps: &[f64]| request.with_time_stamps(stamps);
-        (request, warnings) =
-            time_stamps::read_for_period(path, &options, period, INTERVALS, replay)?;
+        (request, notes) = time_stamps::read_for_period(path, &options, period, INTERVALS, replay)?;
     }
-    Ok(Some((request, warnings)))
+    Ok(Some((request, notes)))
 }
 
 /// Computes the limits of a loop around a linear plant and prints them.
 pub(super) fn run(
     args: &AdviseArgs,
     request: LinearRequest,
-    warnings: Vec<String>,
+    notes: RecordNotes,
     quiet: bool,
 ) -> Result<(), Failure> {
     let compute = |work: &Work<'_>| linear::advise(work, &request);
@@ -62,8 +62,9 @@ pub(super) fn run(
         page: linear::page,
         verdict: |advice| &advice.verdict,
         warnings: |advice| &mut advice.warnings,
+        doubt: LinearAdvice::doubt,
     };
-    output.deliver(args, quiet, &warnings, compute)
+    output.deliver(args, quiet, notes, compute)
 }
 
 /// Returns the answer as text.
@@ -110,7 +111,7 @@ fn describe(advice: &LinearAdvice) -> String {
     margins(&advice.margins, "", &mut text);
     redesign(advice, &mut text);
     deadlines(advice, &mut text);
-    let with = if advice.unstable_motions.is_empty() {
+    let with = if advice.unstable_motions.is_empty() || advice.is_stable_as_stated() {
         "all imperfections together"
     } else {
         "without imperfections"

@@ -67,9 +67,8 @@ fn report(args: &ClockArgs, quiet: bool) -> Result<ClockReport, Failure> {
         Hold { delay, phase: phase_lags(delay), bandwidth_at_10_degrees }
     });
     let effects = match (&args.config, &topic_clock) {
-        (Some(config), Some(found)) => {
-            let mean = found.statistics.mean;
-            clock_effect::effects(args, config, topic.as_deref(), mean, latency.as_ref(), quiet)?
+        (Some(config), Some(_)) => {
+            clock_effect::effects(args, config, topic.as_deref(), latency.as_ref(), quiet)?
         }
         _ => Vec::new(),
     };

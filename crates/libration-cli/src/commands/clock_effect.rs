@@ -4,11 +4,10 @@ use std::path::Path;
 
 use libration_advise::Budget;
 use libration_logs::clock::{Dependence, Latency};
-use libration_report::{Outcome, Verdict};
+use libration_report::Verdict;
 use serde::Serialize;
 
 use super::advise;
-use super::time_stamps::other_rate;
 use crate::args::{AdviseArgs, ClockArgs, quoted};
 use crate::error::Failure;
 
@@ -21,7 +20,7 @@ pub(super) struct Effect {
     pub(super) latency: Option<f64>,
     /// Whether the loop is stable and within its tolerance.
     pub(super) holds: bool,
-    /// The same with its evidence; unknown if the clock or the latency is not that of the loop.
+    /// The verdict of `advise`; unknown if the clock or the latency is not that of the loop.
     pub(super) verdict: Verdict,
     /// The answer of `advise`.
     pub(super) answer: String,
@@ -32,12 +31,11 @@ pub(super) struct Effect {
     pub(super) command: String,
 }
 
-/// The loop with the recorded clock of mean interval `mean`, in s: with its own latency, or with the median and the 99 % quantile of the measured one.
+/// The loop with the recorded clock: with its own latency, or with the median and the 99 % quantile of the measured one.
 pub(super) fn effects(
     args: &ClockArgs,
     config: &Path,
     topic: Option<&str>,
-    mean: f64,
     latency: Option<&Latency>,
     quiet: bool,
 ) -> Result<Vec<Effect>, Failure> {
@@ -56,30 +54,12 @@ pub(super) fn effects(
         let words = advise_words(args, config, topic, latency);
         let command = quoted(words.clone());
         let advise_args = AdviseArgs::parse_words(words)?;
-        let advise::Verdict { answer, mut warnings, budgets, period, growth, holds } =
-            advise::verdict(&advise_args, &command, quiet)?;
-        let other = period.and_then(|period| other_rate("topic", period, mean));
-        let verdict = match &other {
-            Some(_) => Verdict::unknown("the topic is not the clock of this loop"),
-            None if is_changing => Verdict::unknown("the latencies change over time"),
-            None => judged(growth, holds),
-        };
-        warnings.splice(0..0, other);
+        let advise::ClockAdvice { answer, verdict, warnings, budgets } =
+            advise::of_clock(&advise_args, &command, is_changing, quiet)?;
+        let holds = verdict.is_good();
         Ok(Effect { case, latency, holds, verdict, answer, warnings, budgets, command })
     };
     cases.into_iter().map(effect).collect()
-}
-
-/// The verdict on a loop whose second moments grow at this rate per period.
-fn judged(growth: Option<f64>, holds: bool) -> Verdict {
-    let Some(growth) = growth else { return Verdict::unknown("the file has no loop") };
-    let evidence = format!("second moments change by {:+.4e} per period", growth.exp_m1());
-    let outcome = match (growth < 0.0, holds) {
-        (true, true) => Outcome::Stable,
-        (true, false) => Outcome::Exceeds,
-        (false, _) => Outcome::Unstable,
-    };
-    Verdict::new(outcome, evidence)
 }
 
 /// The command line of `advise` with the clock of a topic and a latency in s.

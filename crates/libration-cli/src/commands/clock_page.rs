@@ -1,7 +1,6 @@
 //! The clocks of a log as an HTML page.
 
 use libration_logs::clock::{Dependence, Latency, TopicClock};
-use libration_report::Outcome;
 use libration_report::figure::{Axis, Figure, Mark, Panel};
 use libration_report::notation::plural;
 use libration_report::page::Page;
@@ -82,15 +81,7 @@ fn title(found: &ClockReport) -> String {
 
 fn answer(found: &ClockReport) -> String {
     let mut words = Vec::new();
-    if let Some(effect) = found.effects.last() {
-        // An answer about another clock than that of the loop is none.
-        words.push(match effect.verdict.outcome {
-            Outcome::Unknown => {
-                format!("Whether the loop is stable is unknown: {}.", effect.verdict.evidence)
-            }
-            _ => effect.answer.clone(),
-        });
-    }
+    words.extend(found.effects.last().map(|effect| effect.answer.clone()));
     if let Some(clock) = &found.clock {
         words.push(format!(
             "`{}` has {:.4} messages per second with a jitter of {:.3} % rms.",

@@ -23,17 +23,25 @@ pub(super) fn read<T>(
     make(stamps).map_err(|error| wrong(path, flag, &error.to_string()))
 }
 
-/// Reads the time stamps of the file of `--jitter-file`, whose mean interval over the period lies in `range`, and converts them. The
-/// warnings about the file are returned.
+/// What is to be said of a record that a loop replays.
+#[derive(Default)]
+pub(super) struct RecordNotes {
+    /// The warnings about the file.
+    pub(super) warnings: Vec<String>,
+    /// The warning that the record is not the clock of the loop, if it is not.
+    pub(super) other_clock: Option<String>,
+}
+
+/// Reads the time stamps of the file of `--jitter-file`, whose mean interval over the period lies in `range`, and converts them.
 pub(super) fn read_for_period<T>(
     path: &Path,
     options: &StampOptions,
     period: f64,
     range: RangeInclusive<f64>,
     make: impl FnOnce(&[f64]) -> Result<T, RecordedError>,
-) -> Result<(T, Vec<String>), Failure> {
+) -> Result<(T, RecordNotes), Failure> {
     const FLAG: &str = "--jitter-file";
-    let TimeStamps { seconds, mut warnings, is_of_bag, .. } = load(path, FLAG, options)?;
+    let TimeStamps { seconds, warnings, is_of_bag, .. } = load(path, FLAG, options)?;
     let fails = |why: &str| wrong(path, FLAG, why);
     let span = seconds.last().zip(seconds.first()).map_or(0.0, |(last, first)| last - first);
     let mean = span / seconds.len().saturating_sub(1).max(1) as f64;
@@ -54,20 +62,19 @@ pub(super) fn read_for_period<T>(
             range.end()
         )));
     }
-    warnings.extend(other_rate("record", period, mean));
     let made = make(&seconds).map_err(|error| fails(&error.to_string()))?;
-    Ok((made, warnings))
+    Ok((made, RecordNotes { warnings, other_clock: other_clock(period, mean) }))
 }
 
 /// Largest relative difference of the mean interval of the clock of a loop from its period.
 const OTHER_RATE: f64 = 0.05;
 
-/// A warning if the mean interval of `what` is not the period of a loop, both in s.
-pub(super) fn other_rate(what: &str, period: f64, mean: f64) -> Option<String> {
+/// A warning if the mean interval of a record is not the period of a loop, both in s.
+fn other_clock(period: f64, mean: f64) -> Option<String> {
     let is_other = (mean / period - 1.0).abs() > OTHER_RATE;
     is_other.then(|| {
         format!(
-            "the mean interval of the {what} is {}, the period of the loop {}: the {what} is not the clock of this loop; \
+            "the mean interval of the record is {}, the period of the loop {}: the record is not the clock of this loop; \
              help: choose a --topic with one message per period",
             time(mean),
             time(period)

@@ -3,6 +3,7 @@
 use std::fs;
 
 use predicates::prelude::*;
+use serde_json::Value;
 
 use super::advise::{ADVISE, json, libration};
 
@@ -51,7 +52,12 @@ fn a_clock_that_was_measured_can_be_replayed_and_advised_with() {
     ])
     .success();
     let words = [&ADVISE[..], &["10,2", "--period", "0.01", "--jitter-file", path]].concat();
-    let advised = json(&words);
+    let output = libration(&[&words[..], &["--json"]].concat()).get_output().clone();
+    let advised: Value = serde_json::from_slice(&output.stdout).unwrap();
+    // The mean of a busy machine may be that of another loop, of which nothing is known.
+    let is_other = advised["verdict"]["outcome"] == "unknown";
+    assert_eq!(is_other, (mean / 1e-2 - 1.0).abs() > 0.05, "{mean} {}", advised["answer"]);
+    assert_eq!(output.status.code(), Some(i32::from(is_other)));
     let stated = advised["loop"]["budgets"][1]["stated"].as_f64().unwrap();
     assert!((stated - a).abs() < 1e-9, "{stated} {a}");
     // What only that record shows is asked again with it.

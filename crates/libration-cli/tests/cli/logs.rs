@@ -3,6 +3,7 @@
 use std::fs;
 
 use predicates::prelude::*;
+use serde_json::Value;
 
 use super::advise::{ADVISE, json, libration};
 
@@ -131,7 +132,7 @@ fn the_column_of_time_and_its_unit_reach_every_command_that_takes_time_stamps() 
     let table = table.to_str().unwrap();
     let time = ["--time", "ticks", "--time-unit", "us"];
     let found = json(&[&["clock", table][..], &time].concat());
-    let mean = |statistics: &serde_json::Value| statistics["mean"].as_f64().unwrap();
+    let mean = |statistics: &Value| statistics["mean"].as_f64().unwrap();
     assert!((mean(&found["clock"]["statistics"]) - 2.5e-3).abs() < 1e-12, "{found}");
     let measured = json(&[&["measure-jitter", "--from", table][..], &time].concat());
     assert!((mean(&measured) - 2.5e-3).abs() < 1e-12, "{measured}");
@@ -253,17 +254,34 @@ fn a_record_that_is_not_the_clock_of_the_loop_decides_nothing_on_any_page() {
     fs::write(&config, LOOP.replace("0.01", "0.02")).unwrap();
     let config = config.to_str().unwrap();
     let page = folder.path().join("clock.html");
-    let warning = "the mean interval of the topic is 10.0 ms, the period of the loop 20.0 ms: the topic is not the clock of this loop";
+    let warning = "the mean interval of the record is 10.0 ms, the period of the loop 20.0 ms: the record is not the clock of this loop";
+    let unknown =
+        "Whether the loop is stable is unknown: the record is not the clock of this loop.";
     let words = ["clock", &log, "--topic", "start_ns", "--config", config, "--page"];
     libration(&[&words[..], &[page.to_str().unwrap()]].concat()).code(1).stdout(
         predicate::str::contains(warning)
-            .and(predicate::str::contains("verdict: unknown: the topic is not the clock"))
+            .and(predicate::str::contains("verdict: unknown: the record is not the clock"))
+            .and(predicate::str::contains(format!(
+                "recorded clock, latency of the file: {unknown}"
+            )))
             .and(predicate::str::contains("relative rms; limit: ")),
     );
     let text = fs::read_to_string(&page).unwrap();
     assert!(text.contains(warning) && text.contains("Loop with a recorded clock: unknown"));
-    let advised =
-        json(&["advise", "--config", config, "--jitter-file", &log, "--time", "start_ns"]);
+    // `advise` with the same record has the same verdict, exit code and first sentence.
+    let unknown_json = |words: &[&str]| -> Value {
+        let output = libration(&[words, &["--json"]].concat()).code(1);
+        serde_json::from_slice(&output.get_output().stdout).unwrap()
+    };
+    let found = unknown_json(&words[..6]);
+    let words = ["advise", "--config", config, "--jitter-file", &log, "--time", "start_ns"];
+    let advised = unknown_json(&words);
+    let effect = &found["effects"][0];
+    assert_eq!((&effect["verdict"], &effect["holds"]), (&advised["verdict"], &Value::Bool(false)));
+    for answer in [&effect["answer"], &advised["answer"]] {
+        assert!(answer.as_str().unwrap().starts_with(unknown), "{answer}");
+    }
+    libration(&words).code(1).stdout(predicate::str::starts_with("Whether the loop is stable is"));
     let warnings = advised["warnings"].to_string();
     assert!(warnings.contains("the record is not the clock of this loop"), "{warnings}");
 }
