@@ -120,6 +120,14 @@ pub struct FloatChoice {
 }
 
 impl LoopAdvice {
+    /// Whether the loop is stable as stated, and unstable with less of an imperfection.
+    pub fn is_in_window(&self) -> bool {
+        let is_stable = self.combined.growth < 0.0;
+        // A loop that is unstable without imperfections has no budgets.
+        is_stable
+            && (self.budgets.is_empty() || self.budgets.iter().any(|own| own.regained.is_some()))
+    }
+
     /// Whether the cost of the loop exceeds a tolerance of the cost.
     pub(super) fn exceeds_tolerated_cost(&self, tolerance: &ToleranceAnswer) -> bool {
         let rise = self.combined.cost_increase;

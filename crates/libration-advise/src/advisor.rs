@@ -200,9 +200,9 @@ pub(super) fn advise_loop<M: PlantModel>(
     let one = one.with_critical_latency();
     let mut advice = Advice::new(request);
     if let Some(unstable) = unstable {
-        let combined = one.combined_effect_unstable(request)?;
+        let combined = one.combined_effect_unstable(request, &unstable)?;
+        (advice.verdict, advice.answer) = unstable.judged(&one.timed, combined.growth)?;
         let looped = LoopAdvice { remedies: unstable.remedies, ..one.advice(request, combined)? };
-        (advice.verdict, advice.answer) = unstable.judged(&one.timed, looped.combined.growth)?;
         if request.map {
             advice.map = Some(one.timed.map(work, None)?);
         }

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::AdviseError;
 use super::imperfection::Imperfection;
-use super::limit_text::{rounded_down, tried_size};
+use super::limit_text::{beyond_tried, rounded_down};
 use super::limits::Limit;
 use super::loops::LoopError;
 use super::motion::describe_motion;
@@ -64,7 +64,7 @@ impl Budget {
         match limit {
             Some(limit) => rounded_down(limit),
             None if self.tried_up_to == 0.0 => "too many states".to_owned(),
-            None => format!("above {}", tried_size(self.tried_up_to)),
+            None => beyond_tried(self.tried_up_to),
         }
     }
 

@@ -87,9 +87,10 @@ pub(super) fn measure(budgets: &[Budget]) -> Option<String> {
     ))
 }
 
-/// The verdict of a page in its title.
-pub(super) fn title(outcome: Outcome) -> &'static str {
+/// The verdict of a page in its title; `is_in_window` if less of an imperfection makes the loop unstable.
+pub(super) fn title(outcome: Outcome, is_in_window: bool) -> &'static str {
     match outcome {
+        Outcome::Stable if is_in_window => "The loop is stable, but only in a stability window",
         Outcome::Unstable => "The loop is unstable",
         Outcome::Exceeds => "The loop is stable, but its cost exceeds the tolerance",
         Outcome::Stable => "The loop is stable",

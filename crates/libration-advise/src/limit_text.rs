@@ -16,11 +16,12 @@ pub(super) fn rounded_up(limit: f64) -> String {
     in_digits(limit, cut_up)
 }
 
-/// The largest tried size.
-pub(super) fn tried_size(size: f64) -> String {
-    match size < 1e-2 {
-        true => rounded_down(size),
-        false => format!("{:.3}", cut_to(size, 3, cut_off)),
+/// The words for a limit that lies beyond the largest tried size. The clock is also tried faster: its sizes are negative.
+pub(super) fn beyond_tried(size: f64) -> String {
+    let side = if size < 0.0 { "below" } else { "above" };
+    match size.abs() < 1e-2 {
+        true => format!("{side} {}", rounded_down(size)),
+        false => format!("{side} {:.3}", cut_to(size, 3, cut_off)),
     }
 }
 
@@ -74,6 +75,8 @@ mod tests {
         ] {
             assert_eq!([rounded_down(limit), rounded_up(limit)], [down, up], "{limit}");
         }
+        let words = [3.564_05, -0.999, 0.001_234_567].map(beyond_tried);
+        assert_eq!(words, ["above 3.564", "below -0.999", "above 0.001234"]);
         // The limit of a fast clock, toward zero.
         assert_eq!(rounded_down(-0.123_456_78), "-0.123456");
     }

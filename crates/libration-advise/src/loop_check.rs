@@ -106,18 +106,26 @@ impl<M: PlantModel> Loop<M> {
         Ok(Some(UnstableLoop { motions, is_stable_as_stated: false, remedies, help }))
     }
 
-    /// The growth of a loop that is unstable without imperfections; it has no cost and no margin.
+    /// The growth of a loop that is unstable without imperfections: without them, or as stated if it is stable then. It has no margin.
     pub(super) fn combined_effect_unstable(
         &self,
         request: &Request,
+        unstable: &UnstableLoop,
     ) -> Result<CombinedEffect, AdviseError> {
-        let timing = self.timed.ideal();
+        let timing = match unstable.is_stable_as_stated {
+            true => self.timed.stated().map_err(LoopError::from)?,
+            false => self.timed.ideal(),
+        };
+        let cost = match unstable.is_stable_as_stated {
+            true => Some(self.timed.cost(&timing).map_err(LoopError::from)?),
+            false => None,
+        };
         Ok(CombinedEffect {
             growth: self.timed.growth(&timing).map_err(LoopError::from)?,
             margin: None,
             margin_tried_up_to: None,
             ideal_cost: f64::INFINITY,
-            cost: None,
+            cost: cost.filter(|cost| cost.is_finite()),
             cost_increase: None,
             simulated: None,
             region_of_attraction: None,

@@ -11,26 +11,22 @@ use super::advice::{Advice, LoopAdvice};
 use super::budget::Budget;
 use super::first_screen::{actions, budget_bars, budget_numbers, cut, simulated_cost, title};
 use super::integrator_choice::IntegratorChoice;
-use super::live_setting;
+use super::live_setting::{add_live_section, of_advice};
 use super::stability_map::StabilityMap;
-use super::summary::{ANY_PROBABILITY, is_any_probability};
 
 /// The advice as an HTML page.
 pub fn page(advice: &Advice) -> String {
     let is_too_costly = |own: &LoopAdvice| own.exceeds_tolerated_cost(&advice.tolerance);
     let title = match &advice.looped {
-        None => "The cheapest integrator and its step",
+        None => title_of_integrators(advice),
         Some(_) if advice.chosen().is_none() && advice.verdict.outcome == Outcome::Exceeds => {
-            "The loop is stable, but no integrator keeps the tolerance"
+            "The loop is stable, but no integrator keeps the tolerance".to_owned()
         }
-        Some(_) => title(advice.verdict.outcome),
+        Some(looped) => title(advice.verdict.outcome, looped.is_in_window()).to_owned(),
     };
-    let mut page = Page { title: title.into(), ..Page::default() };
+    let mut page = Page { title, ..Page::default() };
     page.answer.clone_from(&advice.answer);
-    page.live = live_setting::of_advice(advice);
-    if page.live.is_empty() {
-        page.note(live_setting::NO_LIVE_SECTION);
-    }
+    add_live_section(&mut page, of_advice(advice), advice.verdict.outcome);
     for warning in &advice.warnings {
         page.note(format!("Warning: {warning}."));
     }
@@ -58,6 +54,18 @@ pub fn page(advice: &Advice) -> String {
         advice.repeat_command,
     );
     report::render_page(&page, &sub)
+}
+
+/// The verdict on the integrators, as a title.
+fn title_of_integrators(advice: &Advice) -> String {
+    match (advice.verdict.outcome, advice.chosen()) {
+        (Outcome::Within, Some((choice, dt))) => {
+            let dt = number(cut(dt), 4);
+            format!("{} in steps of {dt} s keeps the tolerance", choice.integrator)
+        }
+        (Outcome::Exceeds, _) => "No integrator keeps the tolerance".to_owned(),
+        _ => "Whether an integrator keeps the tolerance is unknown".to_owned(),
+    }
 }
 
 fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&StabilityMap>) {
@@ -103,8 +111,7 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&StabilityMap>) {
         Cell::rounded(combined.growth.exp_m1(), 4),
         "exact: E[M ⊗ M]",
     );
-    let margin =
-        combined.margin.map_or_else(|| Cell::absent("none found"), |margin| cut(margin).into());
+    let margin = margin_cell(combined.margin, combined.margin_tried_up_to, combined.growth);
     line("largest common factor of all imperfections", margin, "exact, in proportion");
     let infinite = || Cell::absent("infinite");
     line(
@@ -154,14 +161,20 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&StabilityMap>) {
     page.table(&table, 4);
 }
 
+/// The largest common factor of all imperfections of a loop whose second moments grow at this rate.
+pub(super) fn margin_cell(margin: Option<f64>, tried_up_to: Option<f64>, growth: f64) -> Cell {
+    match (margin, tried_up_to) {
+        (Some(margin), _) => cut(margin).into(),
+        (None, Some(tried)) => Cell::absent(format!("at least {}", number(cut(tried), 4))),
+        (None, None) if growth < 0.0 => Cell::absent("not searched"),
+        (None, None) => Cell::absent("none: the loop is unstable"),
+    }
+}
+
 /// The row of a budget in its table.
 pub(super) fn budget_row(budget: &Budget) -> [Cell; 7] {
-    let beyond = match is_any_probability(budget.kind, budget.tried_up_to) {
-        true => ANY_PROBABILITY.to_owned(),
-        false => format!("above {}", number(budget.tried_up_to, 3)),
-    };
     let limit = |limit: Option<f64>| {
-        limit.map_or_else(|| Cell::absent(beyond.clone()), |limit| cut(limit).into())
+        limit.map_or_else(|| Cell::absent(budget.limit_in_words(None)), |limit| cut(limit).into())
     };
     [
         budget.kind.name().into(),

@@ -8,6 +8,7 @@ use libration_settings::linear_loop::OperatingPoint;
 use serde::{Serialize, Serializer};
 
 use super::{ChainLink, DeadlineMisses, InputMargins, Mode, Redesign};
+use crate::advice_verdict::Doubt;
 use crate::budget::{Budget, FirstFailure};
 use crate::combined_effect::SimulatedCost;
 use crate::loop_check::WINDOW;
@@ -64,7 +65,8 @@ pub struct LinearAdvice {
     pub chain: Vec<ChainLink>,
     /// Gain and phase margins at each input, with the stated latencies; empty if the loop is unstable with them, and for a cascade.
     pub margins: Vec<InputMargins>,
-    /// The logarithm of the growth factor of second moments per period with all stated imperfections; below zero the loop is stable.
+    /// The logarithm of the growth factor of second moments per period; below zero the loop is stable. With all stated imperfections, but
+    /// without them if the loop is unstable both with and without them.
     pub growth: f64,
     /// The largest common factor of all imperfections with which the loop is stable; none if no limit was found.
     pub margin: Option<f64>,
@@ -162,6 +164,14 @@ impl LinearAdvice {
         self.verdict.is_good()
     }
 
+    /// Makes the verdict unknown. A loop that is unstable without imperfections stays so: no clock or latency decides that.
+    pub fn doubt(&mut self, doubt: Doubt) {
+        let is_unstable_alone = !self.unstable_motions.is_empty() && self.is_unstable();
+        if !is_unstable_alone {
+            doubt.apply(&mut self.verdict, &mut self.answer);
+        }
+    }
+
     /// The verdict on a loop of this stability with the stated imperfections.
     pub(super) fn judged(&self, stated: &LoopStability) -> Verdict {
         let of_loop = loop_verdict(stated);
@@ -238,10 +248,19 @@ impl LinearAdvice {
         if self.is_unstable() { "infinite" } else { "unknown" }
     }
 
+    /// Whether the loop is unstable without imperfections, and stable as stated.
+    pub fn is_stable_as_stated(&self) -> bool {
+        self.stable_as_stated.is_some()
+    }
+
+    /// Whether the loop is stable as stated, and unstable with less of an imperfection.
+    pub(super) fn is_in_window(&self) -> bool {
+        self.is_stable_as_stated() || self.budgets.iter().any(|own| own.regained.is_some())
+    }
+
     /// Whether the loop is not known to be stable, with or without the stated imperfections.
     pub fn is_unstable(&self) -> bool {
-        let is_in_window = self.stable_as_stated.is_some();
-        !is_in_window && (self.growth >= 0.0 || !self.unstable_motions.is_empty())
+        !self.is_stable_as_stated() && (self.growth >= 0.0 || !self.unstable_motions.is_empty())
     }
 
     /// Whether the cost exceeds its tolerance.

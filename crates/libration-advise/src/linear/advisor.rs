@@ -103,8 +103,13 @@ fn advise_unstable(
         true => Some(timed.stability(&stated).map_err(LoopError::from)?),
         false => None,
     };
+    let cost = match &as_stated {
+        Some(_) => timed.cost(&stated).map_err(LoopError::from)?,
+        None => f64::INFINITY,
+    };
     let mut advice = LinearAdvice {
-        growth: stability.growth,
+        growth: as_stated.as_ref().map_or(stability.growth, |own| own.growth),
+        cost: Some(cost).filter(|cost| cost.is_finite()),
         unstable_motions,
         // A change that stabilises the loop without its latency may not do so in a stability window of the latency.
         remedies: as_stated.is_none().then(|| timed.stabilising_changes(&stated)),

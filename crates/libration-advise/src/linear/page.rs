@@ -4,14 +4,15 @@ use libration_report::notation::{cut_off, cut_up, number};
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Cell, Table};
 use libration_report::report;
+use libration_report::verdict::Outcome;
 
 use super::deadlines_page::deadlines;
 use super::{ChainLink, DeadlineMisses, InputMargins, LinearAdvice, redesign_page};
 use crate::first_screen::{
     budget_bars, budget_numbers, change, cut, measure, reduce, simulated_cost, title,
 };
-use crate::live_setting::{NO_LIVE_SECTION, shown};
-use crate::page::{budget_row, figure};
+use crate::live_setting::add_live_section;
+use crate::page::{budget_row, figure, margin_cell};
 use crate::{Budget, StabilityWindow};
 
 /// Why a cascade has no margins.
@@ -19,16 +20,13 @@ pub const NO_MARGINS: &str = "Gain and phase margins are not available for a cas
 
 /// The advice as an HTML page.
 pub fn page(advice: &LinearAdvice) -> String {
-    let title = title(advice.verdict.outcome);
+    let title = title(advice.verdict.outcome, advice.is_in_window());
     let mut page = Page { title: title.into(), ..Page::default() };
     page.answer.clone_from(&advice.answer);
     page.highlights = numbers(advice);
     page.bars = budget_bars(&advice.budgets);
     page.actions = actions(advice);
-    page.live = advice.live.as_ref().map(shown).unwrap_or_default();
-    if page.live.is_empty() {
-        page.note(NO_LIVE_SECTION);
-    }
+    add_live_section(&mut page, advice.live.clone(), advice.verdict.outcome);
     for warning in &advice.warnings {
         page.note(format!("Warning: {warning}."));
     }
@@ -200,18 +198,27 @@ pub(super) fn margins_table(name: &str, margins: &[InputMargins]) -> Table {
 }
 
 fn together(page: &mut Page, advice: &LinearAdvice) {
-    page.heading("All imperfections together");
+    let is_stated = advice.unstable_motions.is_empty() || advice.is_stable_as_stated();
+    page.heading(match is_stated {
+        true => "All imperfections together",
+        false => "The loop without imperfections",
+    });
     let mut table = Table::new("combined", &["quantity", "value", "method"]);
     let infinite = || Cell::absent("infinite");
     let rounded = |x: Option<f64>, digits| x.map_or_else(infinite, |x| Cell::rounded(x, digits));
-    let margin = advice.margin.map_or_else(|| Cell::absent("none found"), |x| cut(x).into());
+    let margin = margin_cell(advice.margin, advice.margin_tried_up_to, advice.growth);
     let ideal = Some(advice.ideal_cost).filter(|cost| cost.is_finite());
+    let increase = match (ideal, advice.cost) {
+        // Both are infinite, or that of the ideal loop alone.
+        (None, _) => Cell::absent("—"),
+        _ => rounded(advice.cost_increase, 4),
+    };
+    let growth = match advice.verdict.outcome {
+        Outcome::Unknown if !is_stated => Cell::absent("unknown"),
+        _ => Cell::rounded(advice.growth.exp_m1(), 4),
+    };
     let lines = [
-        (
-            "growth of second moments per period",
-            Cell::rounded(advice.growth.exp_m1(), 4),
-            "exact: E[M ⊗ M]",
-        ),
+        ("growth of second moments per period", growth, "exact: E[M ⊗ M]"),
         ("largest common factor of all imperfections", margin, "exact, in proportion"),
         ("cost of the ideal loop", rounded(ideal, 6), "exact: Lyapunov equation"),
         (
@@ -219,9 +226,10 @@ fn together(page: &mut Page, advice: &LinearAdvice) {
             rounded(advice.cost, 6),
             "exact: Lyapunov equation of the jump system",
         ),
-        ("ΔJ/J₀", rounded(advice.cost_increase, 4), "from the two costs"),
+        ("ΔJ/J₀", increase, "from the two costs"),
     ];
-    for (what, value, how) in lines {
+    // Without imperfections the loop has its growth alone.
+    for (what, value, how) in lines.into_iter().take(if is_stated { 5 } else { 1 }) {
         table.push([what.into(), value, how.into()]);
     }
     if let Some(simulated) = &advice.simulated {

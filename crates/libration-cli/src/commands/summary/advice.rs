@@ -46,8 +46,9 @@ fn append_loop(looped: &LoopAdvice, summary: &mut Summary) {
         let held = significant(looped.held_command, 5);
         summary.row("operating point", &format!("{command} of {held} {unit}"));
     }
-    match looped.budgets.is_empty() {
-        true => summary.row("second moments", &change_without(combined.growth)),
+    match looped.budgets.is_empty() && !looped.is_in_window() {
+        true => summary
+            .row("second moments", &(change_without(combined.growth) + " without imperfections")),
         false => summary.row("second moments", &change(combined.growth)),
     }
     if combined.growth < 0.0 {

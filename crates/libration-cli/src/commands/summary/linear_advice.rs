@@ -43,7 +43,7 @@ pub(crate) fn of_linear_advice(advice: &LinearAdvice, args: &AdviseArgs) -> Stri
     }
     let redesigned = advice.redesign.iter().flat_map(|redesign| &redesign.margins);
     append_margins("of the redesign", redesigned, &mut summary);
-    match advice.unstable_motions.is_empty() {
+    match advice.unstable_motions.is_empty() || advice.is_stable_as_stated() {
         true => summary.row("second moments", &change(advice.growth)),
         false => summary
             .row("second moments", &(change_without(advice.growth) + " without imperfections")),

@@ -108,5 +108,6 @@ pub(super) fn append_simulated(own: Option<&SimulatedCost>, of: &str, summary: &
 /// A cost and that of the ideal loop.
 pub(super) fn cost(cost: Option<f64>, ideal: f64) -> String {
     let shown = cost.map_or_else(|| "infinite".to_owned(), |cost| significant(cost, 5));
-    format!("{shown} under noise, {} without imperfections", significant(ideal, 5))
+    let ideal = if ideal.is_finite() { significant(ideal, 5) } else { "infinite".to_owned() };
+    format!("{shown} under noise, {ideal} without imperfections")
 }
