@@ -23,6 +23,7 @@ mod energy_trajectory;
 mod finding;
 mod finding_kind;
 mod findings;
+mod findings_page;
 mod first_difference;
 mod first_screen;
 mod flow;
@@ -65,6 +66,7 @@ mod shorter_step;
 mod step_equilibrium;
 mod subject;
 mod summary;
+mod unknown_error;
 mod verdict;
 
 pub use audit::probe;

@@ -9,7 +9,7 @@ use crate::BlackBoxError;
 use crate::convergence::displaced;
 use crate::prober::Prober;
 use crate::rates::NumericalSystem;
-use crate::summary::is_unknown_error;
+use crate::unknown_error::is_unknown_error;
 
 /// States up to which all implicit methods are compared, also after one agrees.
 const MOST_STATES_OF_ALL: usize = 12;

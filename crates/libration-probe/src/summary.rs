@@ -4,6 +4,7 @@ use libration_report::notation::{number, plural};
 use libration_report::verdict::Outcome;
 
 use crate::modes::ProbedMode;
+use crate::unknown_error::is_unknown_error;
 use crate::verdict::Growth;
 use crate::{FindingKind, ProbeReport};
 
@@ -190,11 +191,6 @@ impl ProbedMode {
 /// A relative error of a result; one above 1 says nothing but that the result is wrong.
 pub fn error_in_words(error: f64) -> String {
     if is_unknown_error(error) { "unknown".into() } else { number(error, 2) }
-}
-
-/// Whether an error exceeds its result, or is no number.
-pub(crate) fn is_unknown_error(error: f64) -> bool {
-    error.is_nan() || error > 1.0
 }
 
 pub(crate) fn capitalised(text: &str) -> String {

@@ -11,6 +11,7 @@ mod linear_reference;
 mod linearised_plant;
 mod measured_clock;
 mod page;
+mod page_verdicts;
 mod redesign_reference;
 mod requests;
 mod steps;

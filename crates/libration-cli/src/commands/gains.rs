@@ -134,6 +134,8 @@ fn describe(report: &GainReport) -> String {
         "\n{:<24} {:>12} {:>12} {:>12} {:>10} {:>12} {:>10} {:>12} {:>12}",
         "joint", "inertia", "kp", "kv", "wh", "largest wh", "damping", "largest kp", "largest kv"
     );
+    // Of a measured step the limits are those of servos, whose gains are not those of joints.
+    let own_limit = |x: f64| if report.measured.is_some() { f64::NAN } else { x };
     for joint in &report.joints {
         let _ = writeln!(
             text,
@@ -145,8 +147,8 @@ fn describe(report: &GainReport) -> String {
             rounded(joint.turn),
             limit(joint.largest_turn),
             known(joint.damping_ratio),
-            limit(joint.largest_kp),
-            limit(joint.largest_kv)
+            limit(own_limit(joint.largest_kp)),
+            limit(own_limit(joint.largest_kv))
         );
     }
     if let Some(measured) = &report.measured {
@@ -178,7 +180,10 @@ fn describe(report: &GainReport) -> String {
     let _ = writeln!(
         text,
         "\n{:<30} {:<6} {:>18} {:>16}",
-        "integrator", "holds", "largest factor", "fewest substeps"
+        if report.measured.is_some() { "integrator of the servo model" } else { "integrator" },
+        "holds",
+        "largest factor",
+        "fewest substeps"
     );
     for row in &report.integrators {
         let _ = writeln!(
@@ -217,6 +222,10 @@ fn measured_tables(measured: &MeasuredGains, limit: impl Fn(f64) -> String, text
         "\n{:<36} {:>12} {:>12} {:>12} {:>12}",
         "mode of the measured step", "|z|", "growth 1/s", "of system", "freq. Hz"
     );
+    let rate = |x: f64| match measured.is_differentiable {
+        true => rounded(x),
+        false => "unknown".to_owned(),
+    };
     for mode in &measured.modes {
         let of_system = mode.flow.map(|flow| flow.growth_rate);
         let _ = writeln!(
@@ -224,9 +233,9 @@ fn measured_tables(measured: &MeasuredGains, limit: impl Fn(f64) -> String, text
             "{:<36} {:>12} {:>12} {:>12} {:>12}",
             mode.names(),
             number(mode.radius, 8),
-            rounded(mode.step.growth_rate),
-            of_system.map_or_else(|| "-".to_owned(), rounded),
-            rounded(mode.step.frequency)
+            rate(mode.step.growth_rate),
+            of_system.map_or_else(|| "-".to_owned(), rate),
+            rate(mode.step.frequency)
         );
     }
 }

@@ -129,7 +129,7 @@ fn verdicts_of_gains_and_their_exit_codes_are_those_of_closed_forms() {
         (
             "--kp 0.00001 --kv 0 --dt 0.1 --held-torque --integrator rk4",
             1,
-            "no tried factor of all gains of position does",
+            "no tried factor of all gains of position makes them hold",
         ),
         // kp < 2 (2 − kv h)/h² = 2.
         ("--kp 2.00001 --kv 19.9 --dt 0.1", 1, "must stay below 2,"),

@@ -5,7 +5,7 @@ use libration_report::page::{Bar, Highlight};
 use libration_report::verdict::Outcome;
 
 use super::command_option::{is_command, with_flag, with_option};
-use super::{GainReport, JointRow};
+use super::{GainReport, Torque};
 
 /// Joints whose limits are shown as bars, the tightest first.
 const MOST_BARS: usize = 6;
@@ -23,12 +23,11 @@ pub(super) fn title(report: &GainReport) -> &'static str {
 
 /// The key numbers.
 pub(super) fn numbers(report: &GainReport) -> Vec<Highlight> {
-    let h = report.dt / f64::from(report.substeps);
     let mut shown = vec![Highlight {
         value: number(report.spectral_radius, 5),
         text: format!(
             "largest factor of a mode in {} s{}",
-            number(h, 4),
+            number(length(report), 4),
             exact_radius(report)
                 .map_or_else(String::new, |exact| format!("; {} in exact steps", number(exact, 5)))
         ),
@@ -39,10 +38,10 @@ pub(super) fn numbers(report: &GainReport) -> Vec<Highlight> {
             text: "largest common factor of all gains of position".into(),
         });
     }
-    if let Some(joint) = limited(report).first() {
+    if let Some(gain) = limited(report).first() {
         shown.push(Highlight {
-            value: number(cut(joint.largest_kp), 4),
-            text: format!("largest kp of {}; given {}", joint.name, number(joint.kp, 4)),
+            value: number(cut(gain.largest), 4),
+            text: format!("largest kp of {}; given {}", gain.of, number(gain.kp, 4)),
         });
     }
     if let Some(fewest) = report.fewest_substeps {
@@ -54,10 +53,18 @@ pub(super) fn numbers(report: &GainReport) -> Vec<Highlight> {
     shown
 }
 
-/// The largest factor of a mode in an exact substep; none if a mode has no damping ratio.
+/// The time in which modes have the factors of a report, in s: a substep, or a step of the servo model if that holds the torques.
+pub(super) fn length(report: &GainReport) -> f64 {
+    match report.torque {
+        Torque::Held if report.measured.is_none() => report.dt,
+        _ => report.dt / f64::from(report.substeps),
+    }
+}
+
+/// The largest factor of a mode in an exact step of the same length; none if a mode has no damping ratio.
 fn exact_radius(report: &GainReport) -> Option<f64> {
     if let Some(measured) = &report.measured {
-        let h = report.dt / f64::from(report.substeps);
+        let h = length(report);
         let all: Option<Vec<f64>> =
             measured.modes.iter().map(|mode| Some((mode.flow?.growth_rate * h).exp())).collect();
         return all?.into_iter().reduce(f64::max);
@@ -73,22 +80,43 @@ fn exact_radius(report: &GainReport) -> Option<f64> {
     all?.into_iter().reduce(f64::max)
 }
 
-/// What is used of the largest gain of each joint.
+/// What is used of the largest gain of each joint or servo.
 pub(super) fn bars(report: &GainReport) -> Vec<Bar> {
-    let bar = |joint: &&JointRow| Bar {
-        name: joint.name.clone(),
-        part: joint.kp / joint.largest_kp,
-        text: format!("kp {} of {}", number(joint.kp, 4), number(cut(joint.largest_kp), 4)),
+    let bar = |gain: &LimitedGain<'_>| Bar {
+        name: gain.of.to_owned(),
+        part: gain.kp / gain.largest,
+        text: format!("kp {} of {}", number(gain.kp, 4), number(cut(gain.largest), 4)),
     };
     limited(report).iter().take(MOST_BARS).map(bar).collect()
 }
 
-/// The joints whose gain of position has a limit, the tightest first.
-fn limited(report: &GainReport) -> Vec<&JointRow> {
-    let has_limit = |joint: &&JointRow| joint.largest_kp.is_finite() && joint.largest_kp > 0.0;
-    let mut found: Vec<&JointRow> =
-        report.joints.iter().filter(|joint| joint.kp > 0.0).filter(has_limit).collect();
-    found.sort_by(|a, b| (a.largest_kp / a.kp).total_cmp(&(b.largest_kp / b.kp)));
+/// A gain of position with a limit.
+struct LimitedGain<'a> {
+    /// The joint of a servo model, or the servo of a measured step.
+    of: &'a str,
+    kp: f64,
+    largest: f64,
+}
+
+/// The gains of position that have a limit, the tightest first. In a measured step each servo has a limit of its own, and the gain of a
+/// joint has more than that of its servo: stiffness, and other servos.
+fn limited(report: &GainReport) -> Vec<LimitedGain<'_>> {
+    let all: Vec<LimitedGain<'_>> = match &report.measured {
+        Some(measured) => measured
+            .servos
+            .iter()
+            .map(|own| LimitedGain { of: &own.name, kp: own.kp, largest: own.largest_kp })
+            .collect(),
+        None => report
+            .joints
+            .iter()
+            .map(|own| LimitedGain { of: &own.name, kp: own.kp, largest: own.largest_kp })
+            .collect(),
+    };
+    let has_limit =
+        |gain: &LimitedGain<'_>| gain.kp > 0.0 && gain.largest.is_finite() && gain.largest > 0.0;
+    let mut found: Vec<LimitedGain<'_>> = all.into_iter().filter(has_limit).collect();
+    found.sort_by(|a, b| (a.largest / a.kp).total_cmp(&(b.largest / b.kp)));
     found
 }
 
@@ -132,9 +160,9 @@ pub(super) fn actions(report: &GainReport) -> Vec<String> {
         }
         return all;
     }
-    if let Some(joint) = limited(report).first() {
-        let most = number(cut(joint.largest_kp), 4);
-        all.push(format!("Keep kp of {} below {most}, with all others as they are.", joint.name));
+    if let Some(gain) = limited(report).first() {
+        let most = number(cut(gain.largest), 4);
+        all.push(format!("Keep kp of {} below {most}, with all others as they are.", gain.of));
     }
     if is_command(command) {
         all.push(format!("Repeat the report after each change of a gain: `{command}`"));

@@ -6,7 +6,7 @@ use libration_report::record::{Cell, Table};
 use libration_report::report;
 
 use super::first_screen::{actions, bars, numbers, title};
-use super::{GainReport, MeasuredGains, ServoIntegrator, ServoMode};
+use super::{GainReport, MeasuredGains, ServoIntegrator, ServoMode, Torque};
 
 /// The report as an HTML page.
 pub fn gains_page(report: &GainReport) -> String {
@@ -25,11 +25,25 @@ pub fn gains_page(report: &GainReport) -> String {
         x => Cell::rounded(x, digits),
     };
     let known = |x: Option<f64>| x.map_or_else(|| Cell::absent("—"), |x| Cell::rounded(x, 4));
-    page.heading("How much does each joint allow?");
-    page.paragraph(
+    let is_measured = report.measured.is_some();
+    page.heading(match is_measured {
+        true => "What is each joint alone?",
+        false => "How much does each joint allow?",
+    });
+    page.paragraph(format!(
         "ω, its limit and the damping ratio are those of the joint alone: ω² is its stiffness, with that of the gain of position, divided by \
-         its inertia; h is the length of a substep. The largest gains are those with all couplings and with all other gains as they are.",
-    );
+         its inertia; h is the length of a {}.{}",
+        match report.torque {
+            Torque::Held => "step, through which torques are held",
+            Torque::EachSubstep => "substep",
+        },
+        match is_measured {
+            true => " kp and kv have the stiffness and the damping of the joint, too.",
+            false => {
+                " The largest gains are those with all couplings and with all other gains as they are."
+            }
+        }
+    ));
     let columns = [
         "joint",
         "inertia",
@@ -41,9 +55,11 @@ pub fn gains_page(report: &GainReport) -> String {
         "largest kp",
         "largest kv",
     ];
-    let mut table = Table::new("joints", &columns);
+    // Of a measured step each servo has limits, in the next table.
+    let count = if is_measured { columns.len() - 2 } else { columns.len() };
+    let mut table = Table::new("joints", &columns[..count]);
     for joint in &report.joints {
-        table.push([
+        let row = [
             joint.name.clone().into(),
             Cell::rounded(joint.inertia, 4),
             Cell::rounded(joint.kp, 4),
@@ -53,13 +69,14 @@ pub fn gains_page(report: &GainReport) -> String {
             known(joint.damping_ratio),
             limit(joint.largest_kp, 5),
             limit(joint.largest_kv, 5),
-        ]);
+        ];
+        table.push(row.into_iter().take(count));
     }
     page.table(&table, 5);
     if let Some(measured) = &report.measured {
         measured_tables(&mut page, measured, limit);
     }
-    page.heading(match report.measured.is_some() {
+    page.heading(match is_measured {
         true => "What does the servo model predict, without contacts and constraints?",
         false => "What do all joints do together?",
     });
@@ -78,7 +95,12 @@ pub fn gains_page(report: &GainReport) -> String {
         ]);
     }
     page.table(&table, 5);
-    page.heading("Which integrator holds the gains?");
+    page.heading(match is_measured {
+        true => {
+            "Which integrator holds the gains in the servo model, without contacts and constraints?"
+        }
+        false => "Which integrator holds the gains?",
+    });
     let columns =
         ["integrator", "in words", "holds", "largest factor of kp", "fewest substeps", "|z|"];
     let mut table = Table::new("integrators", &columns);
@@ -129,14 +151,19 @@ fn measured_tables(page: &mut Page, measured: &MeasuredGains, limit: impl Fn(f64
     page.table(&table, 5);
     let columns = ["mode in", "|z|", "growth rate (1/s)", "of the system (1/s)", "frequency (Hz)"];
     let mut table = Table::new("measured modes", &columns);
+    // Of a step without a derivative an error hides each rate.
+    let rate = |x: f64| match measured.is_differentiable {
+        true => Cell::rounded(x, 5),
+        false => Cell::absent("unknown"),
+    };
     for mode in &measured.modes {
-        let flow = mode.flow.map(|flow| Cell::rounded(flow.growth_rate, 5));
+        let flow = mode.flow.map(|flow| rate(flow.growth_rate));
         table.push([
             mode.names().into(),
             Cell::rounded(mode.radius, 7),
-            Cell::rounded(mode.step.growth_rate, 5),
+            rate(mode.step.growth_rate),
             flow.unwrap_or_else(|| Cell::absent("—")),
-            Cell::rounded(mode.step.frequency, 5),
+            rate(mode.step.frequency),
         ]);
     }
     page.table(&table, 5);

@@ -166,10 +166,10 @@ impl GainReport {
             _ if self.is_at_limit && self.measured.is_none() => ".".to_owned(),
             x if x.is_nan() => ".".to_owned(),
             f64::INFINITY if self.holds => {
-                "; no larger gain of position was found that does not.".to_owned()
+                "; no larger gain of position was found that does not hold.".to_owned()
             }
             f64::INFINITY => ".".to_owned(),
-            0.0 => "; no tried factor of all gains of position does.".to_owned(),
+            0.0 => "; no tried factor of all gains of position makes them hold.".to_owned(),
             factor => {
                 // At the limit itself they do not hold.
                 let factor = number(cut_off(factor * (1.0 - 1e-11), 5), 5);

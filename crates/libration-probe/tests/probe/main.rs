@@ -13,6 +13,7 @@ mod energy_losses;
 mod faults;
 mod finding_kinds;
 mod first_difference;
+mod gain_pages;
 mod gains;
 mod gains_beside_limits;
 mod inner_steps;

@@ -2,7 +2,7 @@
 
 use libration::linear::Matrix;
 use libration_probe::{BlackBox, BlackBoxError, GainReport, MeasuredGains, ServoGain, Subject};
-use libration_probe::{ServoIntegrator, ServosDescription, gains};
+use libration_probe::{ServoIntegrator, ServosDescription, gains, gains_page};
 use libration_report::verdict::Outcome;
 
 /// Sliders with springs, servos and walls: kick, then drift.
@@ -180,6 +180,32 @@ fn a_step_without_a_derivative_has_no_verdict() {
     let subject = Subject::new("kink", vec![0.0; 2], vec![], DT);
     let found = MeasuredGains::measure(&mut kink, &subject, &[], 1).unwrap();
     assert!(!found.is_differentiable);
+    // The page shows no rate as zero, and says of which model the integrators are.
+    let servos: ServosDescription =
+        serde_json::from_str(r#"{"mass": [2], "kp": [100], "kv": [3]}"#).unwrap();
+    let model = gains(&servos.servos().unwrap(), DT, 1, ServoIntegrator::SYMPLECTIC_EULER, vec![]);
+    let page = gains_page(&model.with_measured(found, &[]));
+    let modes = page.split("of the system (1/s)").nth(1).unwrap().split("</table>").next().unwrap();
+    // Growth and frequency of the one pair of modes.
+    assert!(modes.matches(">unknown<").count() == 2 && !modes.contains(">0<"), "{modes}");
+    assert!(page.contains("Which integrator holds the gains in the servo model, without contacts"));
+}
+
+#[test]
+fn the_page_of_a_measured_step_has_the_gain_and_the_limit_of_the_same_servo() {
+    let mut found = measured(Sliders::new(&[50.0], &[3.0], &[0.5]), DT);
+    // As a simulator describes it: the gain of the joint has its stiffness, too.
+    found.joints[0].kp += 50.0;
+    let page = gains_page(&found);
+    let limit = found.measured.as_ref().unwrap().servos[0].largest_kp;
+    // 4 m/h² − 2 kv/h − 50 = 79 850.
+    close(limit, 79_850.0);
+    for part in ["largest kp of servo 0; given 3<", "kp 3 of 79", "Keep kp of servo 0 below 79"] {
+        assert!(page.contains(part), "{part}: {page}");
+    }
+    assert!(!page.contains("given 53") && !page.contains("kp 53 of"));
+    let joints = page.split("<table").nth(1).unwrap().split("</table>").next().unwrap();
+    assert!(joints.contains(">53<") && !joints.contains("largest kp"), "{joints}");
 }
 
 #[test]

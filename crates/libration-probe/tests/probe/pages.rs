@@ -1,6 +1,7 @@
 //! Pages of audits, as a reader sees them.
 
-use libration_probe::{Description, error_in_words};
+use libration_probe::{Description, Subject, error_in_words};
+use libration_report::verdict::Outcome;
 
 use crate::simulators::{Simulator, pendulum, pendulum_subject};
 
@@ -111,4 +112,24 @@ fn an_error_that_exceeds_its_result_is_unknown() {
         assert!(page.contains(part), "{part}");
     }
     assert!(!page.contains("10³⁴") && !page.contains("10³⁰"));
+}
+
+#[test]
+fn the_page_of_an_unknown_verdict_has_no_live_section_and_denies_no_integrator() {
+    // The matrices of this force at its corner are those of a free mass, of which a live section says that it is stable.
+    let corner = |x: &[f64], u: &[f64], dt: f64| {
+        let v = x[1] + dt * (u[0] - 10.0 * x[0].abs());
+        vec![x[0] + dt * v, v]
+    };
+    let at = |q: f64| Subject::new("corner", vec![q, 0.0], vec![0.0], 0.01);
+    let report = Simulator::new(corner).audit(&at(0.0));
+    assert_eq!(report.verdict.outcome, Outcome::Unknown, "{}", report.answer);
+    let page = libration_probe::page(&report);
+    assert!(!page.contains("id=\"live\"") && page.contains("The page has no live section"));
+    let by_matrix = page.split("errors explain distances of unknown size").nth(1).unwrap();
+    let table = by_matrix.split("</table>").next().unwrap();
+    assert!(table.contains(">unknown<") && !table.contains(">no<"), "{table}");
+    // A known verdict has both.
+    let page = libration_probe::page(&Simulator::new(pendulum).audit(&pendulum_subject()));
+    assert!(page.contains("id=\"live\"") && page.contains(">no<"));
 }
