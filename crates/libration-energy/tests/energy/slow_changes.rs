@@ -16,7 +16,10 @@ fn audited(steps: &[f64], energy: &Law<'_>) -> EnergyReport {
         EnergyTrace { title: format!("run {dt}"), dt: Some(*dt), times, energies }
     };
     let traces: Vec<EnergyTrace> = steps.iter().map(trace).collect();
-    audit(&traces, Requirement::default()).unwrap()
+    match audit(&traces, Requirement::default()) {
+        Ok(report) => report,
+        Err(error) => panic!("{error}"),
+    }
 }
 
 /// The oscillation of a step of second order.
