@@ -201,7 +201,8 @@ pub(super) fn advise_loop<M: PlantModel>(
     let mut advice = Advice::new(request);
     if let Some(unstable) = unstable {
         let combined = one.combined_effect_unstable(request, &unstable)?;
-        (advice.verdict, advice.answer) = unstable.judged(&one.timed, combined.growth)?;
+        (advice.verdict, advice.answer) =
+            unstable.judged(&one.timed, combined.growth, request.tolerance)?;
         let looped = LoopAdvice { remedies: unstable.remedies, ..one.advice(request, combined)? };
         if request.map {
             advice.map = Some(one.timed.map(work, None)?);

@@ -9,13 +9,18 @@ use libration_work::Work;
 use super::budget::Budget;
 use super::combined_effect::CombinedEffect;
 use super::loops::{Loop, LoopError, PlantModel};
-use super::request::Request;
+use super::request::{Measure, Request, Tolerance};
 use super::stabilising_changes::{StabilisingChanges, rounded_down};
 use super::timed_loop::TimedLoop;
 use super::{AdviseError, TURN};
 
-/// The part that advice on a loop in a stability window lacks.
-pub(super) const WINDOW: &str = "limits of the stability window";
+/// The parts that advice on a loop in a stability window lacks: without imperfections it has no cost to which a tolerance relates.
+pub(super) fn window_parts(has_cost_tolerance: bool) -> &'static [&'static str] {
+    match has_cost_tolerance {
+        true => &["limits of the stability window", "the tolerance of the cost"],
+        false => &["limits of the stability window"],
+    }
+}
 
 /// The answer about a loop that is stable as stated, and without imperfections has these motions.
 pub(super) fn in_window(motions: &str) -> String {
@@ -46,13 +51,17 @@ impl UnstableLoop {
         &self,
         timed: &TimedLoop,
         growth: f64,
+        tolerance: Tolerance,
     ) -> Result<(Verdict, String), AdviseError> {
         let motions = self.motions.join("; ");
         if self.is_stable_as_stated {
             let stated = timed.stated().map_err(LoopError::from)?;
             let own = loop_verdict(&timed.stability(&stated).map_err(LoopError::from)?);
             let evidence = format!("{}; without imperfections {motions}", own.evidence);
-            return Ok((Verdict { evidence, ..own }.without(WINDOW), in_window(&motions)));
+            let parts = window_parts(tolerance.of == Measure::Cost);
+            let verdict = Verdict { evidence, ..own };
+            let verdict = parts.iter().copied().fold(verdict, Verdict::without);
+            return Ok((verdict, in_window(&motions)));
         }
         let (outcome, first) = match growth.abs() <= GROWTH_ROUNDING {
             true => (Outcome::Unknown, "It is unknown whether the loop is stable"),

@@ -11,7 +11,7 @@ use super::{ChainLink, DeadlineMisses, InputMargins, Mode, Redesign};
 use crate::advice_verdict::Doubt;
 use crate::budget::{Budget, FirstFailure};
 use crate::combined_effect::SimulatedCost;
-use crate::loop_check::WINDOW;
+use crate::loop_check::window_parts;
 use crate::stabilising_changes::StabilisingChanges;
 use crate::stability_map::StabilityMap;
 use crate::summary::percent;
@@ -184,7 +184,8 @@ impl LinearAdvice {
                     None => loop_verdict(own),
                 };
                 let evidence = format!("{}; without imperfections {motions}", verdict.evidence);
-                Verdict { evidence, ..verdict }.without(WINDOW)
+                let parts = window_parts(self.cost_tolerance.is_some());
+                parts.iter().copied().fold(Verdict { evidence, ..verdict }, Verdict::without)
             }
             () if !self.unstable_motions.is_empty() => match stated.outcome {
                 StabilityOutcome::Undecided => Verdict::unknown(self.unstable_motions.join("; ")),

@@ -41,6 +41,10 @@ fn a_loop_in_a_stability_window_has_the_growth_of_its_own_latency_in_table_and_j
     let combined = section(&page, "All imperfections together");
     assert!(combined.contains(">−0.00438") && combined.contains(">not searched<"), "{combined}");
     assert!(page.contains("<h1>The loop is stable, but only in a stability window</h1>"));
+    // A tolerance of the cost relates to a loop without imperfections, which has none here.
+    let tolerant = format!("{OSCILLATING}latency = 1.3\n[tolerance]\ncost = 0.5\n");
+    let not_examined = linear_advice(&tolerant).verdict.not_examined.join(", ");
+    assert!(not_examined.contains("the tolerance of the cost"), "{not_examined}");
     // The engine of a page refuses such a latency.
     assert!(!page.contains(LIVE) && page.contains("expected at most 64 periods, 0.64 s"));
     // Without the latency the loop is unstable, and the table says of which loop it is.
