@@ -117,7 +117,8 @@ fn append_integrators(advice: &Advice, summary: &mut Summary) {
 fn next(advice: &Advice, args: &AdviseArgs) -> Option<(&'static str, String)> {
     match (&advice.command, &advice.looped) {
         (Some(command), None) => return Some(("Take these steps", command.clone())),
-        (Some(_), Some(_)) if advice.holds() => return map_command(args),
+        // A loop in a stability window holds without an advised step.
+        (_, Some(_)) if advice.holds() => return map_command(args),
         _ => {}
     }
     let remedies = advice.looped.as_ref().and_then(|looped| looped.remedies.as_ref());
