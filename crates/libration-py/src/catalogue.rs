@@ -62,9 +62,12 @@ pub(crate) fn _studies() -> Vec<(&'static str, &'static str)> {
     STUDIES.studies.iter().map(|study| (study.name(), study.question())).collect()
 }
 
+/// Accelerations of coordinates, and names of commands.
+type Commanded = (Vec<(String, String)>, Vec<String>);
+
 /// Returns the accelerations of a system with commands, and their names: of the parameters only whether there is a mass counts.
 #[pyfunction]
-pub(crate) fn _commanded(system: SystemRequest) -> PyResult<(Vec<(String, String)>, Vec<String>)> {
+pub(crate) fn _commanded(system: SystemRequest) -> PyResult<Commanded> {
     let (system, actuation) = request::system(&system)?;
     let definitions = Definitions::of_catalogue(system, actuation).commanded(actuation);
     Ok((definitions.accelerations, definitions.inputs))

@@ -126,11 +126,7 @@ fn a_thermostat_whose_trajectories_become_infinite_is_not_stable() {
     let unknown = ["is not known: measured trajectories of each stable method became infinite"];
     let hot = "--temperature 10 --friction 1 --dt 0.6 --steps 3200";
     check(&format!("--system duffing --q 1 {hot}"), &unknown, 1);
-    check(
-        &format!("--force -q0-q0^3 --temperature 5 --friction 1 --dt 1.5 --steps 3200"),
-        &unknown,
-        1,
-    );
+    check("--force -q0-q0^3 --temperature 5 --friction 1 --dt 1.5 --steps 3200", &unknown, 1);
     check(
         "--system oscillator --temperature 1 --friction 1 --dt 0.3 --steps 3200",
         &["is stable"],

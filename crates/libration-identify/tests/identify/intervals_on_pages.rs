@@ -27,7 +27,10 @@ fn lag_with_noise(decay: f64) -> Identification {
         details: true,
         ..quick()
     };
-    identified(&Recording::new(&times, &commands, &times, &responses).unwrap(), &request)
+    identified(
+        &Recording::new(&times, &commands, &times, &responses).expect("a recording"),
+        &request,
+    )
 }
 
 /// What a page says of intervals besides that there are none.
