@@ -224,6 +224,10 @@ pub(super) fn advise_loop<M: PlantModel>(
     advice.warnings.splice(0..0, loop_warnings(&one, &combined));
     let looped = LoopAdvice { budgets, fails_first, remedies, ..one.advice(request, combined)? };
     advice.verdict = looped.judged(&advice.tolerance, advice.chosen().is_some());
+    if matches!(&request.system, AdvisedSystem::Catalogued { system, .. } if !system.is_linear()) {
+        let part = "motions so large that the linearisation at the start does not hold";
+        advice.verdict = advice.verdict.without(part);
+    }
     let mut answer = describe_loop(&looped, &advice.tolerance);
     if !advice.integrators.is_empty() {
         answer += &format!(" {}", describe_integrator(&advice, request));

@@ -5,14 +5,14 @@ use libration_report::notation::{number, plural};
 use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 use libration_report::report;
+use libration_report::verdict::Outcome;
 
 use crate::interval::{exponent, interval};
 use crate::{EnergyReport, Estimate, PowerLaw, Run};
 
 /// The audit as an HTML page.
 pub fn page(audit: &EnergyReport) -> String {
-    let titles: Vec<&str> = audit.runs.iter().map(|run| run.title.as_str()).collect();
-    let mut page = Page { title: format!("Energies of {}", titles.join(", ")), ..Page::default() };
+    let mut page = Page { title: title(audit), ..Page::default() };
     page.answer.clone_from(&audit.answer);
     findings(&mut page, audit);
     runs(&mut page, audit);
@@ -27,6 +27,25 @@ pub fn page(audit: &EnergyReport) -> String {
         audit.libration_version
     );
     report::render_page(&page, &sub)
+}
+
+/// The verdict in a few words.
+fn title(audit: &EnergyReport) -> String {
+    let titles: Vec<&str> = audit.runs.iter().map(|run| run.title.as_str()).collect();
+    let energies = format!("energies of {}", titles.join(", "));
+    let kept = audit.tolerance_verdict.as_ref().map(|kept| kept.outcome);
+    match audit.verdict.outcome {
+        outcome if outcome.is_good() && kept == Some(Outcome::Exceeds) => {
+            format!("The {energies} exceed the tolerance")
+        }
+        outcome if outcome.is_good() && kept == Some(Outcome::Unknown) => {
+            format!("Whether the {energies} keep the tolerance is unknown")
+        }
+        Outcome::Unknown => format!("Whether the {energies} have a fault is unknown"),
+        Outcome::Fault => format!("The {energies} have a fault"),
+        outcome if outcome.is_good() => format!("The {energies} have no fault that was found"),
+        outcome => format!("The {energies}: {outcome}"),
+    }
 }
 
 fn findings(page: &mut Page, audit: &EnergyReport) {

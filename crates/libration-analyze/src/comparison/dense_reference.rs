@@ -174,12 +174,22 @@ impl DenseReference {
 
     /// Writes the state at a time into `out`. `hint` is the piece of the last time, and is moved on.
     pub(super) fn write(&self, time: f64, hint: &mut usize, out: &mut [f64]) {
+        let (piece, at) = self.place(time, hint);
+        self.nodes.interpolate(at, &piece.states, out);
+    }
+
+    /// The piece of a time, and the part of it that has as many as a piece has intervals between nodes.
+    pub(super) fn interval(&self, time: f64, hint: &mut usize) -> (usize, usize) {
+        let (_, at) = self.place(time, hint);
+        (*hint, (at * DEGREE as f64) as usize)
+    }
+
+    fn place(&self, time: f64, hint: &mut usize) -> (&Piece, f64) {
         while *hint + 1 < self.pieces.len() && time >= self.pieces[*hint + 1].start {
             *hint += 1;
         }
         let piece = &self.pieces[*hint];
-        let at = (time - piece.start) / piece.length;
-        self.nodes.interpolate(at, &piece.states, out);
+        (piece, (time - piece.start) / piece.length)
     }
 }
 

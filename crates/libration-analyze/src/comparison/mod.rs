@@ -37,7 +37,7 @@ pub struct ComparisonRequest {
     pub start: Vec<f64>,
     /// The time of the motion in s.
     pub horizon: f64,
-    /// The largest error of a state after any step, relative to the largest size of that state in the motion.
+    /// The largest error of a state after any step (of more than 4096, after as many and where the motion is fast), relative to the largest size of that state in the motion.
     pub tolerance: f64,
 }
 

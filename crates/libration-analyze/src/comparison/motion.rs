@@ -11,7 +11,8 @@ use crate::equation_analysis::step_order;
 use crate::program_stepper::ProgramStepper;
 use crate::reference_flow::Rates;
 
-/// Steps up to which errors are taken after each of them; of more, after as many that are evenly spread.
+/// Steps up to which errors are taken after each of them; of more, after as many that are evenly spread, and after those at the nodes of the
+/// reference, which are dense where the motion is fast.
 const MOST_SAMPLES: u64 = 4096;
 
 /// The fewest pieces of the reference of a motion whose forces have kinks or jumps.
@@ -135,20 +136,20 @@ impl<'r> Motion<'r> {
     ) -> bool {
         let horizon = self.request.horizon;
         let (mut hint, mut exact) = (0, vec![0.0; self.request.start.len()]);
+        let mut interval = (0, 0);
         self.follow(step, steps, |number, state| {
             // The samples before this step and up to it, in whole numbers.
             let sample = |number: u64| u128::from(number) * u128::from(MOST_SAMPLES);
-            let is_sample = steps <= MOST_SAMPLES
+            let is_even = steps <= MOST_SAMPLES
                 || sample(number) / u128::from(steps) > sample(number - 1) / u128::from(steps);
-            if is_sample {
-                let time = if number == steps {
-                    horizon
-                } else {
-                    horizon * (number as f64 / steps as f64)
-                };
+            let time =
+                if number == steps { horizon } else { horizon * (number as f64 / steps as f64) };
+            let now = self.reference.interval(time, &mut hint);
+            if is_even || now != interval {
                 self.reference.write(time, &mut hint, &mut exact);
                 show(state, &exact);
             }
+            interval = now;
         })
     }
 

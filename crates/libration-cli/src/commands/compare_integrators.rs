@@ -151,7 +151,7 @@ fn describe(comparison: &Comparison) -> String {
     }
     let _ = writeln!(
         text,
-        "Errors: the largest of a state after any step, relative to its largest size; the reference is right to {:.0e}.",
+        "Errors: the largest of a state after any of up to 4096 steps, and of more where the motion is fast; relative to its largest size; the reference is right to {:.0e}.",
         comparison.reference_error
     );
     text += "Predicted: from error constants and the integrator of the same order with the fewest stages.\n";

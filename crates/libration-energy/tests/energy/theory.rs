@@ -31,6 +31,7 @@ fn energies_of_verlet_oscillate_with_order_2_and_do_not_drift() {
     // The page has no empty panel.
     let page = page(&report);
     assert!(page.contains("standard deviation") && !page.contains("rate per second"));
+    assert!(page.contains("have no fault that was found</h1>"));
     // Verlet conserves ½v² + ½q²(1 − h²/4), so that from q = 1 the energy is ½ − h²/8·(1 − q²): its fluctuation is h²/8·std(q²) with
     // q² = ½ + ½cos 2t, of order 2 without a next term in q; frequencies shift by h²/24, which changes no size.
     for run in &report.runs {

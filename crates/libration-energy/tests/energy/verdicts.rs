@@ -1,6 +1,6 @@
 //! Verdicts: what the runs do not tell is unknown, and a stated tolerance is judged.
 
-use libration_energy::{EnergyReport, EnergyTrace, Requirement, audit};
+use libration_energy::{EnergyReport, EnergyTrace, Requirement, audit, page};
 use libration_report::verdict::Outcome;
 
 use crate::programs::{Noise, oscillator, rk4, trace, verlet};
@@ -56,6 +56,8 @@ fn a_spread_that_does_not_fall_with_the_step_is_never_no_fault() {
             report.answer
         );
         assert!(!report.holds() && !report.answer.contains("no fault"), "{}", report.answer);
+        let title = ["have a fault is unknown</h1>", "have a fault</h1>"];
+        assert!(title.iter().any(|title| page(&report).contains(title)));
     }
 }
 
@@ -73,6 +75,7 @@ fn runs_that_exceed_the_tolerance_are_told_by_how_much() {
         (1e-3, "2 of 3 runs deviate by 2.5 to 10 times"),
     ] {
         let report = tolerated(&traces, tolerance);
+        assert!(page(&report).contains("exceed the tolerance</h1>"));
         let Some(verdict) = &report.tolerance_verdict else { panic!("no verdict") };
         assert_eq!(verdict.outcome, Outcome::Exceeds, "{tolerance}");
         assert!(verdict.evidence.contains(words), "{tolerance}: {}", verdict.evidence);
