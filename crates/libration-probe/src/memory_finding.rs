@@ -143,12 +143,12 @@ pub(crate) fn of_measured(subject: &Subject, delays: &[DelayAudit], found: &mut 
         }
     }
     let is_known = found.iter().any(|finding| finding.kind == NotReproducible);
-    if let Some(StrayResults { count, calls }) = subject.stray_results.filter(|_| !is_known) {
-        let (results, have) = if count == 1 { ("result", "has") } else { ("results", "have") };
+    if let Some(StrayResults { strays, calls }) = subject.stray_results.filter(|_| !is_known) {
+        let (results, have) = if strays == 1 { ("result", "has") } else { ("results", "have") };
         found.push(Finding::fault(
             NotReproducible,
             format!(
-                "{count} {results} of {calls} calls {have} no cause in this call or those before: the step, or a wrapper, replaces some of them by itself"
+                "{strays} {results} of {calls} calls {have} no cause in this call or those before: the step, or a wrapper, replaces some of them by itself"
             ),
         ));
     }

@@ -93,7 +93,7 @@ pub struct MeasuredDelay {
 #[serde(deny_unknown_fields)]
 pub struct StrayResults {
     /// The number of these results.
-    pub count: usize,
+    pub strays: usize,
     /// The number of calls.
     pub calls: usize,
 }

@@ -108,8 +108,8 @@ def gymnasium_host(
     if repeated > 1:
         notes.append(f"a step is {repeated} steps of the environment")
     simulation.settle()
-    names = _unexamined(simulation, wrappers, left_out)
-    not_examined, late_inputs, old_observation, strays = _delays(simulation, start, vector, timestep, names)
+    parts = _unexamined(simulation, wrappers, left_out)
+    not_examined, late_inputs, old_observation, strays = _delays(simulation, start, vector, timestep, parts)
     if simulation.is_single:
         notes.append("the environment keeps its state in float32: differences have about three digits")
     if angles:

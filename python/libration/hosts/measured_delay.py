@@ -10,7 +10,7 @@ import numpy as np
 class StrayResults(NamedTuple):
     """Results that differ from those of all other calls with the same state and action, after no change of either."""
 
-    count: int
+    strays: int
     """The number of these results."""
     calls: int
     """The number of calls."""
