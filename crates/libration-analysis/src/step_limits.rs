@@ -40,7 +40,7 @@ impl StepLimits {
         StepLimits::with_exact(method.into(), SHORT)
     }
 
-    /// Those from exact polynomials on damped oscillators up to `most` forces of a step.
+    /// The limits, from exact polynomials on damped oscillators up to `most` forces of a step.
     fn with_exact(method: AnyMethod, most: usize) -> Self {
         let searches = match method {
             AnyMethod::Explicit(method) => method.evaluations() > most,

@@ -40,7 +40,7 @@ pub fn audit(traces: &[EnergyTrace], requirement: Requirement) -> Result<EnergyR
     let drift_law = law(&|run| run.drifts().then_some(run.drift_rate));
     let walk_law = law(&|run| run.present_walk().map(|walk| walk.diffusion));
     let walk_cause = WalkCause::of(&runs, walk_law);
-    // What a drift or an oscillation explains is theirs.
+    // A drift or an oscillation that does not fall with the step is the same change.
     let is_explained = oscillation_cause == OscillationCause::StepIndependent
         || drift_cause == DriftCause::StepIndependent;
     let slow = SlowChange::of(&sorted, &runs).filter(|_| !is_explained);

@@ -161,21 +161,10 @@ impl Basis {
         innovations: &[f64],
         columns: impl Iterator<Item = Vec<f64>>,
     ) -> Option<f64> {
-        let mut basis = self.clone();
         let power = innovations.iter().map(|x| x * x).sum::<f64>() / innovations.len() as f64;
-        let (mut statistic, mut count) = (0.0, 0);
-        for column in columns {
-            let Some(left) = basis.left(column) else { continue };
-            let share: f64 = left.iter().zip(innovations).map(|(x, y)| x * y).sum();
-            statistic += share * share / power;
-            count += 1;
-            basis.0.push(left);
-        }
-        (count > 0 && power > 0.0).then(|| chi_squared_tail(statistic, f64::from(count)))
+        self.tail(innovations, columns, |_| power)
     }
-}
 
-impl Basis {
     /// The same where the power of innovations may be another one at each of them, as random dead times make it behind changes of the
     /// command (H. White, Econometrica 48, 1980).
     fn robust_probability(
@@ -183,13 +172,22 @@ impl Basis {
         innovations: &[f64],
         columns: impl Iterator<Item = Vec<f64>>,
     ) -> Option<f64> {
+        self.tail(innovations, columns, |products| products.iter().map(|x| x * x).sum())
+    }
+
+    /// The probability of a sum of squares, one for each column: of its products with the innovations, in units of their `power`.
+    fn tail(
+        &self,
+        innovations: &[f64],
+        columns: impl Iterator<Item = Vec<f64>>,
+        power: impl Fn(&[f64]) -> f64,
+    ) -> Option<f64> {
         let mut basis = self.clone();
         let (mut statistic, mut count) = (0.0, 0);
         for column in columns {
             let Some(left) = basis.left(column) else { continue };
-            let products = left.iter().zip(innovations).map(|(x, y)| x * y);
-            let (share, power) =
-                products.fold((0.0, 0.0), |(sum, squares), p| (sum + p, squares + p * p));
+            let products: Vec<f64> = left.iter().zip(innovations).map(|(x, y)| x * y).collect();
+            let (share, power) = (products.iter().sum::<f64>(), power(&products));
             if power > 0.0 {
                 statistic += share * share / power;
                 count += 1;
@@ -211,7 +209,7 @@ fn length(column: &[f64]) -> f64 {
 }
 
 /// The changes of the innovations by each parameter of a fit, to both sides: the likelihood has a kink where an arrival meets a sample.
-/// What they span, and each of them.
+/// The space that they span, and each of them.
 fn nuisances(
     estimate: &Estimate<'_>,
     window: Window<'_>,

@@ -135,7 +135,7 @@ impl Trajectory {
 
     /// The change from the start to the end, and whether none of equal windows takes back a part of it.
     ///
-    /// Of a change in one direction the ends are half a window beyond the first and the last average, by an exponential through three.
+    /// The ends of a change in one direction are half a window beyond the first and the last average, by an exponential through three.
     pub(crate) fn change(&self) -> (f64, bool) {
         let averages = self.averages();
         let [first, .., last] = averages;

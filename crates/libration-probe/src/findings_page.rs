@@ -28,7 +28,7 @@ pub(crate) fn findings(page: &mut Page, audit: &ProbeReport) {
     limits(page, audit);
 }
 
-/// What the audit did not examine.
+/// The parts that the audit did not examine.
 fn limits(page: &mut Page, audit: &ProbeReport) {
     let limits = audit.verdict.limits();
     if !limits.is_empty() {

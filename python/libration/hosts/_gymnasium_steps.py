@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 CALLS = 64
 # Changes of one call from which its effect on later ones shows, also of wrappers that draw random numbers.
 IMPULSES = 16
-# Calls without a change, in which no result differs unless by itself.
+# Calls without a change: a result that differs among them does so by itself.
 CONTROLS = 2 * CALLS * IMPULSES
 _PLAIN = (numbers.Number, str, bytes, np.ndarray, np.generic, tuple, list, dict, type(None))
 _FIXED = (numbers.Number, str, bytes, np.generic, type(None))

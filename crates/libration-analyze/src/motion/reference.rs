@@ -13,7 +13,8 @@ use crate::AnalyzeError;
 /// second, whose own error is that of the first or less.
 const TOLERANCES: [f64; 2] = [1e-9, 1e-12];
 
-/// Operations of the first reference; the second takes up to twice as many. Together less than a second.
+/// Operations of the first reference. The same with samples where it is fast takes up to three times as many, the more accurate one four
+/// times.
 const MOST_OPERATIONS: u64 = 1 << 28;
 
 /// The largest number of degrees of freedom for exponentials.

@@ -134,7 +134,7 @@ fn describe(report: &GainReport) -> String {
         "\n{:<24} {:>12} {:>12} {:>12} {:>10} {:>12} {:>10} {:>12} {:>12}",
         "joint", "inertia", "kp", "kv", "wh", "largest wh", "damping", "largest kp", "largest kv"
     );
-    // Of a measured step the limits are those of servos, whose gains are not those of joints.
+    // The limits of a measured step are those of servos, whose gains are not those of joints.
     let own_limit = |x: f64| if report.measured.is_some() { f64::NAN } else { x };
     for joint in &report.joints {
         let _ = writeln!(

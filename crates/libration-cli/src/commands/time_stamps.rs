@@ -23,7 +23,7 @@ pub(super) fn read<T>(
     make(stamps).map_err(|error| wrong(path, flag, &error.to_string()))
 }
 
-/// What is to be said of a record that a loop replays.
+/// Notes on a record that a loop replays.
 #[derive(Default)]
 pub(super) struct RecordNotes {
     /// The warnings about the file.

@@ -66,6 +66,10 @@ fn a_start_at_rest_has_the_verdict_of_the_step_and_no_motion() {
         &["is unstable on pendulum", rests],
         1,
     );
+    // Deviations from rest under random steps count by their second moments.
+    let random =
+        "--system pendulum --q 0 --integrator velocity-verlet --dt 0.6 --jitter gaussian:0.3";
+    check(random, &["is unstable on pendulum", "second moments grow by"], 1);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("rest.toml");
     for (rate, said, code) in
@@ -87,6 +91,8 @@ fn a_step_that_some_clocks_of_an_ensemble_make_unstable_is_unstable() {
     check(&format!("{verlet} 0.632"), &["is unstable", "steps of a clock that are 40 % longer"], 1);
     check(&format!("{verlet} 0.46"), &["is unstable", "steps of a clock that are 40 % longer"], 1);
     check(&format!("{verlet} 0.45"), &["is stable"], 0);
+    // Nine clocks are not all of them, and the verdict says so.
+    check(&format!("{verlet} 0.45 --json"), &["clocks between and beyond nine of the ensemble"], 0);
     // The ends of a uniform law with a standard deviation of 0.2 are ±0.3464, and 0.6325 s/1.3464 is 0.4698 s.
     let uniform = "--system oscillator --integrator velocity-verlet --skew uniform:0.2 --dt";
     check(&format!("{uniform} 0.471"), &["is unstable", "34.6 % longer"], 1);

@@ -35,7 +35,7 @@ pub struct Verification {
     pub manifest: Manifest,
     /// The remaining flaws.
     pub flaws: Vec<Flaw>,
-    /// What was not compared with anything, each in words.
+    /// The parts that were not compared with anything, each in words.
     pub not_examined: Vec<String>,
 }
 
@@ -102,7 +102,7 @@ pub fn verify(
     Ok(Verification { manifest, flaws, not_examined })
 }
 
-/// What a recomputation alone compares.
+/// The parts that a recomputation alone compares.
 fn only_recomputed(format: DataFormat) -> Vec<String> {
     let counts = match format {
         DataFormat::Minari => "`ends`, `episodes` and `actions`",

@@ -33,7 +33,7 @@ fn lag_with_noise(decay: f64) -> Identification {
     )
 }
 
-/// What a page says of intervals besides that there are none.
+/// The sentences of a page about intervals, besides the one that there are none.
 const OF_INTERVALS: [&str; 4] =
     ["95 % interval", "95 % region", "confirm the intervals", "Fisher's information"];
 

@@ -80,7 +80,7 @@ fn exact_radius(report: &GainReport) -> Option<f64> {
     all?.into_iter().reduce(f64::max)
 }
 
-/// What is used of the largest gain of each joint or servo.
+/// The used part of the largest gain of each joint or servo.
 pub(super) fn bars(report: &GainReport) -> Vec<Bar> {
     let bar = |gain: &LimitedGain<'_>| Bar {
         name: gain.of.to_owned(),

@@ -55,7 +55,7 @@ pub fn gains_page(report: &GainReport) -> String {
         "largest kp",
         "largest kv",
     ];
-    // Of a measured step each servo has limits, in the next table.
+    // The limits of a measured step are those of each servo, in the next table.
     let count = if is_measured { columns.len() - 2 } else { columns.len() };
     let mut table = Table::new("joints", &columns[..count]);
     for joint in &report.joints {
