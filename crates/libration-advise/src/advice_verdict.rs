@@ -12,6 +12,8 @@ use super::advice::{Advice, LoopAdvice, ToleranceAnswer};
 pub enum Doubt {
     /// The record has another rate than the loop.
     OtherClock,
+    /// The record has too few intervals.
+    ShortRecord,
     /// The measured latencies change over time.
     ChangingLatency,
 }
@@ -23,6 +25,10 @@ impl Doubt {
             Doubt::OtherClock => [
                 "the record is not the clock of this loop",
                 "For a loop that has the clock of the record",
+            ],
+            Doubt::ShortRecord => [
+                "the record has too few intervals to show how the clock jitters",
+                "For a clock that repeats the record",
             ],
             Doubt::ChangingLatency => {
                 ["the latencies change over time", "For a constant latency of this size"]

@@ -52,7 +52,7 @@ fn judged(found: &Identification, dependence: &Dependence, context: &Context<'_>
             return Verdict::new(
                 Outcome::Fault,
                 format!(
-                    "the response does not depend on this command, which explains at most {} % of its variance",
+                    "this command explains at most {} % of the variance of the response: nearly all of it comes from elsewhere",
                     number(100.0 * share, 2)
                 ),
             );

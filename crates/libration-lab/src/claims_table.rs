@@ -41,7 +41,7 @@ fn score(results: &Results, chapters: &[Chapter]) -> String {
         .into_iter()
         .filter(|&v| v != ClaimVerdict::Undecided || count(v) > 0)
         .map(|v| {
-            let (class, name) = verdict_label(v);
+            let (class, name) = (class(v), v.name());
             format!(
                 "<div><strong>{}</strong><span class=\"v {class}\">{name}</span></div>",
                 count(v)
@@ -140,14 +140,13 @@ fn claims(chapters: &[Chapter]) -> impl Iterator<Item = (&Chapter, &Claim)> {
     chapters.iter().flat_map(|chapter| chapter.record.claims.iter().map(move |c| (chapter, c)))
 }
 
-/// Returns the CSS class and the name of a verdict.
-fn verdict_label(verdict: ClaimVerdict) -> (&'static str, &'static str) {
+/// Returns the CSS class of a verdict.
+fn class(verdict: ClaimVerdict) -> &'static str {
     match verdict {
-        ClaimVerdict::Confirmed => ("ok", "confirmed"),
-        ClaimVerdict::Conditional => ("cond", "conditional"),
-        ClaimVerdict::Refuted => ("bad", "refuted"),
-        ClaimVerdict::NotReproducible => ("open", "not reproducible"),
-        ClaimVerdict::Undecided => ("bad", "undecided"),
+        ClaimVerdict::Confirmed => "ok",
+        ClaimVerdict::Conditional => "cond",
+        ClaimVerdict::Refuted | ClaimVerdict::Undecided => "bad",
+        ClaimVerdict::NotReproducible => "open",
     }
 }
 
@@ -177,7 +176,7 @@ fn figures(chapters: &[Chapter], claim: &Claim) -> String {
 }
 
 fn row(chapter: &Chapter, claim: &Claim, figures: &str) -> String {
-    let (class, verdict) = verdict_label(claim.verdict);
+    let (class, verdict) = (class(claim.verdict), claim.verdict.name());
     let condition = claim
         .condition
         .as_deref()

@@ -17,6 +17,8 @@ mod system_studies;
 mod unjudged_claims;
 
 pub use report_check::{CheckedStudy, ReportCheck};
-pub use results_comparison::{Change, ComparedResults, Condition, NOISE, ResultsComparison};
+pub use results_comparison::{
+    Change, ClaimChange, ComparedResults, Condition, NOISE, ResultsComparison,
+};
 pub use studies::STUDIES;
 pub use system_studies::{NotApplicable, SystemStudies};

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use libration_data::{read_text_bounded, read_text_regular};
 use libration_report::Record;
-use libration_report::record::{Agreement, Finding};
+use libration_report::record::{Agreement, Claim, ClaimVerdict, Finding};
 use serde::{Deserialize, Serialize};
 
 use crate::results::SCHEMA;
@@ -28,6 +28,8 @@ pub struct ResultsComparison {
     pub changed: Vec<Change>,
     /// Findings of the first run that theory predicted, and that the second run should have as well.
     pub lost: Vec<String>,
+    /// Claims whose verdicts differ.
+    pub claims: Vec<ClaimChange>,
     /// Findings of the first run alone.
     pub only_before: Vec<String>,
     /// Findings of the second run alone.
@@ -64,6 +66,22 @@ pub struct Change {
     pub tolerance: Option<f64>,
     /// Verdicts of both runs.
     pub verdicts: [Agreement; 2],
+    /// Unit of the first measurement, if it is another one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unit_before: Option<String>,
+}
+
+/// A claim whose verdict differs, or that one run alone has.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ClaimChange {
+    /// Its number in the ledger.
+    pub id: String,
+    /// The verdict of the first run; none if it has none.
+    pub before: Option<ClaimVerdict>,
+    /// The verdict of the second run; none if it has none.
+    pub after: Option<ClaimVerdict>,
+    /// Whether it was certain, and the second run, which should have it, has another or none.
+    pub is_lost: bool,
 }
 
 /// What a comparison needs of a file with results.
@@ -114,19 +132,27 @@ impl ComparedResults {
             .map_err(|error| format!("no results of `libration lab`: {error}"))
     }
 
-    /// Whether these results should have a finding that others have: with the same settings but for the studies, and its study among them.
-    fn should_have(&self, other: &Self, finding: &Finding) -> bool {
+    /// Whether these results should have a finding or claim of a study that others have: with the same settings but for the studies, and this
+    /// study among them.
+    fn should_have(&self, other: &Self, id: &str) -> bool {
         let settings = |results: &Self| {
             let mut config = results.config.clone();
             config.remove("studies");
             config
         };
-        let study = finding.id.split('.').next().unwrap_or_default();
+        let study = id.split('.').next().unwrap_or_default();
         let chosen = self.config.get("studies").and_then(serde_json::Value::as_array);
         let is_chosen = chosen.is_none_or(|names| {
             names.is_empty() || names.iter().any(|name| name.as_str() == Some(study))
         });
         is_chosen && settings(self) == settings(other)
+    }
+
+    /// The claims, each with the name of its study.
+    fn claims(&self) -> impl Iterator<Item = (&str, &Claim)> {
+        self.studies
+            .iter()
+            .flat_map(|record| record.claims.iter().map(|claim| (record.name.as_str(), claim)))
     }
 
     fn findings(&self) -> impl Iterator<Item = &Finding> {
@@ -156,15 +182,25 @@ impl ResultsComparison {
             improvements: Vec::new(),
             changed: Vec::new(),
             lost: Vec::new(),
+            claims: claim_changes(before, after),
             only_before: Vec::new(),
             only_after: Vec::new(),
         };
         for first in before.findings() {
             match known.get(first.id.as_str()) {
-                Some(second) => comparison.add(first, second, noise),
+                Some(second) => {
+                    let is_unjudged = verdict(first) == Agreement::Agrees
+                        && verdict(second) == Agreement::Measured
+                        && second.undecided.is_none();
+                    match is_unjudged && after.should_have(before, &first.id) {
+                        true => comparison.regressions.push(change(Some(first), second)),
+                        false => comparison.add(first, second, noise),
+                    }
+                }
                 None => {
                     comparison.only_before.push(first.id.clone());
-                    if first.verdict != Agreement::Measured && after.should_have(before, first) {
+                    if first.verdict != Agreement::Measured && after.should_have(before, &first.id)
+                    {
                         comparison.lost.push(first.id.clone());
                     }
                 }
@@ -221,7 +257,36 @@ fn change(first: Option<&Finding>, second: &Finding) -> Change {
         predicted: second.predicted,
         tolerance: second.tolerance.tolerance,
         verdicts: [first.map_or(Agreement::Measured, verdict), verdict(second)],
+        unit_before: first.map(|first| first.unit.clone()).filter(|unit| *unit != second.unit),
     }
+}
+
+/// The claims that one run alone has or judges otherwise.
+fn claim_changes(before: &ComparedResults, after: &ComparedResults) -> Vec<ClaimChange> {
+    let old: HashMap<&str, &Claim> =
+        before.claims().map(|(_, claim)| (claim.id.as_str(), claim)).collect();
+    let new: HashMap<&str, &Claim> =
+        after.claims().map(|(_, claim)| (claim.id.as_str(), claim)).collect();
+    let is_certain = |verdict| !matches!(verdict, ClaimVerdict::Undecided);
+    let changed = before.claims().filter_map(|(study, claim)| {
+        let second = new.get(claim.id.as_str()).map(|claim| claim.verdict);
+        let is_lost = is_certain(claim.verdict)
+            && match second {
+                // A certain verdict that another one contradicts, under the same settings.
+                Some(_) => true,
+                None => after.should_have(before, study),
+            };
+        let (id, first) = (claim.id.clone(), Some(claim.verdict));
+        (second != first).then_some(ClaimChange { id, before: first, after: second, is_lost })
+    });
+    let added = after.claims().filter(|(_, claim)| !old.contains_key(claim.id.as_str()));
+    let added = added.map(|(_, claim)| ClaimChange {
+        id: claim.id.clone(),
+        before: None,
+        after: Some(claim.verdict),
+        is_lost: false,
+    });
+    changed.chain(added).collect()
 }
 
 /// The verdict that the numbers of a finding give, whatever its file says. Files have no infinities, of which the file alone knows.
@@ -237,12 +302,14 @@ fn verdict(own: &Finding) -> Agreement {
     }
 }
 
-/// Whether the second agrees with theory by a wider tolerance alone.
+/// Whether the second agrees with theory by a wider tolerance, or a weaker relation, alone.
 fn is_loosened(first: &Finding, second: &Finding) -> bool {
     let [before, after] = [first, second].map(|finding| finding.tolerance.tolerance);
     let is_wider = before.zip(after).is_some_and(|(before, after)| after > before);
-    let holds = |predicted| second.relation.holds(predicted, second.measured, before);
-    is_wider && second.predicted.is_some_and(|predicted| !holds(predicted))
+    let holds = |predicted| first.relation.holds(predicted, second.measured, before);
+    (is_wider || first.relation != second.relation)
+        && first.unit == second.unit
+        && second.predicted.is_some_and(|predicted| !holds(predicted))
 }
 
 /// Whether measurements and predictions differ by no more than the tolerances of both.

@@ -36,9 +36,8 @@ impl<A: Serialize> AdviceOutput<A> {
         compute: impl FnOnce(&Work<'_>) -> Result<A, AdviseError>,
     ) -> Result<(), Failure> {
         let file = ResultFile::create("--page", args.page.as_deref())?;
-        let is_doubtful = notes.other_clock.is_some();
-        let log_warnings: Vec<String> =
-            notes.warnings.into_iter().chain(notes.other_clock).collect();
+        let (doubt, warning) = notes.doubt.unzip();
+        let log_warnings: Vec<String> = notes.warnings.into_iter().chain(warning).collect();
         let log = args.jitter_file.as_deref();
         let log_warnings =
             log.map_or_else(Vec::new, |path| log_warnings::warn(path, &log_warnings));
@@ -49,8 +48,8 @@ impl<A: Serialize> AdviceOutput<A> {
             terminal::warn(&format!("`{}` (--page) is not written", page.display()));
         }
         let mut advice = advice.map_err(failure)?;
-        if is_doubtful {
-            (self.doubt)(&mut advice, Doubt::OtherClock);
+        if let Some(doubt) = doubt {
+            (self.doubt)(&mut advice, doubt);
         }
         // The text leaves out what is on stderr.
         let text = match args.verbose {

@@ -60,8 +60,8 @@ pub(super) fn of_clock(
     is_changing: bool,
     quiet: bool,
 ) -> Result<ClockAdvice, Failure> {
-    let doubt = |notes: &RecordNotes| match notes.other_clock {
-        Some(_) => Some(Doubt::OtherClock),
+    let doubt = |notes: &RecordNotes| match notes.doubt {
+        Some((doubt, _)) => Some(doubt),
         None => is_changing.then_some(Doubt::ChangingLatency),
     };
     // `clock` prints the other warnings about its file itself.
@@ -71,7 +71,7 @@ pub(super) fn of_clock(
         let mut advice = advice?;
         doubt(&notes).into_iter().for_each(|doubt| advice.doubt(doubt));
         let linear::LinearAdvice { answer, verdict, mut warnings, budgets, .. } = advice;
-        warnings.splice(0..0, notes.other_clock);
+        warnings.splice(0..0, notes.doubt.map(|(_, warning)| warning));
         return Ok(ClockAdvice { answer, verdict, warnings, budgets });
     }
     let (mut request, notes) = load_request(args, quiet)?;
@@ -79,7 +79,7 @@ pub(super) fn of_clock(
     let mut advice = computed(quiet, |work| advise::advise(work, &request))?;
     doubt(&notes).into_iter().for_each(|doubt| advice.doubt(doubt));
     let Advice { answer, verdict, mut warnings, looped, .. } = advice;
-    warnings.splice(0..0, notes.other_clock);
+    warnings.splice(0..0, notes.doubt.map(|(_, warning)| warning));
     let budgets = looped.map_or_else(Vec::new, |looped| looped.budgets);
     Ok(ClockAdvice { answer, verdict, warnings, budgets })
 }

@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use libration_lab::{Change, ComparedResults, ResultsComparison};
+use libration_lab::{Change, ClaimChange, ComparedResults, ResultsComparison};
 use libration_report::printable::printable;
-use libration_report::record::Agreement;
+use libration_report::record::{Agreement, ClaimVerdict};
 use serde_json::json;
 
 use super::digits::{exact, short};
@@ -38,7 +38,12 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
         counted(comparison.regressions.len(), "became worse"),
         counted(comparison.lost.len(), "of the first run missing in the second"),
     ];
-    let failures: Vec<String> = worse.into_iter().chain(lost).collect();
+    let refuted = match comparison.claims.iter().filter(|claim| claim.is_lost).count() {
+        0 => None,
+        1 => Some("a claim lost its verdict".to_owned()),
+        n => Some(format!("{n} claims lost their verdicts")),
+    };
+    let failures: Vec<String> = worse.into_iter().chain(lost).chain(refuted).collect();
     if failures.is_empty() { Ok(()) } else { Err(Failure::run(failures.join(", "))) }
 }
 
@@ -72,6 +77,13 @@ fn describe(comparison: &ResultsComparison) -> String {
             let _ = writeln!(text, "  {}\n    {}", printable(&change.id), printable(&sentence));
         }
     }
+    if !comparison.claims.is_empty() {
+        text += "\nclaims\n";
+    }
+    for ClaimChange { id, before, after, .. } in &comparison.claims {
+        let words = |verdict: &Option<ClaimVerdict>| verdict.map_or("none", ClaimVerdict::name);
+        let _ = writeln!(text, "  {}: {}, then {}", printable(id), words(before), words(after));
+    }
     for (title, ids) in [("first", &comparison.only_before), ("second", &comparison.only_after)] {
         if !ids.is_empty() {
             let _ = writeln!(text, "\nonly in the {title}: {}", printable(&listed(ids)));
@@ -82,7 +94,8 @@ fn describe(comparison: &ResultsComparison) -> String {
 
 fn sentence(change: &Change) -> String {
     let Change { before, after, text, .. } = change;
-    let unit = if change.unit == "1" { String::new() } else { format!(" {}", change.unit) };
+    let shown = |unit: &str| if unit == "1" { String::new() } else { format!(" {unit}") };
+    let unit = shown(&change.unit);
     let [first, second] = change.verdicts;
     if second == Agreement::Disagrees {
         let number = |x: Option<f64>| x.map_or_else(|| "none".to_owned(), exact);
@@ -97,10 +110,14 @@ fn sentence(change: &Change) -> String {
             "{before}: measured {after}{unit}, predicted {predicted}, tolerance {tolerance}; {text}"
         );
     }
-    let of =
-        |x: f64| if x.is_nan() { "no number".to_owned() } else { format!("{}{unit}", short(x)) };
+    let unit_before = change.unit_before.as_deref().map_or_else(|| unit.clone(), shown);
+    let of = |x: f64, unit: &str| {
+        if x.is_nan() { "no number".to_owned() } else { format!("{}{unit}", short(x)) }
+    };
     let ratio = after / before;
-    let ratio = if ratio > 0.0 && ratio.is_finite() {
+    let ratio = if change.unit_before.is_some() {
+        ", which are not compared".to_owned()
+    } else if ratio > 0.0 && ratio.is_finite() {
         format!(", {} times", short(ratio))
     } else {
         String::new()
@@ -113,7 +130,7 @@ fn sentence(change: &Change) -> String {
         (Agreement::Measured, Agreement::Agrees) => "has a prediction now: ",
         _ => "",
     };
-    format!("{verdict}{}, then {}{ratio}; {text}", of(*before), of(*after))
+    format!("{verdict}{}, then {}{ratio}; {text}", of(*before, &unit_before), of(*after, &unit))
 }
 
 /// Identifiers; of many the number for each study.

@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use libration::control::clock::RecordedError;
+use libration_advise::Doubt;
 use libration_logs::{StampOptions, TimeStamps, read_stamps_and_warnings};
 use libration_report::notation::number;
 
@@ -28,8 +29,8 @@ pub(super) fn read<T>(
 pub(super) struct RecordNotes {
     /// The warnings about the file.
     pub(super) warnings: Vec<String>,
-    /// The warning that the record is not the clock of the loop, if it is not.
-    pub(super) other_clock: Option<String>,
+    /// Why the record decides nothing, with its warning.
+    pub(super) doubt: Option<(Doubt, String)>,
 }
 
 /// Reads the time stamps of the file of `--jitter-file`, whose mean interval over the period lies in `range`, and converts them.
@@ -63,22 +64,36 @@ pub(super) fn read_for_period<T>(
         )));
     }
     let made = make(&seconds).map_err(|error| fails(&error.to_string()))?;
-    Ok((made, RecordNotes { warnings, other_clock: other_clock(period, mean) }))
+    let doubt = other_clock(period, mean).or_else(|| short_record(seconds.len()));
+    Ok((made, RecordNotes { warnings, doubt }))
 }
 
 /// Largest relative difference of the mean interval of the clock of a loop from its period.
 const OTHER_RATE: f64 = 0.05;
 
 /// A warning if the mean interval of a record is not the period of a loop, both in s.
-fn other_clock(period: f64, mean: f64) -> Option<String> {
+fn other_clock(period: f64, mean: f64) -> Option<(Doubt, String)> {
     let is_other = (mean / period - 1.0).abs() > OTHER_RATE;
     is_other.then(|| {
-        format!(
+        let warning = format!(
             "the mean interval of the record is {}, the period of the loop {}: the record is not the clock of this loop; \
              help: choose a --topic with one message per period",
             time(mean),
             time(period)
-        )
+        );
+        (Doubt::OtherClock, warning)
+    })
+}
+
+/// Intervals below which a record does not show how a clock jitters: the rms of twenty is known within a sixth.
+const FEW: usize = 20;
+
+/// A warning if a record has few intervals.
+fn short_record(stamps: usize) -> Option<(Doubt, String)> {
+    let intervals = stamps.saturating_sub(1);
+    (intervals < FEW).then(|| {
+        let warning = format!("the record has {intervals} intervals; expected at least {FEW}");
+        (Doubt::ShortRecord, warning)
     })
 }
 

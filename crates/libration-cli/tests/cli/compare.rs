@@ -133,17 +133,18 @@ fn another_verdict_prediction_or_unit_is_not_the_same_finding() {
         fs::write(&second, all.to_string()).unwrap();
     };
     let paths = [first.to_str().unwrap(), second.to_str().unwrap()];
-    for (key, value, title) in [
+    for (key, value, title, code) in [
+        ("verdict", json!("measured"), "worse\n  drift.largest\n    no longer has a prediction", 1),
         (
-            "verdict",
-            json!("measured"),
-            "different\n  drift.largest\n    no longer has a prediction",
+            "unit",
+            json!("m"),
+            "different\n  drift.largest\n    1, then 1 m, which are not compared",
+            0,
         ),
-        ("unit", json!("m"), "different\n  drift.largest"),
-        ("relation", json!("at-most"), "different\n  drift.largest"),
+        ("relation", json!("at-most"), "different\n  drift.largest", 0),
     ] {
         changed(key, value);
-        let said = compared(&paths, 0);
+        let said = compared(&paths, code);
         assert!(said.contains(title) && said.contains("2 findings are the same"), "{key}: {said}");
     }
     changed("predicted", json!(5.0));
@@ -164,6 +165,59 @@ fn another_verdict_prediction_or_unit_is_not_the_same_finding() {
         "2 findings became worse, a finding of the first run missing in the second",
     ] {
         assert!(said.contains(part), "{part}: {said}");
+    }
+}
+
+#[test]
+fn a_weaker_relation_does_not_make_a_measurement_agree() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = results(folder.path(), "first", [1.0, 1e9, 0.5], "agrees");
+    let text = fs::read_to_string(first.join("results.json")).unwrap();
+    let second = folder.path().join("second.json");
+    for (relation, measured, code) in
+        [("at-least", 1e9, 1), ("at-most", -1e9, 1), ("at-least", 1.0, 0), ("equal", 1.0, 0)]
+    {
+        let mut all: Value = serde_json::from_str(&text).unwrap();
+        all["studies"][0]["findings"][0]["relation"] = json!(relation);
+        all["studies"][0]["findings"][0]["measured"] = json!(measured);
+        fs::write(&second, all.to_string()).unwrap();
+        let said = compared(&[first.to_str().unwrap(), second.to_str().unwrap()], code);
+        assert_eq!(said.contains("now disagrees"), code == 1, "{relation} {measured}: {said}");
+    }
+}
+
+#[test]
+fn claims_that_lose_their_verdict_fail_the_comparison() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = results(folder.path(), "first", [1.0, 1e9, 0.5], "agrees");
+    let text = fs::read_to_string(first.join("results.json")).unwrap();
+    let claim = |verdict: &str| {
+        json!([{
+            "id": "c1", "source": "2.1", "text": "?", "verdict": verdict, "condition": null, "because": "",
+            "findings": ["drift.largest"]
+        }])
+    };
+    let written = |name: &str, claims: Value| {
+        let mut all: Value = serde_json::from_str(&text).unwrap();
+        all["studies"][0]["claims"] = claims;
+        let file = folder.path().join(name);
+        fs::write(&file, all.to_string()).unwrap();
+        file.to_str().unwrap().to_owned()
+    };
+    let confirmed = written("confirmed.json", claim("confirmed"));
+    for (claims, line, code) in [
+        (claim("refuted"), "c1: confirmed, then refuted", 1),
+        (claim("undecided"), "c1: confirmed, then undecided", 1),
+        (json!([]), "c1: confirmed, then none", 1),
+        (claim("confirmed"), "", 0),
+    ] {
+        let other = written("other.json", claims);
+        let said = compared(&[&confirmed, &other], code);
+        assert!(said.contains(line), "{said}");
+        assert_eq!(said.contains("a claim lost its verdict"), code == 1, "{said}");
+        // The other way round something became certain or was already.
+        let code = if line.ends_with("refuted") { 1 } else { 0 };
+        compared(&[&other, &confirmed], code);
     }
 }
 

@@ -53,6 +53,25 @@ fn each_command_warns_of_a_guessed_unit() {
 }
 
 #[test]
+fn a_record_of_a_few_intervals_decides_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("short.csv");
+    for (stamps, code) in [(3, 1), (20, 1), (21, 0)] {
+        let rows: String = (0..stamps).map(|i| format!("{}\n", 0.01 * f64::from(i))).collect();
+        fs::write(&log, format!("t\n{rows}")).unwrap();
+        let path = log.to_str().unwrap();
+        let words = ["10,2", "--period", "0.01", "--jitter-file", path, "--time-unit", "s"];
+        let found = libration(&[&ADVISE[..], &words].concat()).code(code);
+        let few = format!("the record has {} intervals; expected at least 20", stamps - 1);
+        let doubt = predicate::str::contains("Whether the loop is stable is unknown: the record");
+        match code {
+            0 => found.stdout(doubt.not()),
+            _ => found.stdout(doubt).stderr(predicate::str::contains(few)),
+        };
+    }
+}
+
+#[test]
 fn time_stamps_in_another_unit_than_the_period_are_an_error_of_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let log = whole_milliseconds(folder.path());

@@ -20,6 +20,19 @@ pub enum ClaimVerdict {
     Undecided,
 }
 
+impl ClaimVerdict {
+    /// The verdict in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            ClaimVerdict::Confirmed => "confirmed",
+            ClaimVerdict::Conditional => "conditional",
+            ClaimVerdict::Refuted => "refuted",
+            ClaimVerdict::NotReproducible => "not reproducible",
+            ClaimVerdict::Undecided => "undecided",
+        }
+    }
+}
+
 /// A verdict with its reason.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Judgement {
