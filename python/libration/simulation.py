@@ -28,9 +28,9 @@ _FLOATS = {"f64": np.float64, "f32": np.float32}
 
 
 class Trajectory(Mapping[str, np.ndarray]):
-    """Columns of one or several trajectories: ``step``, ``t``, ``q0`` …, ``v0`` … and ``energy``; ``trajectory`` for several.
+    """Columns of one or several trajectories: ``step``, ``t``, coordinates, velocities and ``energy``; ``trajectory`` for several.
 
-    ``trajectory["q0"]`` is a column. Columns of ``bf16`` are arrays of ``float32``, with the exact values.
+    ``trajectory["q"]`` is the coordinate ``q``, and ``trajectory["q'"]`` its velocity. Columns of ``bf16`` are arrays of ``float32``, with the exact values.
     """
 
     def __init__(
@@ -69,23 +69,23 @@ class Trajectory(Mapping[str, np.ndarray]):
 
     @property
     def q(self) -> NDArray[Any]:
-        """Copy of the positions, ``(rows, dimension)``."""
-        return self._stacked("q")
+        """Copy of the coordinates, ``(rows, dimension)``."""
+        return self._stacked("")
 
     @property
     def v(self) -> NDArray[Any]:
-        """Copy of the velocities, ``(rows, dimension)``."""
-        return self._stacked("v")
+        """Copy of the velocities of the coordinates, ``(rows, dimension)``."""
+        return self._stacked("'")
 
     @property
     def energy(self) -> NDArray[Any]:
         """Energies per unit mass, ``(rows,)``, in ``units["energy"]``."""
         return self["energy"]
 
-    def _stacked(self, letter: str) -> NDArray[Any]:
-        found = [self[name] for name in self if name[0] == letter and name[1:].isdigit()]
+    def _stacked(self, prime: str) -> NDArray[Any]:
+        found = [self[name + prime] for name in self if f"{name}'" in self]
         if not found:
-            raise AttributeError(f"there are no columns {letter}0, {letter}1, …, only {', '.join(self)}")
+            raise AttributeError(f"no column is a coordinate with a velocity: there are {', '.join(self)}")
         return np.stack(found, axis=1)
 
     def to_pandas(self) -> Any:
@@ -297,8 +297,9 @@ def _custom(
         energies.append(math.nan if system.energy is None else one.energy[0])
     columns: dict[str, NDArray[Any]] = {"step": np.array(steps_kept, np.uint64)}
     columns["t"] = columns["step"] * one.dt
-    for letter, rows in (("q", positions), ("v", velocities)):
-        for i in range(start.shape[1]):
-            columns[f"{letter}{i}"] = np.array([row[i] for row in rows], one.dtype)
+    names = ["q"] if start.shape[1] == 1 else [f"q{i}" for i in range(start.shape[1])]
+    for prime, rows in (("", positions), ("'", velocities)):
+        for i, name in enumerate(names):
+            columns[name + prime] = np.array([row[i] for row in rows], one.dtype)
     columns["energy"] = np.array(energies, one.dtype)
     return Trajectory(columns, {"step": "1", "t": "s"}, ended)

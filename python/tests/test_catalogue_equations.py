@@ -29,7 +29,7 @@ def test_the_drive_of_the_equations_is_that_of_the_catalogue():
     compiled = simulate(system, integrator="rk4", dt=0.01, steps=100, q=[1.0, 0.0], v=[0.0, 1.0])
     found = simulate(system.equations(start={"q": 1.0}), integrator="rk4", dt=0.01, steps=100)
     # The catalogue has time as a coordinate, which its steps add up.
-    assert np.allclose(compiled["q0"], found["q"], rtol=0, atol=1e-12)
+    assert np.allclose(compiled["q"], found["q"], rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("name", sorted(SYSTEMS))

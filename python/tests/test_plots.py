@@ -46,7 +46,7 @@ def drawn(axes):
 
 def test_a_trajectory_has_a_panel_for_each_unit_with_its_columns():
     axes = drawn(libration.simulate("kepler", integrator="rk4", dt=0.01, steps=100).plot())
-    assert [axis.get_ylabel() for axis in axes] == ["q0, q1 (m)", "v0, v1 (m/s)", "energy (J/kg)"]
+    assert [axis.get_ylabel() for axis in axes] == ["x, y (m)", "x', y' (m/s)", "energy (J/kg)"]
     assert [len(axis.lines) for axis in axes] == [2, 2, 1]
     assert axes[-1].get_xlabel() == "time (s)" and axes[0].get_title() == "Trajectory of 1 s"
 
@@ -58,14 +58,14 @@ def test_each_of_several_trajectories_is_a_line():
         assert axes[0].get_title() == f"3 trajectories of {path.t.max():.6g} s"
         for n, line in enumerate(axes[0].lines):
             rows = path["trajectory"] == n
-            assert np.array_equal(line.get_data(), [path.t[rows], path["q0"][rows]])
+            assert np.array_equal(line.get_data(), [path.t[rows], path["q"][rows]])
 
 
 def test_a_trajectory_that_overflows_is_drawn_on_a_logarithmic_axis_and_its_heading_says_where_it_ends():
     path = libration.simulate(SPRING, integrator="explicit-euler", dt=1.0, steps=1000)
     axes = drawn(path.plot())
     assert axes[0].get_title().endswith(f"not finite from t = {path.stopped['t']:g} s")
-    assert [axis.get_yscale() for axis in axes] == ["log"] * 3 and axes[0].get_ylabel() == "|q0| (m)"
+    assert [axis.get_yscale() for axis in axes] == ["log"] * 3 and axes[0].get_ylabel() == "|q| (m)"
     several = libration.simulate(SPRING, integrator="explicit-euler", dt=1.0, steps=1000, num_trajectories=2, spread=0.1)
     assert drawn(several.plot())[0].get_title().endswith("2 not finite in the end")
 

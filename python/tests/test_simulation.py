@@ -25,7 +25,7 @@ def spring(q, v):
 
 def test_a_trajectory_has_named_columns_with_units_and_ends_where_the_exact_solution_does():
     path = simulate(SPRING, integrator="exact", dt=0.1, steps=100, save_every=30)
-    assert list(path) == ["step", "t", "q0", "v0", "energy"]
+    assert list(path) == ["step", "t", "q", "q'", "energy"]
     assert [path.units[name] for name in path] == ["1", "s", "m", "m/s", "J/kg"]
     np.testing.assert_array_equal(path["step"], [0, 30, 60, 90, 100])
     assert path.q.shape == path.v.shape == (5, 1) and path.stopped is None
@@ -61,7 +61,7 @@ def test_simulate_and_an_ensemble_take_the_same_steps(integrator):
     swings = Ensemble("pendulum", integrator=integrator, dt=0.05, q=[2.0, 1.0], v=[0.1, 0.0])
     swings.advance(120)
     swings.advance(80)
-    assert (swings.q[0, 0], swings.v[0, 0]) == (path["q0"][-1], path["v0"][-1])
+    assert (swings.q[0, 0], swings.v[0, 0]) == (path["q"][-1], path["q'"][-1])
     assert swings.energy[0] == path.energy[-1]
 
 
@@ -70,7 +70,7 @@ def test_implicit_integrators_step_the_catalogue_and_equations_alike(integrator)
     equations = System(acceleration={"q": "-9*sin(q)"}, energy="q'^2/2 - 9*cos(q)", start={"q": 1.0})
     path = simulate(System("pendulum", omega2=9.0), integrator=integrator, dt=0.05, steps=100, q=1.0)
     own = simulate(equations, integrator=integrator, dt=0.05, steps=100)
-    np.testing.assert_array_equal(own["q"], path["q0"])
+    np.testing.assert_array_equal(own["q"], path["q"])
     with pytest.raises(ValueError, match="implicit ones are those of simulate and analyze only"):
         Ensemble("pendulum", integrator=integrator, dt=0.05, q=[1.0], v=[0.0])
 
@@ -80,7 +80,7 @@ def test_a_function_of_positions_and_velocities_is_a_system():
     own = CustomSystem(spring, energy=lambda q, v: ((v * v + 10.0 * q * q) / 2.0)[:, 0])
     for system in (spring, own):
         path = simulate(system, integrator="rk4", dt=0.05, steps=90, save_every=40, q=1.0)
-        for name in ("step", "t", "q0", "v0"):
+        for name in ("step", "t", "q", "q'"):
             np.testing.assert_array_equal(path[name], built_in[name])
         assert np.isnan(path.energy).all() == (system is spring)
     np.testing.assert_allclose(path.energy, built_in.energy, rtol=4 * np.finfo(float).eps)
@@ -157,14 +157,14 @@ def test_copies_start_around_the_start_and_say_which_they_are():
     many = simulate(SPRING, integrator="leapfrog", dt=0.01, steps=5, save_every=5, num_trajectories=3, spread=0.5)
     start = many["step"] == 0
     np.testing.assert_array_equal(many["trajectory"][start], [0, 1, 2])
-    np.testing.assert_array_equal(many["q0"][start], [0.5, 1.0, 1.5])
+    np.testing.assert_array_equal(many["q"][start], [0.5, 1.0, 1.5])
     assert many.not_finite is None or many.not_finite["count"] == 0
 
 
 @pytest.mark.parametrize("float, dtype", [("float64", "f8"), (np.float32, "f4"), ("float16", "f2"), ("bfloat16", "f4")])
 def test_every_float_type_has_an_array_that_holds_it(float, dtype):
     path = simulate(SPRING, integrator="rk4", dt=0.01, steps=3, dtype=float)
-    assert path["q0"].dtype == np.dtype(dtype)
+    assert path["q"].dtype == np.dtype(dtype)
 
 
 @pytest.mark.parametrize("every", [1, 7])

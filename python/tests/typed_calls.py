@@ -116,7 +116,7 @@ def results(step: Analysis, advice: Advice, path: Trajectory, report: Results) -
     answer: str = advice.answer.upper() + advice.request
     budgets: list[dict[str, float]] = advice.loop["budgets"]
     any_key: object = advice["loop"], step["spectral_radius"]
-    times: np.ndarray = path.t + path["q0"] + path.energy
+    times: np.ndarray = path.t + path["q"] + path.energy
     measured: float | None = report.findings[0].measured
     reasons: dict[str, str] = report.not_applicable
 

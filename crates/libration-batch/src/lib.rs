@@ -11,8 +11,14 @@ pub mod ensemble;
 mod column_program;
 #[cfg(not(test))]
 mod machine;
+#[cfg(not(test))]
+mod machine_step;
 pub mod rl;
+#[cfg(not(test))]
+mod trajectory;
 
 #[cfg(not(test))]
 pub use column_program::{ColumnProgram, Columns};
 pub use ensemble::Ensemble;
+#[cfg(not(test))]
+pub use trajectory::Trajectory;

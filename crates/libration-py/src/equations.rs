@@ -2,8 +2,8 @@
 
 use std::sync::atomic::AtomicBool;
 
+use libration_analyze::Timing;
 use libration_analyze::equation_analysis::{self, EquationSummary};
-use libration_analyze::equation_trajectory::{self, EquationRequest};
 use libration_settings::SettingsError;
 use libration_settings::equations::{EquationSystem, EquationTask};
 use libration_settings::linear_loop::{OperatingPoint, linearised_equations};
@@ -13,8 +13,8 @@ use serde_json::json;
 use crate::background::run_in_background;
 use crate::error::{Raised, value_error};
 use crate::linear_plant::{Names, Rows as MatrixRows, names, rows as rows_of};
-use crate::request::any_method;
-use crate::simulate::{Rows, Simulated, converted};
+use crate::request::{any_method, stepping};
+use crate::simulate::{Rows, Simulated, simulated};
 
 /// The text of a file of equations, its name in messages, and other values of parameters.
 pub(crate) type EquationText = (String, String, Vec<(String, f64)>);
@@ -56,18 +56,9 @@ pub(crate) fn _simulate_equations<'py>(
     dt: f64,
     rows: Rows,
 ) -> PyResult<Simulated<'py>> {
-    let request = EquationRequest {
-        system: equations(&system)?,
-        method: any_method(integrator)?,
-        float: rows.float()?,
-        dt,
-        steps: rows.steps()?,
-        every: rows.every,
-        ensemble: rows.ensemble(),
-    };
-    let simulate = |stop: &AtomicBool| equation_trajectory::simulate_until(&request, stop);
-    let done = run_in_background(py, simulate, |_| Ok(()))?;
-    converted(py, done.map_err(Raised::raised)?)
+    let request =
+        rows.request(equations(&system)?, stepping(integrator)?, Timing::default(), dt)?;
+    simulated(py, &request)
 }
 
 /// Analyses steps. Gives JSON.

@@ -2,11 +2,12 @@
 
 use half::{bf16, f16};
 use libration::control::clock::Recorded;
-use libration_analyze::Criteria;
 use libration_analyze::newton_residual::NewtonResidual;
 use libration_analyze::trajectory;
 use libration_analyze::trajectory::{Divergence, EnsembleOptions, FloatType, Outcome, Request};
+use libration_analyze::{Criteria, Stepping, Timing};
 use libration_data::Values;
+use libration_settings::equations::EquationSystem;
 use libration_settings::limits;
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -22,7 +23,7 @@ use crate::request::{Loop, Step, warn_of};
 pub(crate) struct Rows {
     steps: i64,
     float: String,
-    pub(crate) every: u64,
+    every: u64,
     count: Option<usize>,
     spread: f64,
     threads: usize,
@@ -31,18 +32,36 @@ pub(crate) struct Rows {
 }
 
 impl Rows {
-    pub(crate) fn float(&self) -> PyResult<FloatType> {
+    /// The request for rows of a system.
+    pub(crate) fn request(
+        self,
+        system: EquationSystem,
+        stepping: Stepping,
+        timing: Timing,
+        dt: f64,
+    ) -> PyResult<Request> {
+        let (float, ensemble, steps) = (self.float()?, self.ensemble(), self.steps()?);
+        let Rows { every, seed, time_stamps, .. } = self;
+        let record = time_stamps.map(|stamps| {
+            Recorded::steps_in(&stamps, dt)
+                .map_err(|error| value_error(format!("time_stamps: {error}")))
+        });
+        let record = record.transpose()?;
+        Ok(Request { system, stepping, float, dt, steps, every, ensemble, timing, record, seed })
+    }
+
+    fn float(&self) -> PyResult<FloatType> {
         FloatType::from_name(&self.float)
             .ok_or_else(|| unknown("float", &self.float, FloatType::ALL.map(FloatType::name)))
     }
 
-    pub(crate) fn ensemble(&self) -> Option<EnsembleOptions> {
+    fn ensemble(&self) -> Option<EnsembleOptions> {
         let Rows { spread, threads, .. } = *self;
         let of = |count| EnsembleOptions { count, spread, threads, instructions: None };
         self.count.map(of)
     }
 
-    pub(crate) fn steps(&self) -> PyResult<u64> {
+    fn steps(&self) -> PyResult<u64> {
         limits::trajectory_steps("steps", self.steps.into()).map_err(value_error)
     }
 }
@@ -66,43 +85,26 @@ pub(crate) fn _simulate<'py>(
     rows: Rows,
 ) -> PyResult<Simulated<'py>> {
     let setting = step.setting()?;
-    let dt = step.dt()?;
-    let (float, ensemble) = (rows.float()?, rows.ensemble());
-    let steps = rows.steps()?;
-    let record = rows.time_stamps.map(|stamps| {
-        Recorded::steps_in(&stamps, dt)
-            .map_err(|error| value_error(format!("time_stamps: {error}")))
-    });
-    let request = Request {
-        system: setting.system,
-        actuation: setting.actuation,
-        stepping: step.stepping()?,
-        float,
-        dt,
-        steps,
-        q: setting.q,
-        v: setting.v,
-        every: rows.every,
-        ensemble,
-        timing: looped.timing()?,
-        record: record.transpose()?,
-        seed: rows.seed,
-    };
+    let (system, dt, stepping) = (setting.system, step.dt()?, step.stepping()?);
+    let setting =
+        EquationSystem::of_catalogue(setting).map_err(|error| value_error(error.to_string()))?;
+    let request = rows.request(setting, stepping, looped.timing()?, dt)?;
     if let Some(method) = request.stepping.method() {
-        warn_of(py, request.system, method)?;
+        warn_of(py, system, method)?;
     }
-    let done =
-        run_in_background(py, |stop| trajectory::simulate_until(&request, stop), |_| Ok(()))?;
+    simulated(py, &request)
+}
+
+/// Simulates a request.
+pub(crate) fn simulated<'py>(py: Python<'py>, request: &Request) -> PyResult<Simulated<'py>> {
+    let done = run_in_background(py, |stop| trajectory::simulate_until(request, stop), |_| Ok(()))?;
     converted(py, done.map_err(Raised::raised)?)
 }
 
 /// Columns, their units, and how a simulation ended.
 pub(crate) type Simulated<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, Bound<'py, PyDict>);
 
-pub(crate) fn converted(
-    py: Python<'_>,
-    trajectory: trajectory::Trajectory,
-) -> PyResult<Simulated<'_>> {
+fn converted(py: Python<'_>, trajectory: trajectory::Trajectory) -> PyResult<Simulated<'_>> {
     let trajectory::Trajectory { table, outcome } = trajectory;
     let (columns, units) = (PyDict::new(py), PyDict::new(py));
     for column in table.into_columns() {
@@ -140,6 +142,7 @@ fn ended<'py>(py: Python<'py>, outcome: &Outcome) -> PyResult<Bound<'py, PyDict>
     match outcome {
         Outcome::Complete => {}
         Outcome::Iterated(_) => {}
+        Outcome::EnergyDiverges { verdict, .. } => dict.set_item("error", &verdict.evidence)?,
         Outcome::Diverged(Divergence { step, t, reason, .. }) => {
             dict.set_item("step", step)?;
             dict.set_item("t", t)?;

@@ -39,18 +39,3 @@ pub fn of(system: AnySystem, actuation: Actuation) -> Units {
     };
     Units { time, position, velocity, energy, command, gains }
 }
-
-/// The units of the columns `step`, `t`, positions, velocities and energy per mass.
-pub fn of_columns(system: AnySystem, dimension: usize) -> Vec<&'static str> {
-    let Units { time, position, velocity, energy, .. } = of(system, Actuation::Acceleration);
-    let mut units = vec!["1", time];
-    units.extend(std::iter::repeat_n(position, dimension));
-    units.extend(std::iter::repeat_n(velocity, dimension));
-    units.push(energy);
-    if matches!(system, AnySystem::DrivenOscillator(_)) && dimension == 2 {
-        // Its second coordinate is time.
-        units[3] = "s";
-        units[5] = "1";
-    }
-    units
-}

@@ -1,6 +1,6 @@
 //! The energy of a motion under steps, beside that of the exact motion.
 
-use libration::equations::Evaluation;
+use libration::equations::{Dynamics, Evaluation};
 use serde::Serialize;
 
 use super::MotionSubject;
@@ -87,7 +87,7 @@ impl EnergyChange {
 }
 
 /// The energy of states.
-pub(super) struct EnergyOf<'a> {
+pub(crate) struct EnergyOf<'a> {
     program: Evaluation<'a, f64>,
     degrees: usize,
     at_rest: Vec<f64>,
@@ -95,12 +95,12 @@ pub(super) struct EnergyOf<'a> {
 
 impl<'a> EnergyOf<'a> {
     /// None without an energy.
-    pub(super) fn new(subject: &MotionSubject<'a>) -> Option<Self> {
-        let program = subject.dynamics.energy()?.on::<f64>();
-        Some(EnergyOf { program, degrees: subject.dynamics.degrees(), at_rest: Vec::new() })
+    pub(crate) fn new(dynamics: &'a Dynamics) -> Option<Self> {
+        let program = dynamics.energy()?.on::<f64>();
+        Some(EnergyOf { program, degrees: dynamics.degrees(), at_rest: Vec::new() })
     }
 
-    pub(super) fn total(&mut self, state: &[f64]) -> f64 {
+    pub(crate) fn total(&mut self, state: &[f64]) -> f64 {
         self.program.run(state).next().unwrap_or(f64::NAN)
     }
 
@@ -115,20 +115,20 @@ impl<'a> EnergyOf<'a> {
 
 /// The scale of the energy of a motion.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct EnergyScale {
+pub(crate) struct EnergyScale {
     kinetic: f64,
     potential: [f64; 2],
     total: [f64; 2],
 }
 
 impl EnergyScale {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let none = [f64::INFINITY, f64::NEG_INFINITY];
         EnergyScale { kinetic: 0.0, potential: none, total: none }
     }
 
     /// Adds a state, and returns its energy.
-    pub(super) fn add(&mut self, energy: &mut EnergyOf<'_>, state: &[f64]) -> f64 {
+    pub(crate) fn add(&mut self, energy: &mut EnergyOf<'_>, state: &[f64]) -> f64 {
         let (total, potential) = (energy.total(state), energy.potential(state));
         if total.is_finite() && potential.is_finite() {
             let wider = |[low, high]: [f64; 2], x: f64| [low.min(x), high.max(x)];
@@ -139,7 +139,7 @@ impl EnergyScale {
         total
     }
 
-    pub(super) fn value(self) -> Option<f64> {
+    pub(crate) fn value(self) -> Option<f64> {
         let range = |[low, high]: [f64; 2]| if high > low { high - low } else { 0.0 };
         let value = self.kinetic.max(range(self.potential)).max(range(self.total));
         (value > 0.0 && value.is_finite()).then_some(value)

@@ -86,7 +86,7 @@ pub(crate) fn examine(
     let reference = Reference::new(subject, steps, dt, stop)?;
     let numbers = &reference.numbers;
     let run = StepRun { start: subject.start, step, dt, substeps: 1 };
-    let mut energy_of = EnergyOf::new(subject);
+    let mut energy_of = EnergyOf::new(subject.dynamics);
     let mut energy = energy_of.as_mut().map(|of| EnergyChange::new(of, subject, steps));
     let (mut samples, mut diverged) = (Vec::with_capacity(numbers.len()), None);
     let (mut before, mut undefined) = (subject.start.to_vec(), None);

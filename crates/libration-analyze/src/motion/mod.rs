@@ -14,6 +14,7 @@ mod unseen;
 use libration::equations::{Dynamics, StepProgram};
 
 pub use energy::EnergyChange;
+pub(crate) use energy::{EnergyOf, EnergyScale};
 pub(crate) use examination::examine;
 pub use examination::{MotionExamination, StateExamination};
 pub use narrow_force::narrow_force;

@@ -8,11 +8,10 @@ use libration::ensemble::dynamics_of;
 use libration::equations::StepProgram;
 use libration::number::{Dual, Wide};
 use libration::simulation::{EnergyDrift, Observer, Sample, SimulationError};
-use libration::{ImplicitMethod, Model, State};
+use libration::{ImplicitMethod, Model, State, Trajectory};
 
 use super::{AnalyzeError, Drift, PIECE, Request, Step, Stepping, check_jacobian};
 use crate::newton_residual::{self, NewtonResidual};
-use crate::program_simulation::ProgramSimulation;
 
 impl<const D: usize> Step<D> {
     /// A step that solves equations. The program is the same for all number types, so that nothing is compiled for each method.
@@ -26,7 +25,6 @@ impl<const D: usize> Step<D> {
         let wrong = || request.system.entry().wrong_dimension(D);
         let dynamics = dynamics_of(request.system, D).ok_or_else(wrong)?;
         let program = StepProgram::implicit(method, &dynamics);
-        let mut simulation = ProgramSimulation::new(&program, start, request.dt)?;
         let run = RefCell::new(program.program().on::<Dual<Wide>>());
         let step = |state: State<Dual<Wide>, D>, h: Dual<Wide>| {
             let inputs: Vec<Dual<Wide>> = state.coordinates().chain([h]).collect();
@@ -38,7 +36,11 @@ impl<const D: usize> Step<D> {
         check_jacobian(&linear, request)?;
         let drift = match request.system.is_linear() {
             true => None,
-            false => simulated_drift(&mut simulation, model, request.steps, stop)?,
+            false => {
+                let start: Vec<f64> = start.coordinates().collect();
+                let mut trajectory = Trajectory::new(method.into(), &dynamics, &start, request.dt);
+                simulated_drift(&mut trajectory, model, request.steps, stop)?
+            }
         };
         Ok(Step { linear, evaluations: program.evaluations() as u64, drift })
     }
@@ -58,22 +60,28 @@ pub(super) fn residual(request: &Request, stop: &AtomicBool) -> Option<NewtonRes
 
 /// The energy drift of a nonlinear system, simulated.
 fn simulated_drift<const D: usize>(
-    simulation: &mut ProgramSimulation<'_, f64, D>,
+    trajectory: &mut Trajectory<f64>,
     model: impl Model<D>,
     steps: u64,
     stop: &AtomicBool,
 ) -> Result<Option<Drift>, AnalyzeError> {
-    let mut drift = EnergyDrift::new(model.on::<f64>(), &simulation.sample().state);
-    let stopped: RefCell<Option<SimulationError>> = RefCell::new(None);
-    let mut left = steps;
-    while left > 0 && stopped.borrow().is_none() {
-        if stop.load(Ordering::Relaxed) {
+    let sample = |trajectory: &Trajectory<f64>| {
+        let state = trajectory.state();
+        let (step, time) = (trajectory.steps(), trajectory.time());
+        let (q, v) = (std::array::from_fn(|i| state[i]), std::array::from_fn(|i| state[D + i]));
+        Sample::<f64, D> { step, time, state: State { q, v } }
+    };
+    let mut drift = EnergyDrift::new(model.on::<f64>(), &sample(trajectory).state);
+    let mut stopped = None;
+    for step in 1..=steps {
+        if step % PIECE == 0 && stop.load(Ordering::Relaxed) {
             return Err(AnalyzeError::Interrupted);
         }
-        let piece = left.min(PIECE);
-        let observe = &mut |sample: &Sample<f64, D>| drift.observe(sample);
-        *stopped.borrow_mut() = simulation.run(piece, observe).err();
-        left -= piece;
+        if !trajectory.advance(1) {
+            stopped = Some(SimulationError::NotFinite { step, time: trajectory.time_of(step) });
+            break;
+        }
+        drift.observe(&sample(trajectory));
     }
-    Ok((drift.initial() != 0.0).then(|| Drift::simulated(&drift, stopped.into_inner())))
+    Ok((drift.initial() != 0.0).then(|| Drift::simulated(&drift, stopped)))
 }

@@ -1,9 +1,10 @@
 //! Rows of an ensemble.
 
 use half::{bf16, f16};
-use libration::AnyMethod;
-use libration::ensemble::{AnyEnsemble, BatchFloat, InsufficientMemory, dynamics_of};
+use libration::ensemble::{AnyEnsemble, BatchFloat, InsufficientMemory};
 use libration::equations::{Dynamics, StepProgram};
+use libration::{AnyMethod, AnySystem};
+use libration_settings::equations::Twin;
 
 use super::{EnsembleOptions, Monitor, Outcome, Request, TrajectoryError, loops};
 use crate::export::{Number, Rows};
@@ -14,14 +15,11 @@ const CHUNK: u64 = 1 << 21;
 
 /// A float type of a simulation; only native floats have ensembles and loops.
 pub(crate) trait EnsembleFloat: Number {
-    /// Whether the processor has arithmetic of this type.
-    const IS_NATIVE: bool;
-
     /// Checks that the ensemble of a request is supported and fits into memory.
     fn check_memory(request: &Request, ensemble: &EnsembleOptions) -> Result<(), TrajectoryError> {
         // Loops have clocks, and both are built from lists of starts.
         let factor = if request.loop_option().is_some() { 4 } else { 1 };
-        Self::check_ensemble(factor * request.q.len(), ensemble)
+        Self::check_ensemble(factor * request.system.q.len(), ensemble)
     }
 
     /// Checks that ensembles are supported, and that one with so many degrees of freedom fits into memory.
@@ -42,20 +40,11 @@ pub(crate) trait EnsembleFloat: Number {
         rows: &mut dyn Rows<Self>,
         monitor: &dyn Monitor,
     ) -> Result<Outcome, TrajectoryError>;
-
-    /// An ensemble of a system by its program, whose trajectory `n` begins with coordinate `i` at `start(n, i)`.
-    fn equation_ensemble(
-        dynamics: &Dynamics,
-        start: &(dyn Fn(usize, usize) -> f64 + Sync),
-        ensemble: &EnsembleOptions,
-    ) -> Result<Box<dyn AnyEnsemble<Self>>, TrajectoryError>;
 }
 
 macro_rules! vectors {
     ($($float:ident)*) => {$(
         impl EnsembleFloat for $float {
-            const IS_NATIVE: bool = true;
-
             fn run_ensemble(
                 request: &Request,
                 method: AnyMethod,
@@ -74,16 +63,6 @@ macro_rules! vectors {
                 loops::run::<$float>(request, rows, monitor)
             }
 
-            fn equation_ensemble(
-                dynamics: &Dynamics,
-                start: &(dyn Fn(usize, usize) -> f64 + Sync),
-                ensemble: &EnsembleOptions,
-            ) -> Result<Box<dyn AnyEnsemble<Self>>, TrajectoryError> {
-                let start = |n, i| start(n, i) as $float;
-                let (count, execution) = (ensemble.count, ensemble.execution()?);
-                Ok(BatchFloat::program_ensemble(dynamics, count, execution, &start)?)
-            }
-
             fn check_ensemble(
                 degrees: usize,
                 ensemble: &EnsembleOptions,
@@ -98,8 +77,6 @@ macro_rules! vectors {
 macro_rules! scalar_only {
     ($($float:ident)*) => {$(
         impl EnsembleFloat for $float {
-            const IS_NATIVE: bool = false;
-
             fn run_ensemble(
                 request: &Request,
                 _: AnyMethod,
@@ -115,14 +92,6 @@ macro_rules! scalar_only {
                 _: &mut dyn Rows<Self>,
                 _: &dyn Monitor,
             ) -> Result<Outcome, TrajectoryError> {
-                Err(no_vectors::<Self>())
-            }
-
-            fn equation_ensemble(
-                _: &Dynamics,
-                _: &(dyn Fn(usize, usize) -> f64 + Sync),
-                _: &EnsembleOptions,
-            ) -> Result<Box<dyn AnyEnsemble<Self>>, TrajectoryError> {
                 Err(no_vectors::<Self>())
             }
 
@@ -152,42 +121,42 @@ fn run<S: BatchFloat + Number>(
     rows: &mut dyn Rows<S>,
     monitor: &dyn Monitor,
 ) -> Result<Outcome, TrajectoryError> {
-    let Request { system, dt, steps, every, .. } = *request;
-    let (dimension, count) = (request.q.len(), ensemble.count);
-    let coordinate = |i: usize| match i.checked_sub(dimension) {
-        None => request.q.get(i),
-        Some(i) => request.v.get(i),
+    let Request { system, dt, steps, every, .. } = request;
+    let dynamics = system.equations.dynamics();
+    let first: Vec<f64> = system.q.iter().chain(&system.v).copied().collect();
+    let kept: Vec<usize> = system.states.iter().map(|state| state.place).collect();
+    // The velocity of time is 1 for all.
+    let scale = |n, i| if kept.contains(&i) { ensemble.scale(n) } else { 1.0 };
+    let start = |n: usize, i: usize| S::from_f64(scale(n, i) * first[i]);
+    let (count, execution) = (ensemble.count, ensemble.execution()?);
+    let mut all = match (system.twin, method) {
+        // The steps of an oscillator are shorter than the way through a program.
+        (Some(Twin { system: own @ AnySystem::Oscillator(_), .. }), AnyMethod::Explicit(_)) => {
+            S::ensemble(own, system.q.len(), count, execution, &start)?
+        }
+        _ => S::program_ensemble(dynamics, count, execution, &start)?,
     };
-    let start = |n, i| S::from_f64(ensemble.scale(n) * coordinate(i).copied().unwrap_or(0.0));
-    let execution = ensemble.execution()?;
-    let wrong = || system.entry().wrong_dimension(dimension);
-    let dynamics = dynamics_of(system, dimension).ok_or_else(wrong)?;
-    let mut all = match method {
-        AnyMethod::Explicit(_) => S::ensemble(system, dimension, count, execution, &start)?,
-        AnyMethod::Implicit(_) => S::program_ensemble(&dynamics, count, execution, &start)?,
-    };
-    let kept: Vec<usize> = (0..2 * dimension).collect();
-    let run = EnsembleRun { method, dt, steps, every, kept: &kept };
-    let (lost, residual) = run.record(&mut *all, &dynamics, rows, monitor)?;
+    let run = EnsembleRun { method, dt: *dt, steps: *steps, every: *every, kept: &kept };
+    let (lost, residual) = run.record(&mut *all, dynamics, rows, monitor)?;
     Ok(Outcome::of::<S>(request, &lost).with_residual(residual))
 }
 
 /// The steps of an ensemble, and what is kept of them.
-pub(crate) struct EnsembleRun<'a> {
-    pub(crate) method: AnyMethod,
+struct EnsembleRun<'a> {
+    method: AnyMethod,
     /// The time step in seconds.
-    pub(crate) dt: f64,
-    pub(crate) steps: u64,
+    dt: f64,
+    steps: u64,
     /// The interval of kept steps.
-    pub(crate) every: u64,
+    every: u64,
     /// The coordinates that are kept, by their places among positions and velocities.
-    pub(crate) kept: &'a [usize],
+    kept: &'a [usize],
 }
 
 impl EnsembleRun<'_> {
     /// Simulates, gives the rows of kept steps, and returns the trajectories that are not finite in the end, and what iterations left in the
     /// steps after the kept ones.
-    pub(crate) fn record<S: Number>(
+    fn record<S: Number>(
         &self,
         all: &mut dyn AnyEnsemble<S>,
         dynamics: &Dynamics,

@@ -26,9 +26,9 @@ pub enum TrajectoryError {
     #[error("{system}: `{name}` = {value:?} is {rounded} in {float}; choose a wider float type")]
     Parameter {
         /// The system.
-        system: &'static str,
+        system: String,
         /// The parameter.
-        name: &'static str,
+        name: String,
         /// The given value.
         value: f64,
         /// The value rounded to the float type.

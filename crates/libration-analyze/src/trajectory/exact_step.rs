@@ -1,24 +1,43 @@
 //! Exact steps of linear systems.
 
-use libration::Model;
 use libration::integrator::Exact;
+use libration_settings::equations::EquationSystem;
 
 use super::TrajectoryError;
+use super::error::value_error;
+use crate::Stepping;
 
-/// The exact integrator of `model` for a time step of `dt` seconds; the longest step is `longest` times as long.
+/// The exact integrator of a system for a time step of `dt` seconds; the longest step is `longest` times as long.
 ///
 /// # Errors
-/// If the longest step turns by more than [`Exact::MOST_ANGLE`].
-pub(super) fn exact<const D: usize>(
-    model: &impl Model<D>,
+/// If the system is not linear, or if the longest step turns by more than [`Exact::MOST_ANGLE`].
+pub(super) fn exact(
+    system: &EquationSystem,
     dt: f64,
     longest: f64,
 ) -> Result<Exact, TrajectoryError> {
-    Exact::new(*model, longest * dt).ok_or_else(|| {
-        let most = Exact::MOST_ANGLE / Exact::angle(*model, longest).unwrap_or(f64::NAN);
-        let (value, turned) = (format!("{dt:?}"), Exact::MOST_ANGLE);
+    if !system.is_linear() {
+        let value = format!("{} for {}", Stepping::EXACT, system.name);
+        let allowed = "another integrator: exact steps require a linear system";
+        return Err(value_error("integrator", value, allowed));
+    }
+    let fastest = fastest(system);
+    Exact::of_angle(fastest * (longest * dt).abs()).ok_or_else(|| {
+        let (most, turned) = (Exact::MOST_ANGLE / (fastest * longest), Exact::MOST_ANGLE);
         let allowed =
             format!("at most {most:?}, where the longest exact step turns by {turned} radians");
-        TrajectoryError::Value { name: "dt", value, allowed }
+        value_error("dt", format!("{dt:?}"), allowed)
+    })
+}
+
+/// The largest absolute eigenvalue of a linear system, in 1/s.
+fn fastest(system: &EquationSystem) -> f64 {
+    let dynamics = system.equations.dynamics();
+    let degrees = dynamics.degrees();
+    let mut accelerations = dynamics.accelerations().on::<f64>();
+    let constant: Vec<f64> = accelerations.run(&[]).collect();
+    Exact::fastest(2 * degrees, |state| {
+        let rates = accelerations.run(state).zip(&constant).map(|(a, constant)| a - constant);
+        state[degrees..].iter().copied().chain(rates).collect()
     })
 }

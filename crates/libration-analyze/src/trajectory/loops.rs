@@ -8,7 +8,9 @@ use libration::ensemble::{All, Loops, Setup};
 use libration::integrator::SymplecticEuler;
 use libration::system::{DynSystem, Oscillator};
 use libration::{Float, Hamiltonian, Integrator, Model, State, System, with_system};
+use libration_settings::equations::Twin;
 
+use super::error::value_error;
 use super::exact_step::exact;
 use super::request::MOST_DIMENSIONS;
 use super::{EnsembleOptions, Monitor, Outcome, Request, TrajectoryError};
@@ -30,10 +32,13 @@ pub(super) fn run<S: Float + Pod + Number>(
     rows: &mut dyn Rows<S>,
     monitor: &dyn Monitor,
 ) -> Result<Outcome, TrajectoryError> {
-    let dimension = request.q.len();
-    let wrong = || Err(request.system.entry().wrong_dimension(dimension).into());
+    let dimension = request.system.q.len();
+    let Some(Twin { system, .. }) = request.system.twin else {
+        return Err(value_error("system", &request.system.name, "a system of the catalogue"));
+    };
+    let wrong = || Err(system.entry().wrong_dimension(dimension).into());
     with_system!(
-        request.system,
+        system,
         dimension,
         |model, D| {
             if const { D <= MOST_DIMENSIONS } {
@@ -62,7 +67,7 @@ fn on_model<S: Float + Pod + Number, const D: usize, M: Model<D>>(
         // Implicit steps have been refused.
         Stepping::Implicit(_) | Stepping::Exact => simulated(
             chosen,
-            exact(model, request.dt, request.longest())?,
+            exact(&request.system, request.dt, request.longest())?,
             &energy,
             request,
             rows,
@@ -90,7 +95,9 @@ fn simulated<S: Float + Pod + Number, const D: usize>(
     let recorded = record.as_deref().map_or(Recorded::repeated(&EVEN), Recorded::once);
     let jittered = Jittered(timing.jitter.unwrap_or(none));
     let clocks: Clocks<'_> = (Skewed(timing.skew.unwrap_or(none)), (recorded, jittered));
-    let gains = timing.feedback.unwrap_or_default().per_mass(request.actuation.mass());
+    let mass = request.system.twin.map_or(1.0, |twin| twin.actuation.mass());
+    let gains = timing.feedback.unwrap_or_default().per_mass(mass);
+    let kept: Vec<usize> = request.system.states.iter().map(|state| state.place).collect();
     let latency = timing
         .latency_of(dt.to_f64())
         .map_err(|steps| TrajectoryError::latency(steps, request.dt))?;
@@ -120,7 +127,8 @@ fn simulated<S: Float + Pod + Number, const D: usize>(
                 // With even steps the sum would only add rounding.
                 let t = if uneven { shown } else { step as f64 * dt.to_f64() };
                 values.clear();
-                values.extend(state.coordinates());
+                let coordinates: Vec<S> = state.coordinates().collect();
+                values.extend(kept.iter().map(|&place| coordinates[place]));
                 values.push(energy(&state));
                 let index = [n as u64, step];
                 let whole = if request.ensemble.is_some() { &index[..] } else { &index[1..] };
@@ -145,7 +153,7 @@ fn simulated<S: Float + Pod + Number, const D: usize>(
 fn start<S: Float, const D: usize>(request: &Request, scale: f64) -> State<S, D> {
     let coordinate = |x: &[f64], i: usize| x.get(i).map_or(S::zero(), |x| S::from_f64(scale * x));
     State {
-        q: core::array::from_fn(|i| coordinate(&request.q, i)),
-        v: core::array::from_fn(|i| coordinate(&request.v, i)),
+        q: core::array::from_fn(|i| coordinate(&request.system.q, i)),
+        v: core::array::from_fn(|i| coordinate(&request.system.v, i)),
     }
 }

@@ -1,7 +1,7 @@
 //! Trajectories as tables, the output of `libration simulate`.
 //!
-//! The columns are `step`, `t`, `q0` …, `v0` … and `energy`, with `trajectory` before them where there
-//! are several. An overflow ends the table of a single trajectory; in an ensemble the others continue.
+//! The columns are `step`, `t`, the coordinates by their names, their velocities with a prime, the states of first order, and the
+//! energy where the system has one, with `trajectory` before them where there are several. An overflow ends the table of a single trajectory; in an ensemble the others continue.
 //! It is a result and not an error.
 
 mod ensemble;
@@ -22,6 +22,7 @@ use std::io::Write;
 use std::sync::atomic::AtomicBool;
 
 use libration::control::{Feedback, Jitter, Latency};
+use libration_settings::equations::Twin;
 use libration_settings::units;
 use serde_json::{Value, json};
 
@@ -29,7 +30,7 @@ use crate::Timing;
 use crate::export::{Rows, Table};
 use crate::recording::{self, Recording};
 
-pub(crate) use ensemble::{EnsembleFloat, EnsembleRun};
+pub(crate) use ensemble::EnsembleFloat;
 pub use ensemble_options::EnsembleOptions;
 pub(crate) use ensemble_options::rows;
 pub use error::TrajectoryError;
@@ -125,8 +126,7 @@ fn write_as<S: EnsembleFloat>(
 
 impl<S: EnsembleFloat> Recording<S> for Request {
     fn columns(&self) -> Vec<(String, String)> {
-        let units = self.column_units().into_iter().map(str::to_owned);
-        self.column_names().into_iter().zip(units).collect()
+        Request::columns(self)
     }
 
     fn is_ensemble(&self) -> bool {
@@ -160,19 +160,22 @@ pub(crate) fn jitter_text(law: Jitter) -> String {
 
 /// The request as the first entries of a JSON file.
 fn head(request: &Request) -> Vec<(&'static str, Value)> {
+    let system = &request.system;
+    let parameters = system.definitions.parameters.iter();
     let parameters: serde_json::Map<_, _> =
-        request.parameters().into_iter().map(|(k, v)| (k.to_owned(), v.into())).collect();
+        parameters.map(|(name, x)| (name.clone(), (*x).into())).collect();
+    let (names, units): (Vec<String>, Vec<String>) = request.columns().into_iter().unzip();
     let mut head: Vec<(&'static str, Value)> = vec![
         ("schema", SCHEMA.into()),
-        ("system", request.system.name().into()),
+        ("system", system.name.clone().into()),
         ("parameters", parameters.into()),
         ("integrator", request.stepping.name().into()),
         ("float", request.float.name().into()),
         ("dt", request.dt.into()),
         ("steps", request.steps.into()),
         ("every", request.every.into()),
-        ("columns", request.column_names().into()),
-        ("units", request.column_units().into()),
+        ("columns", names.into()),
+        ("units", units.into()),
     ];
     let Timing { feedback, jitter, skew, .. } = request.timing;
     if request.loop_option().is_some() {
@@ -181,12 +184,14 @@ fn head(request: &Request) -> Vec<(&'static str, Value)> {
     if let Some(record) = &request.record {
         head.push(("recorded_steps", record.len().into()));
     }
-    if let Some(Feedback { position, velocity }) = feedback {
+    if let (Some(Feedback { position, velocity }), Some(Twin { system, actuation })) =
+        (feedback, system.twin)
+    {
         let late = request.timing.latency_of(request.dt).map_or(f64::NAN, Latency::steps);
         head.push(("feedback", json!([position, velocity])));
-        let units = units::of(request.system, request.actuation);
+        let units = units::of(system, actuation);
         head.push(("feedback_units", json!(units.gains[..2])));
-        head.push(("command", request.actuation.name().into()));
+        head.push(("command", actuation.name().into()));
         head.push(("latency_steps", late.into()));
     }
     for (name, law) in [("jitter", jitter), ("skew", skew)] {

@@ -1,6 +1,7 @@
 //! Outcomes of simulations.
 
 use libration::Float;
+use libration_report::verdict::Verdict;
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -14,6 +15,13 @@ pub enum Outcome {
     Complete,
     /// All states are finite. The steps solved equations by an iteration, which left a residual.
     Iterated(NewtonResidual),
+    /// All states are finite, but the energy of the single trajectory diverges.
+    EnergyDiverges {
+        /// The fault.
+        verdict: Verdict,
+        /// What an iteration left in the steps.
+        newton_residual: Option<NewtonResidual>,
+    },
     /// The single trajectory ended early.
     Diverged(Divergence),
     /// Some trajectories of an ensemble are not finite at the end. They do not affect the others.
@@ -32,7 +40,7 @@ pub enum Outcome {
 impl Outcome {
     /// The outcome of the ensemble of `request` with the trajectories `lost` that are not finite.
     pub(super) fn of<S: Float>(request: &Request, lost: &[usize]) -> Self {
-        Outcome::of_ensemble(lost, || overflow::cause::<S>(request))
+        Outcome::of_ensemble(lost, || overflow::cause::<S>(request, None))
     }
 
     /// The outcome of an ensemble with the trajectories `lost` that are not finite, if there are any, and its cause.
@@ -58,6 +66,9 @@ impl Outcome {
         };
         match self {
             Outcome::Complete | Outcome::Iterated(_) => Outcome::Iterated(residual),
+            Outcome::EnergyDiverges { verdict, .. } => {
+                Outcome::EnergyDiverges { verdict, newton_residual: Some(residual) }
+            }
             Outcome::Diverged(own) => Outcome::Diverged(Divergence {
                 reason: cause(own.reason),
                 newton_residual: Some(residual),
@@ -73,13 +84,28 @@ impl Outcome {
         }
     }
 
+    /// The same outcome, with what the energy says of a trajectory whose states are finite.
+    #[must_use]
+    pub(crate) fn with_energy(self, fault: Option<Verdict>) -> Self {
+        match (self, fault) {
+            (Outcome::Complete, Some(verdict)) => {
+                Outcome::EnergyDiverges { verdict, newton_residual: None }
+            }
+            (Outcome::Iterated(residual), Some(verdict)) => {
+                Outcome::EnergyDiverges { verdict, newton_residual: Some(residual) }
+            }
+            (outcome, _) => outcome,
+        }
+    }
+
     /// What the iterations of implicit steps left; none without iterations.
     pub fn newton_residual(&self) -> Option<&NewtonResidual> {
         match self {
             Outcome::Complete => None,
             Outcome::Iterated(residual) => Some(residual),
             Outcome::Diverged(own) => own.newton_residual.as_ref(),
-            Outcome::NotFinite { newton_residual, .. } => newton_residual.as_ref(),
+            Outcome::NotFinite { newton_residual, .. }
+            | Outcome::EnergyDiverges { newton_residual, .. } => newton_residual.as_ref(),
         }
     }
 
@@ -88,8 +114,12 @@ impl Outcome {
         let mut entries = vec![self.json_entry(several)];
         if let Some(residual) = self.newton_residual() {
             entries.push(("newton_residual", json!(residual)));
-            entries.push(("verdict", json!(residual.verdict())));
         }
+        let verdict = match self {
+            Outcome::EnergyDiverges { verdict, .. } => Some(verdict.clone()),
+            _ => self.newton_residual().map(NewtonResidual::verdict),
+        };
+        entries.extend(verdict.map(|verdict| ("verdict", json!(verdict))));
         entries
     }
 
@@ -106,7 +136,9 @@ impl Outcome {
             Outcome::Complete | Outcome::Iterated(_) if several => {
                 ("not_finite", json!({ "count": 0, "first": [] }))
             }
-            Outcome::Complete | Outcome::Iterated(_) => ("stopped", Value::Null),
+            Outcome::Complete | Outcome::Iterated(_) | Outcome::EnergyDiverges { .. } => {
+                ("stopped", Value::Null)
+            }
         }
     }
 }

@@ -4,8 +4,12 @@ use libration::analysis::{Linearisation, eigenvalues};
 use libration::system::{DampedOscillator, Oscillator};
 use libration::{AnyMethod, AnySystem, Float, Model, State, with_system};
 
+use libration::equations::StepProgram;
+use libration_settings::equations::Twin;
+
 use super::three_digits::{short, short_above, short_below};
 use super::{FloatType, Request};
+use crate::motion::undefined_function;
 use crate::step::stability_windows;
 use crate::{Criteria, StableLatencies, analyze};
 
@@ -14,22 +18,33 @@ const MARGIN: f64 = 16.0;
 
 /// The cause of an overflow of `request` in the float type `S`, with a suggestion; none if neither the step, linearised at the
 /// start, nor the float type explains it.
-pub(super) fn cause<S: Float>(request: &Request) -> Option<String> {
+/// `last` has the positions and velocities before the overflow, if they are known.
+pub(super) fn cause<S: Float>(request: &Request, last: Option<&[f64]>) -> Option<String> {
+    let undefined = || {
+        let method = request.stepping.any_method()?;
+        let dynamics = request.system.equations.dynamics();
+        let mut from = last?.to_vec();
+        from.resize(from.len() + dynamics.inputs(), 0.0);
+        let dt = S::from_f64(request.dt).to_f64();
+        let why = undefined_function(&StepProgram::of(method, dynamics), &from, dt)?;
+        Some(why.trim_end_matches(',').to_owned())
+    };
+    let Some(twin) = request.system.twin else { return undefined() };
     match request.loop_option() {
-        Some(_) => loop_cause(request),
-        None => step_cause::<S>(request),
+        Some(_) => loop_cause(request, twin),
+        None => step_cause::<S>(request, twin.system).or_else(undefined),
     }
 }
 
 /// The cause of an overflow without a loop.
-fn step_cause<S: Float>(request: &Request) -> Option<String> {
+fn step_cause<S: Float>(request: &Request, system: AnySystem) -> Option<String> {
     let rounded = |x: f64| S::from_f64(x).to_f64();
     let dt = rounded(request.dt);
     let Some(method) = request.stepping.any_method() else {
         return Some(range_cause(request.float, "the exact step"));
     };
     // The parameters are those of the float type. A drive adds a bounded force.
-    let linear = match request.system {
+    let linear = match system {
         AnySystem::Oscillator(Oscillator { omega2 }) => {
             Some(AnySystem::Oscillator(Oscillator { omega2: rounded(omega2) }))
         }
@@ -46,7 +61,7 @@ fn step_cause<S: Float>(request: &Request) -> Option<String> {
     match linear {
         Some(system) => linear_cause(method, system, dt, S::UNIT_ROUNDOFF, request.float),
         None => {
-            let omega = start_frequency(request)?;
+            let omega = start_frequency(request, system)?;
             let near = AnySystem::Oscillator(Oscillator { omega2: omega * omega });
             let why = instability_cause(method, near, [dt, 1.0])?;
             Some(format!("linearised at the start, {why}"))
@@ -55,16 +70,17 @@ fn step_cause<S: Float>(request: &Request) -> Option<String> {
 }
 
 /// The cause of an overflow of a loop or an uneven clock: it is unstable, or unstable in the mean square.
-fn loop_cause(request: &Request) -> Option<String> {
-    let Request { system, actuation, stepping, dt, timing, .. } = *request;
+fn loop_cause(request: &Request, Twin { system, actuation }: Twin) -> Option<String> {
+    let Request { stepping, dt, timing, .. } = *request;
     if let (None, Some(method)) = (timing.feedback, stepping.any_method()) {
         let why = instability_cause(method, system, [dt, 1.0])
-            .or_else(|| uneven_clock_cause(method, request));
+            .or_else(|| uneven_clock_cause(method, request, system));
         if why.is_some() {
             return why;
         }
     }
-    let (q, v, criteria) = (request.q.clone(), request.v.clone(), Criteria::default());
+    let (q, v, criteria) =
+        (request.system.q.clone(), request.system.v.clone(), Criteria::default());
     let step = crate::Request { system, actuation, stepping, dt, q, v, steps: 1, criteria, timing };
     let analysis = analyze(&step).ok()?;
     let about = if system.is_linear() { "" } else { "linearised at the start, " };
@@ -106,16 +122,16 @@ fn stable_latency_help(critical: &StableLatencies) -> String {
 }
 
 /// The cause of instability under a clock whose mean or slowest steps are longer than `dt`.
-fn uneven_clock_cause(method: AnyMethod, request: &Request) -> Option<String> {
-    let Request { system, dt, timing, record, .. } = request;
+fn uneven_clock_cause(method: AnyMethod, request: &Request, system: AnySystem) -> Option<String> {
+    let Request { dt, timing, record, .. } = request;
     if let Some(record) = record {
         let mean = record.iter().sum::<f64>() / record.len() as f64;
-        if let Some(why) = instability_cause(method, *system, [*dt, mean]) {
+        if let Some(why) = instability_cause(method, system, [*dt, mean]) {
             return Some(format!("at the mean recorded step, {why}"));
         }
     }
     let slowest = 1.0 + timing.skew?.largest();
-    instability_cause(method, *system, [*dt, slowest])
+    instability_cause(method, system, [*dt, slowest])
         .map(|why| format!("at the steps of the slowest clocks, {why}"))
 }
 
@@ -200,16 +216,17 @@ fn instability_cause(
 }
 
 /// The largest angular frequency of the linearisation at the start, in rad/s; none if it does not oscillate, or grows.
-fn start_frequency(request: &Request) -> Option<f64> {
-    with_system!(request.system, request.q.len(), |model, D| fastest::<D>(&model, request), None)
+fn start_frequency(request: &Request, system: AnySystem) -> Option<f64> {
+    let dimension = request.system.q.len();
+    with_system!(system, dimension, |model, D| fastest::<D>(&model, request), None)
 }
 
 /// The same for a model. It is not inlined because matrices of 1024 bits are large on the stack.
 #[inline(never)]
 fn fastest<const D: usize>(model: &impl Model<D>, request: &Request) -> Option<f64> {
     let start = State {
-        q: std::array::from_fn::<_, D, _>(|i| request.q[i]),
-        v: std::array::from_fn(|i| request.v[i]),
+        q: std::array::from_fn::<_, D, _>(|i| request.system.q[i]),
+        v: std::array::from_fn(|i| request.system.v[i]),
     };
     let values = eigenvalues(&Linearisation::generator_of(*model, &start));
     let fastest = values.iter().map(|z| [z.re.to_f64(), z.im.to_f64()]);

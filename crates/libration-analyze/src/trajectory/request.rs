@@ -1,8 +1,10 @@
 //! Requests for trajectories.
 
-use libration::catalog::{Actuation, Allowed};
-use libration::{AnySystem, Float, with_system};
-use libration_settings::{limits, units};
+use libration::catalog::Allowed;
+use libration::equations::StepProgram;
+use libration::{AnyMethod, AnySystem, Float};
+use libration_settings::equations::{EquationSystem, Twin};
+use libration_settings::limits;
 
 use super::ensemble_options::rows;
 use super::error::value_error;
@@ -16,10 +18,8 @@ pub(super) const MOST_DIMENSIONS: usize = 2;
 /// A system with its integrator, its initial state and the steps to keep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
-    /// The system.
-    pub system: AnySystem,
-    /// The quantity of its commands.
-    pub actuation: Actuation,
+    /// The system, with its start.
+    pub system: EquationSystem,
     /// The integrator, or exact steps.
     pub stepping: Stepping,
     /// The float type of all numbers but the time.
@@ -28,10 +28,6 @@ pub struct Request {
     pub dt: f64,
     /// Number of steps.
     pub steps: u64,
-    /// Initial positions.
-    pub q: Vec<f64>,
-    /// Initial velocities.
-    pub v: Vec<f64>,
     /// The interval of kept steps. The start and the last step are always kept.
     pub every: u64,
     /// The ensemble; none for a single trajectory.
@@ -45,9 +41,20 @@ pub struct Request {
 }
 
 impl Request {
-    /// The parameters of the system in the units of the request.
-    pub(super) fn parameters(&self) -> Vec<(&'static str, f64)> {
-        self.actuation.parameters(self.system)
+    /// Why steps of this integrator lose their order on this system; none if they do not.
+    pub fn caveat(&self) -> Option<String> {
+        let method = self.stepping.method()?;
+        if let Some(Twin { system, .. }) = self.system.twin {
+            return system.caveat(method);
+        }
+        let is_positional = self.system.equations.dynamics().is_positional();
+        (method.supposes_positional_forces() && !is_positional).then(|| {
+            format!(
+                "a force of `{}` depends on a velocity, which `{}` does not suppose: its errors are those of order 1; `rk4` keeps its order",
+                self.system.name,
+                method.name()
+            )
+        })
     }
 
     /// The first option that requires a loop.
@@ -61,21 +68,16 @@ impl Request {
         recorded.unwrap_or(1.0) * self.timing.longest()
     }
 
-    /// Names of the columns, from left to right.
-    pub fn column_names(&self) -> Vec<String> {
-        let coordinates = |x, d| (0..d).map(move |i| format!("{x}{i}"));
-        let mut names = self.ensemble.map_or_else(Vec::new, |_| vec!["trajectory".to_owned()]);
-        names.extend(["step".to_owned(), "t".to_owned()]);
-        names.extend(coordinates('q', self.q.len()));
-        names.extend(coordinates('v', self.v.len()));
-        names.push("energy".to_owned());
+    /// Names and units of the columns, from left to right.
+    pub fn columns(&self) -> Vec<(String, String)> {
+        let system = &self.system;
+        let named = |name: &str, unit: &str| (name.to_owned(), unit.to_owned());
+        let mut names: Vec<_> = self.ensemble.iter().map(|_| named("trajectory", "1")).collect();
+        names.extend([named("step", "1"), named("t", &system.time_unit)]);
+        names.extend(system.states.iter().map(|state| named(&state.name, &state.unit)));
+        let energy = system.equations.dynamics().energy();
+        names.extend(energy.map(|_| named("energy", &system.energy_unit)));
         names
-    }
-
-    /// Units of the columns, from left to right.
-    pub fn column_units(&self) -> Vec<&'static str> {
-        let trajectory = self.ensemble.map(|_| "1").into_iter();
-        trajectory.chain(units::of_columns(self.system, self.q.len())).collect()
     }
 
     /// Number of rows if the state stays finite.
@@ -111,16 +113,7 @@ impl Request {
     }
 
     fn check_start<S: Float>(&self) -> Result<(), TrajectoryError> {
-        let dimension = self.q.len();
-        let entry = self.system.entry();
-        if !entry.dimensions.contains(&dimension) {
-            return Err(entry.wrong_dimension(dimension).into());
-        }
-        if self.v.len() != dimension {
-            let allowed = format!("as many numbers as `q`: {dimension}");
-            return Err(value_error("v", list(&self.v), allowed));
-        }
-        for (name, values) in [("q", &self.q), ("v", &self.v)] {
+        for (name, values) in [("q", &self.system.q), ("v", &self.system.v)] {
             if !values.iter().all(|&x| S::from_f64(x).is_finite()) {
                 let allowed = format!("finite in {}", S::NAME);
                 return Err(value_error(name, list(values), allowed));
@@ -132,7 +125,7 @@ impl Request {
     fn check_ensemble<S: Float>(&self, ensemble: &EnsembleOptions) -> Result<(), TrajectoryError> {
         ensemble.check()?;
         let furthest = 1.0 + ensemble.spread.abs();
-        let all = self.q.iter().chain(&self.v);
+        let all = self.system.q.iter().chain(&self.system.v);
         if !all.into_iter().all(|&x| S::from_f64(furthest * x).is_finite()) {
             let allowed = format!("small enough for finite starts in {}", S::NAME);
             return Err(value_error("spread", format!("{:?}", ensemble.spread), allowed));
@@ -141,13 +134,17 @@ impl Request {
     }
 
     fn check_timing(&self, flag: &'static str) -> Result<(), TrajectoryError> {
-        let (system, dimension) = (self.system.name(), self.q.len());
+        let (system, dimension) = (&self.system.name, self.system.q.len());
+        let Some(twin) = self.system.twin else {
+            let value = format!("given for {system}");
+            return Err(value_error(flag, value, "for a system of the catalogue"));
+        };
         if dimension > MOST_DIMENSIONS {
             let value = format!("given for {system} in {dimension} dimensions");
             return Err(value_error(flag, value, format!("for at most {}", MOST_DIMENSIONS)));
         }
         // A command would change the time.
-        if self.timing.feedback.is_some() && matches!(self.system, AnySystem::DrivenOscillator(_)) {
+        if self.timing.feedback.is_some() && matches!(twin.system, AnySystem::DrivenOscillator(_)) {
             let value = format!("given for {system}");
             return Err(value_error("feedback", value, "for a system without a time coordinate"));
         }
@@ -183,32 +180,47 @@ impl Request {
                 "an explicit integrator, such as `rk4`, in a loop",
             ));
         }
-        if self.stepping != Stepping::Exact {
-            return Ok(());
+        if let Some(method) = self.stepping.any_method() {
+            return self.check_size(method);
         }
-        if !self.system.is_linear() {
-            let value = format!("{} for {}", self.stepping.name(), self.system.name());
-            let allowed = "another integrator: exact steps require a linear system";
-            return Err(value_error("integrator", value, allowed));
+        if self.ensemble.is_some() && self.system.twin.is_none() {
+            let value = format!("{} for several trajectories", self.stepping.name());
+            return Err(value_error("integrator", value, "for a system of the catalogue"));
         }
-        with_system!(
-            self.system,
-            self.q.len(),
-            |model, D| exact::<D>(&model, self.dt, self.longest()).map(|_| ()),
-            Ok(())
-        )
+        exact(&self.system, self.dt, self.longest()).map(|_| ())
+    }
+
+    fn check_size(&self, method: AnyMethod) -> Result<(), TrajectoryError> {
+        let degrees = self.system.equations.degrees().len();
+        let most = StepProgram::most_degrees(method);
+        if degrees > most {
+            let given = format!("{} for {degrees} degrees of freedom", method.name());
+            let allowed = format!("an explicit integrator for more than {most}");
+            return Err(value_error("integrator", given, allowed));
+        }
+        Ok(())
     }
 
     fn check_parameters<S: Float>(&self) -> Result<(), TrajectoryError> {
-        for (name, value) in self.system.parameters() {
+        for (name, value) in self.parameters() {
             let rounded = S::from_f64(value).to_f64();
             if !rounded.is_finite() || (rounded == 0.0) != (value == 0.0) {
-                let system = self.system.name();
+                let system = self.system.name.clone();
                 let float = S::NAME;
                 return Err(TrajectoryError::Parameter { system, name, value, rounded, float });
             }
         }
         Ok(())
+    }
+
+    /// The parameters that the float type must represent: those of the compiled system, where a frequency stands for a mass and a stiffness.
+    fn parameters(&self) -> Vec<(String, f64)> {
+        match self.system.twin {
+            Some(Twin { system, .. }) => {
+                system.parameters().into_iter().map(|(name, x)| (name.to_owned(), x)).collect()
+            }
+            None => self.system.definitions.parameters.clone(),
+        }
     }
 }
 

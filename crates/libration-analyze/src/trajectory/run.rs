@@ -1,21 +1,13 @@
-//! Dispatch from a request to the loop over steps.
+//! A single trajectory, by the program of its step.
 
-use libration::ensemble::dynamics_of;
-use libration::equations::StepProgram;
-use libration::simulation::{Sample, SimulationError, Simulator};
-use libration::system::DynSystem;
-use libration::{
-    AnySystem, Float, Hamiltonian, Integrator, Model, Scalar, State, System, with_method,
-    with_system,
-};
+use libration::Trajectory;
 
 use super::ensemble::EnsembleFloat;
 use super::exact_step::exact;
 use super::{Divergence, Monitor, Outcome, Request, TrajectoryError, overflow};
-use crate::Stepping;
+use crate::energy_growth::EnergyGrowth;
 use crate::export::{Number, Rows};
-use crate::newton_residual::{NewtonResidual, refined};
-use crate::program_simulation::ProgramSimulation;
+use crate::newton_residual::{NewtonCheck, refined};
 
 /// Steps between two checks of the monitor.
 const CHUNK: u64 = 1 << 16;
@@ -26,189 +18,105 @@ pub(super) fn run<S: EnsembleFloat>(
     rows: &mut dyn Rows<S>,
     monitor: &dyn Monitor,
 ) -> Result<Outcome, TrajectoryError> {
-    if request.loop_option().is_some() {
-        return S::run_loops(request, rows, monitor);
-    }
-    match (request.ensemble, request.stepping) {
-        (None, _) => {}
-        (Some(ensemble), Stepping::Method(method)) => {
-            return S::run_ensemble(request, method.into(), &ensemble, rows, monitor);
-        }
-        (Some(ensemble), Stepping::Implicit(method)) => {
-            return S::run_ensemble(request, method.into(), &ensemble, rows, monitor);
-        }
-        (Some(_), Stepping::Exact) => return S::run_loops(request, rows, monitor),
-    }
-    let dimension = request.q.len();
-    let wrong = || Err(request.system.entry().wrong_dimension(dimension).into());
-    with_system!(
-        request.system,
-        compiled_dimension(request.system, dimension),
-        |model, D| {
-            if const { D <= NARROW || D == WIDE } {
-                on_model::<S, D, _>(&model, request, rows, monitor)
-            } else {
-                wrong()
-            }
-        },
-        wrong()
-    )
-}
-
-/// Largest dimension with a simulation of its own.
-const NARROW: usize = 2;
-
-/// Largest dimension of an oscillator in the catalogue.
-const WIDE: usize = 8;
-
-/// The dimension in which a system is simulated: the largest for an oscillator in 3 to 8 dimensions. Its coordinates do not depend
-/// on each other, so additional zeros change no bit, and six dimensions share one simulation per float type.
-fn compiled_dimension(system: AnySystem, dimension: usize) -> usize {
-    match system {
-        AnySystem::Oscillator(_) if (NARROW + 1..=WIDE).contains(&dimension) => WIDE,
-        _ => dimension,
+    let ensemble = request.ensemble.as_ref();
+    match (ensemble, request.stepping.any_method()) {
+        _ if request.loop_option().is_some() => S::run_loops(request, rows, monitor),
+        (Some(_), None) => S::run_loops(request, rows, monitor),
+        (Some(ensemble), Some(method)) => S::run_ensemble(request, method, ensemble, rows, monitor),
+        (None, _) => run_alone(request, rows, monitor),
     }
 }
 
-fn on_model<S: EnsembleFloat, const D: usize, M: Model<D>>(
-    model: &M,
+fn run_alone<S: Number>(
     request: &Request,
     rows: &mut dyn Rows<S>,
     monitor: &dyn Monitor,
 ) -> Result<Outcome, TrajectoryError> {
-    let system = model.on::<S>();
-    let coordinates = |x: &[f64]| core::array::from_fn(|i| x.get(i).map_or(S::zero(), number));
-    let start = State { q: coordinates(&request.q), v: coordinates(&request.v) };
+    let Request { system, stepping, steps, every, .. } = request;
+    let dynamics = system.equations.dynamics();
+    let start: Vec<S> = system.q.iter().chain(&system.v).map(|&x| S::from_f64(x)).collect();
     let dt = S::from_f64(request.dt);
-    let energy = |state: &State<S, D>| system.energy(state);
-    // The model is converted per step because it can be shared between threads.
-    let acceleration = |state: &State<S, D>| model.on::<S>().acceleration(state);
-    let chosen = DynSystem(&acceleration);
-    let mut refined_step = None;
-    let program = match request.stepping {
-        Stepping::Implicit(method) => {
-            let wrong = || request.system.entry().wrong_dimension(D);
-            let dynamics = dynamics_of(request.system, D).ok_or_else(wrong)?;
-            refined_step = refined(method.into(), &dynamics);
-            Some(StepProgram::implicit(method, &dynamics))
+    let method = stepping.any_method();
+    let mut trajectory = match method {
+        Some(method) => Trajectory::new(method, dynamics, &start, dt),
+        None => {
+            let exact = exact(system, request.dt, request.longest())?;
+            Trajectory::exact(exact, dynamics, &start, dt)
         }
-        _ => None,
     };
-    // Separate loops per method only where the speed justifies the compilation.
-    let mut simulation: Box<dyn Simulation<S, D> + '_> = match (request.stepping, &program) {
-        (_, Some(program)) => {
-            let simulation = ProgramSimulation::new(program, start, dt)?;
-            Box::new(simulation.checked(refined_step.as_ref()))
-        }
-        (Stepping::Method(method), _) if const { S::IS_NATIVE && D <= NARROW } => {
-            with_method!(method, |integrator| {
-                Box::new(Simulator::new(system, integrator, start, dt)?)
-            })
-        }
-        (Stepping::Method(method), _) => Box::new(Simulator::new(chosen, method, start, dt)?),
-        (Stepping::Implicit(_) | Stepping::Exact, _) => Box::new(Simulator::new(
-            system,
-            exact(model, request.dt, request.longest())?,
-            start,
-            dt,
-        )?),
-    };
-    advance(&mut *simulation, &energy, request, rows, monitor)
-}
-
-fn number<S: Scalar>(x: &f64) -> S {
-    S::from_f64(*x)
-}
-
-/// The interface of a simulator to the loop over rows, which is compiled per float type and dimension
-/// instead of per simulator.
-trait Simulation<S, const D: usize> {
-    fn run(&mut self, steps: u64) -> Result<(), SimulationError>;
-    fn sample(&self) -> Sample<S, D>;
-
-    /// What the iterations of its steps left; none without iterations.
-    fn newton_residual(&self) -> Option<NewtonResidual> {
-        None
-    }
-}
-
-impl<Sys, I, S, const D: usize> Simulation<S, D> for Simulator<Sys, I, S, D>
-where
-    Sys: System<S, D> + Copy,
-    I: Integrator,
-    S: Float,
-{
-    fn run(&mut self, steps: u64) -> Result<(), SimulationError> {
-        Simulator::run(self, steps, &mut ())
-    }
-
-    fn sample(&self) -> Sample<S, D> {
-        Simulator::sample(self)
-    }
-}
-
-impl<S: Float, const D: usize> Simulation<S, D> for ProgramSimulation<'_, S, D> {
-    fn run(&mut self, steps: u64) -> Result<(), SimulationError> {
-        ProgramSimulation::run(self, steps, &mut |_| {})
-    }
-
-    fn sample(&self) -> Sample<S, D> {
-        ProgramSimulation::sample(self)
-    }
-
-    fn newton_residual(&self) -> Option<NewtonResidual> {
-        ProgramSimulation::newton_residual(self)
-    }
-}
-
-/// Runs `simulation` to the end and passes the start, each `every`-th step and the last step to `rows`.
-fn advance<S: Number, const D: usize>(
-    simulation: &mut dyn Simulation<S, D>,
-    energy: &dyn Fn(&State<S, D>) -> S,
-    request: &Request,
-    rows: &mut dyn Rows<S>,
-    monitor: &dyn Monitor,
-) -> Result<Outcome, TrajectoryError> {
-    let Request { steps, every, .. } = *request;
-    let dimension = request.q.len();
-    let mut values = Vec::with_capacity(2 * dimension + 1);
-    let mut show = |sample: Sample<S, D>| {
+    let kept: Vec<usize> = system.states.iter().map(|state| state.place).collect();
+    let refined = method.and_then(|method| refined(method, dynamics));
+    let mut check = refined.as_ref().map(|refined| NewtonCheck::new(refined, kept.clone()));
+    let mut energy_of = dynamics.energy().map(|energy| energy.on::<S>());
+    let mut growth = EnergyGrowth::new(system, *steps);
+    let mut values = Vec::with_capacity(kept.len() + 1);
+    let mut show = |trajectory: &Trajectory<S>| {
+        let state = trajectory.state();
         values.clear();
-        for coordinates in [&sample.state.q, &sample.state.v] {
-            values.extend_from_slice(&coordinates[..dimension.min(D)]);
-        }
-        values.push(energy(&sample.state));
-        rows.row(&[sample.step], sample.time, &values)
+        values.extend(kept.iter().map(|&place| state[place]));
+        values.extend(energy_of.iter_mut().flat_map(|energy| energy.run(state)));
+        rows.row(&[trajectory.steps()], trajectory.time(), &values)
     };
-    show(simulation.sample())?;
-    let (mut step, mut shown) = (0, 0);
-    while step < steps {
+    show(&trajectory)?;
+    let mut shown = 0;
+    let is_lost = loop {
         if monitor.should_stop() {
             return Err(TrajectoryError::Interrupted);
         }
-        let to_next_row = (every - step % every).min(steps - step);
-        let outcome = simulation.run(to_next_row.min(CHUNK));
-        step = simulation.sample().step;
+        let step = trajectory.steps();
+        if let Some(growth) = &mut growth {
+            growth.observe(step, trajectory.state());
+        }
+        if step == *steps {
+            break false;
+        }
+        let looked_at = growth.as_ref().map_or(*steps, |growth| growth.next_step(step));
+        let next = (step - step % every).saturating_add(*every).min(looked_at);
+        let count = next.min(*steps).min(step + CHUNK) - step;
+        let is_finite = match &mut check {
+            None => trajectory.advance(count),
+            Some(check) => advance_checked(&mut trajectory, check, count),
+        };
+        let step = trajectory.steps();
         monitor.on_step(step);
-        let ended = outcome.is_err() || step == steps;
-        if step != shown && (ended || step.is_multiple_of(every)) {
-            show(simulation.sample())?;
+        let is_row = !is_finite || step == *steps || step.is_multiple_of(*every);
+        if is_row && step != shown {
+            show(&trajectory)?;
             shown = step;
         }
-        match outcome {
-            Ok(()) => {}
-            Err(SimulationError::NotFinite { step, time: t }) => {
-                let reason = "the state stopped being finite".to_owned();
-                let reason = match overflow::cause::<S>(request) {
-                    Some(cause) => reason + ": " + &cause,
-                    None => reason,
-                };
-                let outcome =
-                    Outcome::Diverged(Divergence { step, t, reason, newton_residual: None });
-                return Ok(outcome.with_residual(simulation.newton_residual()));
-            }
-            Err(error) => return Err(error.into()),
+        if !is_finite {
+            break true;
         }
+    };
+    let residual = check.and_then(|check| check.found());
+    if !is_lost {
+        let outcome = Outcome::Complete.with_residual(residual);
+        return Ok(outcome.with_energy(growth.and_then(|growth| growth.fault())));
     }
-    Ok(Outcome::Complete.with_residual(simulation.newton_residual()))
+    let state: Vec<f64> = trajectory.state().iter().map(|x| x.to_f64()).collect();
+    let step = trajectory.steps() + 1;
+    let t = step as f64 * dt.to_f64();
+    let reason = "the state stopped being finite".to_owned();
+    let reason = match overflow::cause::<S>(request, Some(&state)) {
+        Some(cause) => reason + ": " + &cause,
+        None => reason,
+    };
+    let outcome = Outcome::Diverged(Divergence { step, t, reason, newton_residual: None });
+    Ok(outcome.with_residual(residual))
+}
+
+/// Takes steps one by one, each compared with one that iterates further. Returns whether all states are finite.
+fn advance_checked<S: Number>(
+    trajectory: &mut Trajectory<S>,
+    check: &mut NewtonCheck<'_, S>,
+    count: u64,
+) -> bool {
+    (0..count).all(|_| {
+        let before = trajectory.inputs();
+        let is_finite = trajectory.advance(1);
+        if is_finite {
+            check.observe(&before, trajectory.state(), trajectory.steps());
+        }
+        is_finite
+    })
 }

@@ -14,7 +14,7 @@ fn coordinates(request: &Request) -> Vec<Vec<String>> {
     write(request, Format::Csv, &mut bytes, &AtomicBool::new(false)).unwrap();
     let text = String::from_utf8(bytes).unwrap();
     let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|row| row.split(',').collect()).collect();
-    let last = 2 + 2 * request.q.len();
+    let last = 2 + request.system.states.len();
     let column = |i: usize| rows.iter().map(|row| row[i].to_owned()).collect();
     (2..last).map(column).collect()
 }
@@ -24,11 +24,16 @@ fn each_dimension_of_an_oscillator_moves_as_it_does_alone() {
     for float in FloatType::ALL {
         for method in Method::ALL {
             let base = Request { float, ..trajectory::request("oscillator", method, 0.01, 40) };
-            let all = Request { q: vec![1.0, -0.3, 0.0], v: vec![0.5, 0.0, 2.0], ..base.clone() };
+            let one = base.system.twin.unwrap().system;
+            let of = |q: &[f64], v: &[f64]| {
+                let system = trajectory::from(one, [q.to_vec(), v.to_vec()]);
+                Request { system, ..base.clone() }
+            };
+            let (q, v) = ([1.0, -0.3, 0.0], [0.5, 0.0, 2.0]);
+            let all = of(&q, &v);
             let found = coordinates(&all);
             for i in 0..3 {
-                let alone =
-                    coordinates(&Request { q: vec![all.q[i]], v: vec![all.v[i]], ..base.clone() });
+                let alone = coordinates(&of(&q[i..=i], &v[i..=i]));
                 assert_eq!(
                     [&found[i], &found[3 + i]],
                     [&alone[0], &alone[1]],

@@ -6,6 +6,7 @@ mod adaptive;
 mod analyze;
 mod comparison;
 mod dimensions;
+mod energy_growth;
 mod exact_growth;
 mod export;
 mod growing_motions;

@@ -1,21 +1,19 @@
 //! Tests of the causes of overflows.
 
-use libration::catalog::Actuation;
 use libration::{AnySystem, Method};
 use libration_analyze::Stepping;
 use libration_analyze::trajectory::{EnsembleOptions, FloatType, Outcome, Request, simulate};
 
+use super::trajectory::{at, from};
+
 /// The report's oscillator, or another system with these parameters.
 fn request(system: &str, parameters: &[(&str, f64)], method: Method, dt: f64) -> Request {
     Request {
-        system: AnySystem::build(system, parameters).unwrap(),
-        actuation: Actuation::Acceleration,
+        system: from(AnySystem::build(system, parameters).unwrap(), [vec![1.0], vec![0.0]]),
         stepping: method.into(),
         float: FloatType::F64,
         dt,
         steps: 30_000,
-        q: vec![1.0],
-        v: vec![0.0],
         every: 30_000,
         ensemble: None,
         timing: Default::default(),
@@ -28,6 +26,7 @@ fn request(system: &str, parameters: &[(&str, f64)], method: Method, dt: f64) ->
 fn reason(request: &Request) -> Option<String> {
     match simulate(request).unwrap().outcome {
         Outcome::Complete | Outcome::Iterated(_) => None,
+        Outcome::EnergyDiverges { verdict, .. } => Some(verdict.evidence),
         Outcome::Diverged(stopped) => Some(stopped.reason),
         Outcome::NotFinite { reason, .. } => Some(reason.unwrap_or_default()),
     }
@@ -72,17 +71,16 @@ fn no_step_is_recommended_where_none_is_stable() {
 fn a_stable_step_that_overflows_names_the_float_type() {
     // ω²q = 3·10⁵ is no number of f16.
     let of = |stepping: Stepping, float| Request {
-        q: vec![3e4],
         float,
         stepping,
-        ..request("oscillator", &[("omega2", 10.0)], Method::Rk4, 0.1)
+        ..at(3e4, request("oscillator", &[("omega2", 10.0)], Method::Rk4, 0.1))
     };
     let verlet = Stepping::Method(Method::VelocityVerlet);
     let found = reason(&of(verlet, FloatType::F16)).unwrap();
     let wanted = "the step is stable, but a number exceeds the range of f16, 65504; choose a wider";
     assert!(found.contains(wanted), "{found}");
     assert_eq!(reason(&of(verlet, FloatType::F32)), None);
-    let large = Request { q: vec![1e308], ..of(verlet, FloatType::F64) };
+    let large = at(1e308, of(verlet, FloatType::F64));
     let found = reason(&large).unwrap();
     assert!(found.contains("range of f64, 1.798e308; choose a start nearer"), "{found}");
 }
@@ -92,13 +90,15 @@ fn a_nonlinear_system_is_judged_by_its_linearisation_at_the_start_or_not_at_all(
     // α + 3βq² = 30001 at q = 10.
     let parameters = [("alpha", 1.0), ("beta", 100.0)];
     let stiff = request("duffing", &parameters, Method::Leapfrog, 0.1);
-    let found = reason(&Request { q: vec![10.0], ..stiff }).unwrap();
+    let found = reason(&at(10.0, stiff)).unwrap();
     let wanted =
         "linearised at the start, ωΔt = 17.3 exceeds leapfrog's limit 2; choose --dt below 0.0115";
     assert!(found.ends_with(wanted), "{found}");
     // Beyond its energy of escape the exact solution leaves for infinity as well.
     let (q, v) = (vec![0.0, 2.0], vec![0.0, 1.0]);
-    let escape = Request { q, v, ..request("henon-heiles", &[], Method::Leapfrog, 0.01) };
+    let one = AnySystem::build("henon-heiles", &[] as &[(&str, f64)]).unwrap();
+    let oscillator = request("oscillator", &[], Method::Leapfrog, 0.01);
+    let escape = Request { system: from(one, [q, v]), ..oscillator };
     assert_eq!(reason(&escape).unwrap(), "the state stopped being finite");
 }
 
@@ -125,7 +125,9 @@ fn a_free_mass_that_leaves_the_float_type_is_not_called_unstable() {
     let undamped = [("omega2", 0.0), ("gamma", 0.0)];
     for (system, parameters) in [("oscillator", &undamped[..1]), ("damped-oscillator", &undamped)] {
         let free = request(system, parameters, Method::Rk4, 10.0);
-        let found = reason(&Request { v: vec![100.0], float: FloatType::F16, ..free }).unwrap();
+        let one = AnySystem::build(system, parameters).unwrap();
+        let moving = from(one, [vec![1.0], vec![100.0]]);
+        let found = reason(&Request { system: moving, float: FloatType::F16, ..free }).unwrap();
         assert!(found.contains("the step is stable, but a number exceeds"), "{found}");
     }
 }

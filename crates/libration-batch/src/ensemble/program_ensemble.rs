@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use libration_core::{AnyMethod, with_method};
-use libration_equations::{Dynamics, Program, StepProgram};
+use libration_core::AnyMethod;
+use libration_equations::{Dynamics, Program};
 
 use super::planes::Planes;
 use super::{BatchFloat, EnsembleError, Execution, GRAIN, MOVED};
 use crate::machine::{Block, BlockProgram};
+use crate::machine_step::MachineStep;
 
 /// Trajectories of a system by its program, as structure of arrays.
 ///
@@ -19,16 +20,8 @@ pub(super) struct ProgramEnsemble<T> {
     planes: Planes<T>,
     step: u64,
     execution: Execution,
-    /// The steps that were used last, with and without [a carried acceleration](Step::first).
-    steps: [Option<(AnyMethod, Arc<Step>)>; 2],
-}
-
-/// A step for the machine, with its way from accelerations to accelerations where there is one.
-#[derive(Debug)]
-struct Step {
-    step: BlockProgram,
-    /// The program of the accelerations at the start, if the step takes them.
-    first: Option<BlockProgram>,
+    /// The steps that were used last, with and without [a carried acceleration](MachineStep::first).
+    steps: [Option<(AnyMethod, Arc<MachineStep>)>; 2],
 }
 
 impl<T: BatchFloat> ProgramEnsemble<T> {
@@ -124,19 +117,19 @@ impl<T: BatchFloat> ProgramEnsemble<T> {
     }
 
     /// The step of a method. It is kept, since to make it takes as long as some thousand steps.
-    fn step_of(&mut self, method: AnyMethod, carries: bool) -> Arc<Step> {
+    fn step_of(&mut self, method: AnyMethod, carries: bool) -> Arc<MachineStep> {
         let known = &mut self.steps[usize::from(carries)];
         match known {
             Some((own, step)) if *own == method => step.clone(),
             _ => {
-                let step = Arc::new(Step::new(method, &self.dynamics, carries));
+                let step = Arc::new(MachineStep::new(method, &self.dynamics, carries));
                 *known = Some((method, step.clone()));
                 step
             }
         }
     }
 
-    fn run(&mut self, step: &Step, dt: T, steps: u64) {
+    fn run(&mut self, step: &MachineStep, dt: T, steps: u64) {
         let degrees = self.degrees();
         // The time step is the last input.
         let mut inputs = vec![T::zero(); step.inputs(&self.dynamics)];
@@ -182,47 +175,5 @@ impl<T: BatchFloat> ProgramEnsemble<T> {
                 }
             }
         });
-    }
-}
-
-impl Step {
-    /// To evaluate the accelerations at the start costs what a step saves: a single step is better off without.
-    fn new(method: AnyMethod, dynamics: &Dynamics, carries: bool) -> Self {
-        let degrees = dynamics.degrees();
-        let carrying = match method {
-            AnyMethod::Explicit(method) => {
-                with_method!(method, |method| StepProgram::carrying(method, dynamics))
-            }
-            AnyMethod::Implicit(_) => None,
-        };
-        match carrying.filter(|_| carries) {
-            Some(carrying) => {
-                let rows = 3 * degrees;
-                let targets: Vec<usize> = (0..rows).collect();
-                let row_of = |i: usize| (i < rows).then_some(i);
-                let first = BlockProgram::new(
-                    dynamics.accelerations(),
-                    |i| (i < 2 * degrees).then_some(i),
-                    &targets[2 * degrees..],
-                    rows,
-                );
-                let step = BlockProgram::new(carrying.program(), row_of, &targets, rows);
-                Step { step, first: Some(first) }
-            }
-            None => {
-                let rows = 2 * degrees;
-                let targets: Vec<usize> = (0..rows).collect();
-                let program = StepProgram::of(method, dynamics);
-                let row_of = |i: usize| (i < rows).then_some(i);
-                let step = BlockProgram::new(program.program(), row_of, &targets, rows);
-                Step { step, first: None }
-            }
-        }
-    }
-
-    /// The number of inputs before the time step.
-    fn inputs(&self, dynamics: &Dynamics) -> usize {
-        let vectors = if self.first.is_some() { 3 } else { 2 };
-        vectors * dynamics.degrees() + dynamics.inputs()
     }
 }

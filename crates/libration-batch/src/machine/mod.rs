@@ -8,10 +8,12 @@
 mod block;
 mod block_program;
 mod instruction;
+mod lane;
 mod lowering;
 mod row_assignment;
 mod runs;
 
 pub(crate) use block::Block;
 pub(crate) use block_program::BlockProgram;
+pub(crate) use lane::Lane;
 pub(crate) use runs::MachineFloat;

@@ -110,7 +110,8 @@ Examples:
   libration simulate --system cart_pole.toml --lqr 1,10,0,1/0.1 --period 0.02 --latency 0.03 \\
       --steps 200 --output balance.csv
 
-The columns are step, t, q0, …, v0, …, energy; with --num-trajectories the first column is trajectory.
+The columns are step, t, the coordinates by name, their velocities with a prime, states of first order, and the energy;
+with --num-trajectories the first column is trajectory. If the energy diverges although no force adds any, a warning says so.
 With --plant, --config, --lqr or --gain a row belongs to the beginning of a period. Its columns are step, t, the states,
 `measured NAME` (what the controller reads), `input NAME` (what acts), and the cost so far.
 If the state overflows, the rows end and a note says so. With --num-trajectories, --feedback, --jitter, --skew

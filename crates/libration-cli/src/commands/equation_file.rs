@@ -3,11 +3,9 @@
 use std::fmt::Display;
 use std::path::Path;
 
-use libration_analyze::Timing;
-use libration_analyze::equation_trajectory::EquationRequest;
 use libration_settings::equations::EquationSystem;
 
-use crate::args::{Coordinates, SimulateArgs, SystemArgs};
+use crate::args::{Coordinates, SystemArgs};
 use crate::error::Failure;
 
 /// Reads the system of the equations in a file, with other values of some parameters.
@@ -37,6 +35,14 @@ pub(super) fn system(options: &SystemArgs) -> Option<Result<EquationSystem, Fail
         });
     }
     (!options.force.is_empty()).then(|| by_forces(options))
+}
+
+/// The system of the options, whatever describes it.
+pub(super) fn any_system(options: &SystemArgs) -> Result<EquationSystem, Failure> {
+    match system(options) {
+        Some(system) => system,
+        None => EquationSystem::of_catalogue(options.resolve()?).map_err(Failure::run),
+    }
 }
 
 /// The system of the accelerations of `--force`, from `--q` (default: 1) and `--v` (default: 0).
@@ -70,35 +76,4 @@ fn by_forces(options: &SystemArgs) -> Result<EquationSystem, Failure> {
     );
     EquationSystem::parse(&text, "--force", &[])
         .map_err(|error| Failure::Shown(error.render_styled()))
-}
-
-/// The request for a system by equations.
-pub(super) fn simulation(
-    args: &SimulateArgs,
-    system: EquationSystem,
-) -> Result<EquationRequest, Failure> {
-    let Some(step) = &args.step else {
-        return Err(Failure::usage("--integrator and --dt are required with --system"));
-    };
-    let Some(method) = step.integrator.any_method() else {
-        return Err(Failure::usage(
-            "--integrator exact: exact steps require a linear system of the catalogue or --plant",
-        ));
-    };
-    let unsupported = [
-        ("--time-stamps", args.time_stamps.is_some()),
-        ("a control loop", args.timing.timing() != Timing::default()),
-    ];
-    if let Some(flag) = unsupported.iter().find(|(_, given)| *given).map(|(flag, _)| *flag) {
-        return Err(Failure::usage(format!("{flag} requires a system of the catalogue")));
-    }
-    Ok(EquationRequest {
-        system,
-        method,
-        float: args.float,
-        dt: step.dt,
-        steps: args.steps,
-        every: args.every,
-        ensemble: args.ensemble()?,
-    })
 }

@@ -9,14 +9,12 @@ use indicatif::ProgressBar;
 use libration::control::clock::Recorded;
 use libration_advise::linear::{self, LinearRequest, RequestFile};
 use libration_analyze::adaptive;
-use libration_analyze::equation_trajectory;
 use libration_analyze::export::ExportError;
 use libration_analyze::linear_trajectory;
 use libration_analyze::trajectory;
 use libration_analyze::trajectory::{
     Divergence, Format, Monitor, Outcome, Request, TrajectoryError,
 };
-use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::{Document, Fault};
 
 use super::{adaptive_steps, config_file, equation_file, equation_loop, time_stamps};
@@ -62,18 +60,8 @@ pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
             adaptive::write(&request, format, out, watcher)
         });
     }
-    if let Some(system) = args.system.as_ref().and_then(equation_file::system) {
-        let request = equation_file::simulation(args, system?)?;
-        if let Some(caveat) = request.caveat().filter(|_| !quiet) {
-            terminal::say(&format!("note: {caveat}"));
-        }
-        return write(args, quiet, format, &|out, watcher| {
-            equation_trajectory::write(&request, format, out, watcher)
-        });
-    }
     let request = request(args)?;
-    let caveat = request.stepping.method().and_then(|method| request.system.caveat(method));
-    if let Some(caveat) = caveat.filter(|_| !quiet) {
+    if let Some(caveat) = request.caveat().filter(|_| !quiet) {
         terminal::say(&format!("note: {caveat}"));
     }
     write(args, quiet, format, &|out, watcher| trajectory::write(&request, format, out, watcher))
@@ -106,6 +94,7 @@ fn write(
     let unsolved = unsolved.map(Failure::run);
     let warning = match outcome {
         Outcome::Complete | Outcome::Iterated(_) => return unsolved.map_or(Ok(()), Err),
+        Outcome::EnergyDiverges { verdict, .. } => format!("warning: {}", verdict.evidence),
         Outcome::Diverged(Divergence { step, t, reason, .. }) => {
             let last = step - 1;
             format!("warning: the last row is step {last}: at step {step} (t = {t} s) {reason}")
@@ -158,16 +147,13 @@ fn request(args: &SimulateArgs) -> Result<Request, Failure> {
             "--system, --integrator and --dt are required without --plant and --config",
         ));
     };
-    let InitialValueProblem { system, actuation, q, v } = system.resolve()?;
+    let system = equation_file::any_system(system)?;
     Ok(Request {
-        actuation,
         system,
         stepping: step.integrator,
         float: args.float,
         dt: step.dt,
         steps: args.steps,
-        q,
-        v,
         every: args.every,
         ensemble: args.ensemble()?,
         timing: args.timing.timing(),

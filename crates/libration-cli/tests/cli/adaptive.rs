@@ -23,7 +23,7 @@ fn steps_follow_the_distance_and_the_energy_stays() {
         "simulate --system kepler --q 0.1,0 --v 0,4.358898943540674 --integrator leapfrog --dt 0.001 \
          --steps 20000 --adaptive integrating",
     );
-    assert_eq!(head, "step,t,dt,q0,q1,v0,v1,energy");
+    assert_eq!(head, "step,t,dt,x,y,x',y',energy");
     for pair in rows.windows(2).skip(1) {
         let ([.., energy], [_, before, ..]) = (&pair[1][..], &pair[0][..]) else { panic!() };
         assert!((energy + 0.5).abs() < 5e-3, "{energy}");

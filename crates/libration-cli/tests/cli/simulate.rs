@@ -41,7 +41,7 @@ fn rows_are_csv_on_stdout() {
     let folder = folder();
     let text = stdout(&folder, &format!("{REPORT} --save-every 300"));
     let lines: Vec<_> = text.lines().collect();
-    assert_eq!(lines[0], "step,t,q0,v0,energy");
+    assert_eq!(lines[0], "step,t,q,q',energy");
     assert_eq!(lines[1], "0,0.0,1.0,0.0,5.0");
     let steps: Vec<_> = lines[1..].iter().map(|l| l.split(',').next().unwrap()).collect();
     assert_eq!(steps, ["0", "300", "600", "900", "1000"]);
@@ -58,7 +58,7 @@ fn negative_and_many_coordinates() {
                  --q -1,2,0.5 --v -0.3,0,-1e-3";
     let text = stdout(&folder, words);
     let mut lines = text.lines();
-    assert_eq!(lines.next().unwrap(), "step,t,q0,q1,q2,v0,v1,v2,energy");
+    assert_eq!(lines.next().unwrap(), "step,t,q0,q1,q2,q0',q1',q2',energy");
     assert!(lines.next().unwrap().starts_with("0,0.0,-1.0,2.0,0.5,-0.3,0.0,-0.001,"));
 }
 
@@ -69,7 +69,7 @@ fn formats_agree() {
     let csv = stdout(&folder, &words);
     let text = stdout(&folder, &format!("{words} --format json"));
     let json: Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(json["columns"], serde_json::json!(["step", "t", "q0", "v0", "energy"]));
+    assert_eq!(json["columns"], serde_json::json!(["step", "t", "q", "q'", "energy"]));
     assert_eq!(json["units"], serde_json::json!(["1", "s", "m", "m/s", "J/kg"]));
     assert_eq!((&json["parameters"]["omega2"], &json["stopped"]), (&10.0.into(), &Value::Null));
     // Digit by digit: not every JSON reader rounds to the nearest float.
@@ -264,7 +264,7 @@ fn many_trajectories_have_the_same_bits_on_every_instruction_set_and_number_of_t
     let words = "simulate --system kepler --integrator suzuki4 --dt 0.01 --steps 20 --save-every 20 \
                  --num-trajectories 500 --spread 0.1 --dtype f32";
     let here = stdout(&folder, words);
-    assert!(here.starts_with("trajectory,step,t,q0,q1,v0,v1,energy\n0,0,0.0,"), "{here:.80}");
+    assert!(here.starts_with("trajectory,step,t,x,y,x',y',energy\n0,0,0.0,"), "{here:.80}");
     assert_eq!(here.lines().count(), 1 + 2 * 500);
     for more in ["--simd baseline", "--threads 1", "--threads 3 --simd baseline"] {
         assert_eq!(stdout(&folder, &format!("{words} {more}")), here, "{more}");

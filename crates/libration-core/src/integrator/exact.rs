@@ -44,7 +44,11 @@ impl Exact {
     /// Exact steps of about `dt` seconds; none of a system that is not [linear](Model::LINEAR), nor where a step goes
     /// further than [`Exact::MOST_ANGLE`].
     pub fn new<const D: usize>(model: impl Model<D>, dt: f64) -> Option<Self> {
-        let angle = Self::angle(model, dt)?;
+        Exact::of_angle(Self::angle(model, dt)?)
+    }
+
+    /// Exact steps that turn or shrink the state by so many radians or powers of e; none beyond [`Exact::MOST_ANGLE`].
+    pub fn of_angle(angle: f64) -> Option<Self> {
         let parts = (angle / PART).ceil().max(1.0);
         (angle <= Self::MOST_ANGLE).then_some(Exact { parts: parts as i32 })
     }
@@ -52,35 +56,45 @@ impl Exact {
     /// By how many radians, or powers of e, a step of `dt` seconds turns or shrinks the state, or by some per cent less;
     /// none of a system that is not [linear](Model::LINEAR).
     pub fn angle<const D: usize>(model: impl Model<D>, dt: f64) -> Option<f64> {
-        Some(rate(model)? * dt.abs())
-    }
-}
-
-/// The largest absolute eigenvalue of the generator, in 1/s, by its powers: too large by some per cent.
-fn rate<const D: usize, M: Model<D>>(model: M) -> Option<f64> {
-    if !M::LINEAR {
-        return None;
-    }
-    let system = model.on::<f64>();
-    let unit = |i: usize| State {
-        q: core::array::from_fn(|j| f64::from(u8::from(i == j))),
-        v: core::array::from_fn(|j| f64::from(u8::from(i == j + D))),
-    };
-    let growth = |mut state: State<f64, D>| {
-        let mut logarithm = 0.0;
-        for _ in 0..POWERS {
-            state = system.rate(state);
-            let size = state.coordinates().fold(0.0, |size: f64, x| size.max(x.abs()));
-            if size == 0.0 {
-                return f64::NEG_INFINITY;
-            }
-            logarithm += size.ln();
-            state = state.map(|x| x / size);
+        fn rate_of<const D: usize, M: Model<D>>(model: M) -> Option<f64> {
+            let system = model.on::<f64>();
+            let rate = |state: &[f64]| {
+                let state = State {
+                    q: core::array::from_fn::<_, D, _>(|i| state[i]),
+                    v: core::array::from_fn(|i| state[D + i]),
+                };
+                system.rate(state).coordinates().collect()
+            };
+            M::LINEAR.then(|| Exact::fastest(2 * D, rate))
         }
-        logarithm
-    };
-    let largest = (0..2 * D).map(|i| growth(unit(i))).fold(f64::NEG_INFINITY, f64::max);
-    Some((largest / f64::from(POWERS)).exp())
+        Some(rate_of(model)? * dt.abs())
+    }
+
+    /// The largest absolute eigenvalue of the rate of so many positions and velocities, which must be linear, in 1/s, by powers: too large
+    /// by some per cent.
+    pub fn fastest(states: usize, mut rate: impl FnMut(&[f64]) -> Vec<f64>) -> f64 {
+        let mut growth = |i: usize| {
+            let mut state: Vec<f64> = (0..states).map(|j| f64::from(u8::from(i == j))).collect();
+            let mut logarithm = 0.0;
+            for _ in 0..POWERS {
+                state = rate(&state);
+                let size = state.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
+                if size == 0.0 {
+                    return f64::NEG_INFINITY;
+                }
+                logarithm += size.ln();
+                state.iter_mut().for_each(|x| *x /= size);
+            }
+            logarithm
+        };
+        let largest = (0..states).map(&mut growth).fold(f64::NEG_INFINITY, f64::max);
+        (largest / f64::from(POWERS)).exp()
+    }
+
+    /// The step of a part of this step, and how many parts it has.
+    pub fn parts(self) -> (Exact, i32) {
+        (Exact { parts: 1 }, self.parts)
+    }
 }
 
 impl Integrator for Exact {

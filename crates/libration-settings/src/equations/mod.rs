@@ -1,15 +1,18 @@
 //! Systems by their equations, in files.
 
+mod catalogue;
 mod expression_error;
 mod table;
 mod task;
 
 pub use expression_error::explanation;
 pub(crate) use expression_error::{help, inside};
+use libration::AnySystem;
 use libration::analysis::rate_derivative;
+use libration::catalog::Actuation;
 use libration::equations::{Definitions, Degree, Equations};
 use libration::linear::Matrix;
-use table::File;
+use table::{File, TIME};
 pub use task::EquationTask;
 
 use crate::{Document, SettingsError, suggestions};
@@ -33,12 +36,25 @@ pub struct EquationSystem {
     pub input_units: Vec<String>,
     /// The unit of the energy; empty without one.
     pub energy_unit: String,
+    /// The unit of time: `s`, or `1` of equations without units.
+    pub time_unit: String,
     /// Initial positions of all degrees of freedom.
     pub q: Vec<f64>,
     /// Initial velocities of all degrees of freedom.
     pub v: Vec<f64>,
     /// The task of environments, if the file has one.
     pub task: Option<EquationTask>,
+    /// The system of the catalogue that these are the equations of, compiled with the same bits; none of other equations.
+    pub twin: Option<Twin>,
+}
+
+/// A compiled system with the same bits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Twin {
+    /// The system.
+    pub system: AnySystem,
+    /// The quantity of its commands.
+    pub actuation: Actuation,
 }
 
 /// A coordinate, a velocity or a state of first order.
@@ -116,7 +132,8 @@ impl EquationSystem {
         let known_units = known_units
             .map_err(|(span, message, help)| SettingsError::new(file, text, span, message, help))?;
         let unit = |name: &str| known_units.get(name).cloned().unwrap_or_default();
-        let states = named_states(&equations, &q, &v, &unit);
+        let time_unit = known_units.get(TIME).map_or("s", String::as_str).to_owned();
+        let states = named_states(&equations, (&q, &v), &unit, &time_unit);
         let input_units = definitions.inputs.iter().map(|name| unit(name)).collect();
         let energy_unit = unit("energy");
         let (name, description) = (system.name.clone(), system.description.clone());
@@ -129,9 +146,11 @@ impl EquationSystem {
             units,
             input_units,
             energy_unit,
+            time_unit,
             q,
             v,
             task: None,
+            twin: None,
         };
         if varied.is_empty()
             && let Some((key, value)) = read.first_unbounded_rate()
@@ -185,9 +204,9 @@ impl EquationSystem {
 /// Coordinates, then velocities and states of first order.
 fn named_states(
     equations: &Equations,
-    q: &[f64],
-    v: &[f64],
+    (q, v): (&[f64], &[f64]),
     unit: &dyn Fn(&str) -> String,
+    time_unit: &str,
 ) -> Vec<NamedState> {
     let degrees = equations.degrees();
     let position = |(i, degree): (usize, &Degree)| match degree {
@@ -196,7 +215,10 @@ fn named_states(
         }
         Degree::State(_) | Degree::Time => None,
     };
-    let rate = |unit: String| if unit.is_empty() { unit } else { format!("{unit}/s") };
+    let rate = |unit: String| match (unit.as_str(), time_unit) {
+        ("", _) | (_, "1") => unit,
+        _ => format!("{unit}/{time_unit}"),
+    };
     let velocity = |(i, degree): (usize, &Degree)| {
         let (name, unit) = match degree {
             Degree::Coordinate(name) => (format!("{name}'"), rate(unit(name))),

@@ -118,7 +118,7 @@ impl Table {
         place.unwrap_or_default()
     }
 
-    /// Units by name: of coordinates, states of first order, inputs and the energy.
+    /// Units by name: of coordinates, states of first order, inputs, the energy, and of time `t`.
     pub(super) fn units(
         &self,
         definitions: &Definitions,
@@ -131,6 +131,7 @@ impl Table {
             .chain(&definitions.inputs)
             .map(String::as_str)
             .chain(definitions.energy.as_ref().map(|_| "energy"))
+            .chain([TIME])
             .collect();
         for (name, unit) in &self.units {
             if unit.chars().any(char::is_control) {
@@ -195,6 +196,9 @@ impl Table {
         Ok((q, v))
     }
 }
+
+/// The name of time.
+pub(super) const TIME: &str = "t";
 
 /// A place in the file, a message and a suggestion.
 pub(super) type Wrong = (Range<usize>, String, Option<String>);

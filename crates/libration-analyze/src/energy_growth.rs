@@ -1,0 +1,142 @@
+//! An energy that grows in a run although no force adds any.
+
+use libration::Float;
+use libration::equations::{Dynamics, Evaluation};
+use libration::number::Dual;
+use libration_report::notation::number;
+use libration_report::verdict::{Outcome, Verdict};
+use libration_settings::equations::EquationSystem;
+
+use crate::motion::{EnergyOf, EnergyScale};
+
+/// The number of states that are looked at, beside the start and the end.
+const SAMPLES: u64 = 64;
+
+/// The part of the single powers of all states up to which their sum is zero: their rounding, with a wide margin.
+const ROUNDING: f64 = 1e-9;
+
+/// The change of the energy over what the motion exchanges at first, from which it diverges.
+const DIVERGED: f64 = 10.0;
+
+/// The energy of a run, at states that follow no rhythm.
+///
+/// The power of all forces is the derivative of the energy along the flow, by dual numbers. It is taken with the velocities of the run and
+/// with the opposite ones: a force that depends on time adds energy with one of them.
+pub(crate) struct EnergyGrowth<'a> {
+    energy: EnergyOf<'a>,
+    power: Power<'a>,
+    scale: EnergyScale,
+    steps: u64,
+    next: u64,
+    first: f64,
+    last: f64,
+    /// Whether no power was positive, and whether all were zero.
+    is_passive: bool,
+    is_conservative: bool,
+}
+
+impl<'a> EnergyGrowth<'a> {
+    /// For a run of so many steps; none of a system without an energy.
+    pub(crate) fn new(system: &'a EquationSystem, steps: u64) -> Option<Self> {
+        let dynamics = system.equations.dynamics();
+        Some(EnergyGrowth {
+            energy: EnergyOf::new(dynamics)?,
+            power: Power::new(dynamics)?,
+            scale: EnergyScale::new(),
+            steps,
+            next: 0,
+            first: f64::NAN,
+            last: f64::NAN,
+            is_passive: true,
+            is_conservative: true,
+        })
+    }
+
+    /// The next step that is looked at.
+    pub(crate) fn next_step(&self, step: u64) -> u64 {
+        self.next.max(step + 1)
+    }
+
+    /// Looks at the state after a step, if it is one of the samples.
+    pub(crate) fn observe<S: Float>(&mut self, step: u64, state: &[S]) {
+        if step < self.next {
+            return;
+        }
+        let state: Vec<f64> = state.iter().map(|x| x.to_f64()).collect();
+        self.last = self.energy.total(&state);
+        if step == 0 {
+            self.first = self.last;
+        }
+        if step <= self.steps / 2 {
+            self.scale.add(&mut self.energy, &state);
+        }
+        let [power, sum] = self.power.largest(&state);
+        self.is_passive &= power <= ROUNDING * sum;
+        self.is_conservative &= power.abs() <= ROUNDING * sum;
+        let sample = self.next.saturating_mul(SAMPLES) / self.steps.max(1) + 1;
+        // Fractions of the golden ratio are never near a rhythm.
+        let offset = (sample as f64 * 0.618_033_988_749_895).fract();
+        let next = (sample as f64 - offset) / SAMPLES as f64 * self.steps as f64;
+        self.next = (next as u64).max(step + 1).min(self.steps);
+    }
+
+    /// The verdict on an energy that diverges; none if it does not, or if a force may add energy.
+    pub(crate) fn fault(&self) -> Option<Verdict> {
+        let change = self.last - self.first;
+        let grown = if self.is_conservative { change.abs() } else { change };
+        let scale = self.scale.value()?;
+        (self.is_passive && grown > DIVERGED * scale).then(|| {
+            let forces = if self.is_conservative { "conserve it" } else { "add none" };
+            Verdict::new(
+                Outcome::Fault,
+                format!(
+                    "the energy goes from {} to {}, by {} times what the motion exchanges in its first half, though the forces {forces}",
+                    number(self.first, 4),
+                    number(self.last, 4),
+                    number(grown / scale, 2)
+                ),
+            )
+        })
+    }
+}
+
+/// The derivative of the energy along the flow.
+struct Power<'a> {
+    energy: Evaluation<'a, Dual<f64>>,
+    accelerations: Evaluation<'a, f64>,
+    degrees: usize,
+}
+
+impl<'a> Power<'a> {
+    fn new(dynamics: &'a Dynamics) -> Option<Self> {
+        Some(Power {
+            energy: dynamics.energy()?.on(),
+            accelerations: dynamics.accelerations().on(),
+            degrees: dynamics.degrees(),
+        })
+    }
+
+    /// The larger power of these velocities and the opposite ones, and the sum of its absolute parts.
+    fn largest(&mut self, state: &[f64]) -> [f64; 2] {
+        let mut opposite = state.to_vec();
+        opposite[self.degrees..].iter_mut().for_each(|v| *v = -*v);
+        let [one, other] = [state, &opposite].map(|state| self.of(state));
+        if one[0] >= other[0] { one } else { other }
+    }
+
+    fn of(&mut self, state: &[f64]) -> [f64; 2] {
+        let accelerations: Vec<f64> = self.accelerations.run(state).collect();
+        let rates = state[self.degrees..].iter().chain(&accelerations);
+        let rates: Vec<f64> = rates.copied().collect();
+        let mut at: Vec<Dual<f64>> = state.iter().map(|&x| Dual::constant(x)).collect();
+        let (mut power, mut sum) = (0.0, 0.0);
+        for (i, rate) in rates.into_iter().enumerate() {
+            at[i] = Dual { re: state[i], du: rate };
+            let part = self.energy.run(&at).next().map_or(f64::NAN, |energy| energy.du);
+            at[i] = Dual::constant(state[i]);
+            power += part;
+            sum += part.abs();
+        }
+        [power, sum]
+    }
+}

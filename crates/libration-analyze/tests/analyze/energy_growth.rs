@@ -1,0 +1,67 @@
+//! Tests of energies that diverge although no force adds any.
+
+use libration::{AnySystem, Method};
+use libration_analyze::trajectory::{Outcome, Request, simulate};
+use libration_settings::equations::EquationSystem;
+
+use super::trajectory::{from, request};
+
+fn fault(request: &Request) -> Option<String> {
+    match simulate(request).unwrap().outcome {
+        Outcome::EnergyDiverges { verdict, .. } => Some(verdict.evidence),
+        Outcome::Complete | Outcome::Iterated(_) => None,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn equations(acceleration: &str, energy: &str, start: f64) -> EquationSystem {
+    let text = format!(
+        "[system]\nname = \"own\"\ncoordinates = [\"x\"]\nacceleration.x = \"{acceleration}\"\nenergy = \"{energy}\"\nstart = {{ x = {start:?} }}\n"
+    );
+    EquationSystem::parse(&text, "own.toml", &[]).unwrap()
+}
+
+#[test]
+fn steps_beyond_their_limit_are_a_fault_of_the_energy_and_steps_below_are_none() {
+    // ωΔt of 2.21 and 1.99; the limit of velocity Verlet is 2. A spring of 10/s² turns with √10/s.
+    let system = || {
+        let one = AnySystem::build("oscillator", &[("omega2", 10.0)]).unwrap();
+        from(one, [vec![1.0], vec![0.0]])
+    };
+    for every in [1, 100] {
+        let of = |dt| {
+            let steps = request("oscillator", Method::VelocityVerlet, dt, 100);
+            Request { system: system(), every, ..steps }
+        };
+        let found = fault(&of(0.7)).unwrap();
+        assert!(found.starts_with("the energy goes from 5 to 5.9"), "{found}");
+        assert!(found.ends_with("though the forces conserve it"), "{found}");
+        assert_eq!(fault(&of(1.99 / 10.0_f64.sqrt())), None);
+    }
+    // Explicit Euler on a damped spring: |1 − dt + i·√(10)·dt|² = (1 − 0.1)² + 0.1 − … > 1 at dt = 0.3.
+    let one = AnySystem::build("damped-oscillator", &[("omega2", 10.0), ("gamma", 0.5)]).unwrap();
+    let steps = request("oscillator", Method::ExplicitEuler, 0.3, 60);
+    let damped = Request { system: from(one, [vec![1.0], vec![0.0]]), ..steps };
+    let found = fault(&damped).unwrap();
+    assert!(found.ends_with("though the forces add none"), "{found}");
+}
+
+#[test]
+fn an_energy_that_a_force_adds_or_that_falls_is_no_fault() {
+    let of = |acceleration: &str, energy: &str, start, method, dt, steps| {
+        let system = equations(acceleration, energy, start);
+        fault(&Request { system, ..request("oscillator", method, dt, steps) })
+    };
+    let free = "x'^2/2 + x^2/2";
+    // A resonance, from rest, and one whose drive has the rhythm of the samples of a run of 6400 steps of 2π/100.
+    for drive in ["sin(t)", "sin(t + 1)", "2*cos(t)"] {
+        assert_eq!(of(&format!("-x + {drive}"), free, 0.0, Method::Rk4, 0.062_831_853, 6400), None);
+    }
+    // Negative friction, a limit cycle from near rest, a fall, and damping.
+    assert_eq!(of("-x + 0.2*x'", free, 1e-3, Method::Rk4, 0.01, 10_000), None);
+    assert_eq!(of("-x + (1 - x^2)*x'", free, 1e-6, Method::Rk4, 0.01, 10_000), None);
+    assert_eq!(of("-9.81", "x'^2/2 + 9.81*x", 100.0, Method::Rk4, 0.01, 10_000), None);
+    assert_eq!(of("-x - 0.5*x'", free, 1.0, Method::VelocityVerlet, 0.01, 10_000), None);
+    // A potential without a lower end: the energy is kept while its parts grow without end.
+    assert_eq!(of("x", "x'^2/2 - x^2/2", 1.0, Method::Rk4, 0.01, 2000), None);
+}

@@ -1,0 +1,46 @@
+//! Systems of the catalogue by their equations.
+
+use libration::equations::{Definitions, EquationError, Equations};
+
+use super::{EquationSystem, Twin, named_states};
+use crate::initial_value_problem::InitialValueProblem;
+use crate::units;
+
+impl EquationSystem {
+    /// A system of the catalogue, from its start.
+    ///
+    /// # Errors
+    /// None of the catalogue: its equations are right.
+    pub fn of_catalogue(problem: InitialValueProblem) -> Result<Self, EquationError> {
+        let InitialValueProblem { system, actuation, q, v } = problem;
+        let definitions = Definitions::of_catalogue_in(system, actuation, q.len());
+        let equations = Equations::new(&definitions)?;
+        let own = units::of(system, actuation);
+        let states = named_states(&equations, (&q, &v), &|_| own.position.to_owned(), own.time);
+        let entry = system.entry();
+        let unit = |name: &str| {
+            let known = entry.parameters.iter().find(|parameter| parameter.name == name);
+            known.map_or("", |parameter| parameter.unit).to_owned()
+        };
+        Ok(EquationSystem {
+            name: system.name().to_owned(),
+            description: entry.summary.to_owned(),
+            states,
+            units: definitions.parameters.iter().map(|(name, _)| unit(name)).collect(),
+            input_units: Vec::new(),
+            energy_unit: own.energy.to_owned(),
+            time_unit: own.time.to_owned(),
+            equations,
+            definitions,
+            q,
+            v,
+            task: None,
+            twin: Some(Twin { system, actuation }),
+        })
+    }
+
+    /// Whether all accelerations are linear in positions and velocities.
+    pub fn is_linear(&self) -> bool {
+        self.equations.polynomial_degree().is_some_and(|degree| degree <= 1)
+    }
+}
