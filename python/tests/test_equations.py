@@ -47,8 +47,18 @@ def test_columns_have_the_names_and_units_of_the_system():
     assert list(found) == ["trajectory", "step", "t", "q", "q'", "energy"]
     assert [found.units[name] for name in ("q", "q'", "energy")] == ["rad", "rad/s", "J"]
     assert found["q"][:3].tolist() == [0.5, 1.0, 1.5]
-    with pytest.raises(AttributeError, match="only trajectory, step"):
-        found.q
+    np.testing.assert_array_equal(found.q[:, 0], found["q"])
+    np.testing.assert_array_equal(found.v[:, 0], found["q'"])
+    decay = libration.System(rate={"x": "-x"}, start={"x": 1.0})
+    with pytest.raises(AttributeError, match="there are step, t, x"):
+        libration.simulate(decay, integrator="rk4", dt=0.01, steps=4).q
+
+
+def test_an_energy_that_diverges_in_a_run_warns():
+    system = libration.System(acceleration={"q": "-9*q"}, energy="q'^2/2 + 9*q^2/2", start={"q": 0.1})
+    libration.simulate(system, integrator="velocity-verlet", dt=0.66, steps=200)
+    with pytest.warns(RuntimeWarning, match="the energy goes from .* though the forces conserve it"):
+        libration.simulate(system, integrator="velocity-verlet", dt=0.75, steps=200)
 
 
 def test_files_are_systems_with_parameters_that_can_be_replaced():

@@ -15,8 +15,12 @@ const SAMPLES: u64 = 64;
 /// The part of the single powers of all states up to which their sum is zero: their rounding, with a wide margin.
 const ROUNDING: f64 = 1e-9;
 
-/// The change of the energy over what the motion exchanges at first, from which it diverges.
-const DIVERGED: f64 = 10.0;
+/// The change of the energy over what the motion exchanges from which it may diverge: of growth without end it becomes 1.
+const DIVERGED: f64 = 0.5;
+
+/// The largest change in the second half of a run over that in the first, from which a change grows. That of symplectic steps near their
+/// limit is large as well, but comes and goes.
+const GROWS: f64 = 2.0;
 
 /// The energy of a run, at states that follow no rhythm.
 ///
@@ -30,6 +34,8 @@ pub(crate) struct EnergyGrowth<'a> {
     next: u64,
     first: f64,
     last: f64,
+    /// The largest changes in both halves.
+    halves: [f64; 2],
     /// Whether no power was positive, and whether all were zero.
     is_passive: bool,
     is_conservative: bool,
@@ -47,6 +53,7 @@ impl<'a> EnergyGrowth<'a> {
             next: 0,
             first: f64::NAN,
             last: f64::NAN,
+            halves: [0.0; 2],
             is_passive: true,
             is_conservative: true,
         })
@@ -67,9 +74,9 @@ impl<'a> EnergyGrowth<'a> {
         if step == 0 {
             self.first = self.last;
         }
-        if step <= self.steps / 2 {
-            self.scale.add(&mut self.energy, &state);
-        }
+        self.scale.add(&mut self.energy, &state);
+        let half = &mut self.halves[usize::from(step > self.steps / 2)];
+        *half = half.max((self.last - self.first).abs());
         let [power, sum] = self.power.largest(&state);
         self.is_passive &= power <= ROUNDING * sum;
         self.is_conservative &= power.abs() <= ROUNDING * sum;
@@ -85,15 +92,17 @@ impl<'a> EnergyGrowth<'a> {
         let change = self.last - self.first;
         let grown = if self.is_conservative { change.abs() } else { change };
         let scale = self.scale.value()?;
-        (self.is_passive && grown > DIVERGED * scale).then(|| {
+        let [before, after] = self.halves;
+        let diverges = grown > DIVERGED * scale && after > GROWS * before;
+        (self.is_passive && diverges).then(|| {
             let forces = if self.is_conservative { "conserve it" } else { "add none" };
             Verdict::new(
                 Outcome::Fault,
                 format!(
-                    "the energy goes from {} to {}, by {} times what the motion exchanges in its first half, though the forces {forces}",
+                    "the energy goes from {} to {}, {} % of all that the motion exchanges, though the forces {forces}",
                     number(self.first, 4),
                     number(self.last, 4),
-                    number(grown / scale, 2)
+                    number(100.0 * grown / scale, 2)
                 ),
             )
         })
