@@ -85,8 +85,8 @@ pub use finding::Finding;
 pub use finding_kind::FindingKind;
 pub use first_difference::{FirstDifference, ulps};
 pub use gains::{
-    GainReport, IntegratorRow, JointRow, MeasuredGains, ServoError, ServoGain, ServoIntegrator,
-    ServoMode, ServoRow, Servos, ServosDescription, Torque, gains, gains_page,
+    GainReport, IntegratorRow, JointRow, MeasuredGains, OtherForces, ServoError, ServoGain,
+    ServoIntegrator, ServoMode, ServoRow, Servos, ServosDescription, Torque, gains, gains_page,
 };
 pub use hidden_latency::HiddenLatency;
 pub use impulse::Lateness;

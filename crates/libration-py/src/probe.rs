@@ -164,7 +164,8 @@ pub(crate) fn _gains(
         unknown("integrator", integrator, names)
     })?;
     let mut report = gains(&servos, dt, substeps, found, described.notes)
-        .with_inert_servos(described.saturated, described.idle);
+        .with_inert_servos(described.saturated, described.idle)
+        .with_other_forces(described.other_forces);
     if let (Some(step), Some(description)) = (step, described.step) {
         let subject = description.subject().map_err(|error| wrong(&error))?;
         let mut black_box = PythonStep {
@@ -178,7 +179,7 @@ pub(crate) fn _gains(
             raised: None,
         };
         match MeasuredGains::measure(&mut black_box, &subject, &described.servos, substeps) {
-            Ok(measured) => report = report.with_measured(measured, &described.other_servos),
+            Ok(measured) => report = report.with_measured(measured),
             Err(error) => return Err(black_box.raised.unwrap_or_else(|| wrong(&error))),
         }
     }

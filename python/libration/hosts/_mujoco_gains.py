@@ -14,8 +14,9 @@ from .._settings import count, positive
 from ._mujoco_force_limits import free_forces, idle_servos
 from ._mujoco_names import name_of, number_of_actuators, state_names
 from ._mujoco_operating_point import servos_of
+from ._mujoco_other_forces import other_forces, remove_friction
 from ._mujoco_point import copy_of, model_of
-from ._mujoco_servos import NO_GAINS, mujoco_servos
+from ._mujoco_servos import NO_GAINS, mujoco_servos, of_free_motion
 from .host import Host
 from .mujoco import host_at_point
 
@@ -42,7 +43,6 @@ class ServoGains:
         mujoco.mj_forward(model, forward)
         single = np.asarray(getattr(model, "actuator_outnum", np.ones(number_of_actuators(model), dtype=int))).reshape(-1) == 1
         self.servos = [k for k in servos_of(model) if single[k]]
-        self.others = [k for k in range(number_of_actuators(model)) if k not in self.servos and _has_feedback(model, k)]
         outputs = np.asarray(getattr(model, "actuator_outadr", np.arange(number_of_actuators(model)))).reshape(-1)
         self.bias = np.array(model.actuator_biasprm)
         self.lengths = np.array([forward.actuator_length[outputs[k]] for k in self.servos])
@@ -79,10 +79,6 @@ class ServoGains:
         self.model.actuator_biasprm[:] = bias
 
 
-def _has_feedback(model: Any, actuator: int) -> bool:
-    return int(model.actuator_biastype[actuator]) not in (int(mujoco.mjtBias.mjBIAS_NONE), int(mujoco.mjtBias.mjBIAS_AFFINE))
-
-
 def _moments(model: Any, point: Any, outputs: list[int]) -> Array:
     """Return the derivatives of the lengths of actuators by the positions, actuators × velocities."""
     data, found = copy_of(model, point), np.zeros((len(outputs), model.nv))
@@ -108,8 +104,9 @@ def mujoco_gains(
 ) -> tuple[dict[str, Any], Host, ServoGains]:
     """Return the servos of a model as matrices with the description of its step, the step itself, and its gains.
 
-    The step is that of ``mj_step`` at a timestep of ``dt / substeps``, with contacts, limits and equality constraints. It is not described
-    for an integrator that MuJoCo does not have. The point is chosen as in :func:`mujoco_host`.
+    The step is that of ``mj_step`` at a timestep of ``dt / substeps``, with contacts, limits and equality constraints, and without friction
+    loss, which makes it linear within the hold of friction only. It is not described for an integrator that MuJoCo does not have. The
+    point is chosen as in :func:`mujoco_host`.
 
     Raises
     ------
@@ -126,14 +123,25 @@ def mujoco_gains(
         own.opt.disableflags = own.opt.disableflags & ~flag if is_implicit else own.opt.disableflags | flag
     part = whole / count("substeps", substeps, 1, 1000)
     host, own, point = host_at_point(own, data, keyframe=keyframe, state=state, dt=part, memory=False, is_audited=False)
+    friction, growth = remove_friction(own, host)
     saturated, of_limits = free_forces(own, point)
     gains = ServoGains(own, point)
     described = mujoco_servos(own, point)
     described.update(saturated=saturated, idle=idle_servos(own, gains.moments, gains.servos))
+    others = other_forces(own, gains.forward, gains.servos)
+    others["friction"] = friction
+    if growth is not None:
+        others["undecided"].append(f"while friction loss holds, a mode grows by a factor {growth:.4g} per step")
+    if of_limits:
+        others["not_examined"].append("deviations at which forces meet their limits")
+    described["other_forces"] = others
+    if others["commanded"]:
+        # At another command their forces may depend on positions.
+        described["notes"] = [note for note in described["notes"] if note != NO_GAINS]
     described["dt"] = whole
     if is_own:
         # Notes on contacts are those of the step, in which they act.
         of_model = [note for note in described["notes"] if note == NO_GAINS]
-        described.update(notes=[*host.notes, *host.validity, *of_limits, *of_model], step=description_of(host), servos=gains.described())
-        described["other_servos"] = [name_of(own, "actuator", k) for k in gains.others]
+        validity = [of_free_motion(note) if "friction loss" in note else note for note in host.validity]
+        described.update(notes=[*host.notes, *validity, *of_limits, *of_model], step=description_of(host), servos=gains.described())
     return described, host, gains

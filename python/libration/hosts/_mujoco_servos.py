@@ -73,7 +73,7 @@ def mujoco_servos(
         "damping": damping.tolist(),
         "dt": float(own.opt.timestep),
         "integrator": integrator,
-        "notes": [_of_free_motion(note) for note in notes if "equilibrium" not in note],
+        "notes": [of_free_motion(note) for note in notes if "equilibrium" not in note],
     }
 
 
@@ -105,7 +105,7 @@ def _without(error: float, values: Array) -> Array:
     return np.where(np.abs(values) > error, values, 0.0)
 
 
-def _of_free_motion(note: str) -> str:
+def of_free_motion(note: str) -> str:
     """Return a note on what acts at the point, for an analysis of motion without it."""
     what, found, _ = note.partition(_VALID_WHILE)
     return f"{what}; gains are those of motion without them" if found else note

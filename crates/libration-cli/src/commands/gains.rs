@@ -41,14 +41,15 @@ pub(crate) fn run(args: &GainsArgs) -> Result<(), Failure> {
         })?,
     };
     let mut report = gains(&servos, dt, args.substeps, integrator, description.notes)
-        .with_inert_servos(description.saturated, description.idle);
+        .with_inert_servos(description.saturated, description.idle)
+        .with_other_forces(description.other_forces);
     // Torques that a simulator holds are not those of its own servos.
     let step = description.step.filter(|_| !args.held_torque);
     if let (Some(child), Some(step)) = (&mut child, step) {
         let subject = step.subject().map_err(Failure::run)?;
         let measured = MeasuredGains::measure(child, &subject, &description.servos, args.substeps)
             .map_err(Failure::run)?;
-        report = report.with_measured(measured, &description.other_servos);
+        report = report.with_measured(measured);
     } else if args.mujoco.is_some() {
         report.answer = format!("By a servo model, not by a measured step: {}", report.answer);
     }

@@ -5,7 +5,7 @@ use libration_report::page::{Bar, Highlight};
 use libration_report::verdict::Outcome;
 
 use super::command_option::{is_command, with_flag, with_option};
-use super::{GainReport, Torque};
+use super::{GainReport, MeasuredGains, Torque};
 
 /// Joints whose limits are shown as bars, the tightest first.
 const MOST_BARS: usize = 6;
@@ -16,9 +16,17 @@ pub(super) fn title(report: &GainReport) -> &'static str {
         (_, Outcome::Unknown) => "Whether the gains hold is unknown",
         (Some(_), _) => "The motion is unstable in continuous time, whatever the step",
         (None, _) if report.holds => "The gains hold",
+        (None, _) if !has_servos(report) => "The step is unstable",
+        (None, _) if report.unstable_without_servos && report.others.remaining().is_some() => {
+            "The step is unstable without gains of the servos"
+        }
         (None, _) if report.unstable_without_servos => "The step is unstable without any servo",
         (None, _) => "The gains do not hold",
     }
+}
+
+fn has_servos(report: &GainReport) -> bool {
+    report.measured.as_ref().is_none_or(MeasuredGains::has_servos)
 }
 
 /// The key numbers.
@@ -131,6 +139,9 @@ pub(super) fn actions(report: &GainReport) -> Vec<String> {
     let mut all = Vec::new();
     if report.verdict.outcome == Outcome::Unknown && report.is_inert() {
         return vec!["Examine a point at which all servos act within their force limits.".into()];
+    }
+    if report.is_withheld {
+        return report.others.actions();
     }
     if report.verdict.outcome == Outcome::Unknown && report.measured.is_none() {
         all.push("Add damping or take another integrator: rounding decides with this one.".into());

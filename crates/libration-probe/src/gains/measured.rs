@@ -63,7 +63,7 @@ pub struct MeasuredGains {
     pub grows: bool,
     /// The growth rate in 1/s of a mode that grows in the system as well, whatever the step.
     pub growth_of_system: Option<f64>,
-    /// The largest factor of a mode without gains, if it leaves the unit circle by the step alone.
+    /// The largest factor of a mode without gains of these servos, if it leaves the unit circle by the step alone. Other actuators act.
     pub unstable_without_servos: Option<f64>,
     /// The largest factor of all gains of position, with the same gains of velocity.
     #[serde(serialize_with = "limit")]
@@ -152,6 +152,11 @@ impl MeasuredGains {
         Ok(report)
     }
 
+    /// Whether there are servos whose gains are changed.
+    pub(super) fn has_servos(&self) -> bool {
+        !(self.servos.is_empty() && self.not_searched.is_empty())
+    }
+
     /// The growth rate of the system itself; it counts at an equilibrium only.
     fn growth(&self, unclear: f64) -> Option<f64> {
         let rates = self.modes.iter().filter_map(|mode| Some((mode.flow?, mode.error)));
@@ -172,7 +177,7 @@ impl MeasuredGains {
                 |factor: f64| -> Gains { (kp.iter().map(|kp| kp * factor).collect(), kv.clone()) };
             let all = search.limits(1.0, 1.0, &scaled)?;
             (self.largest_factor, self.least_factor) = (all.most, all.least);
-        } else {
+        } else if !servos.is_empty() {
             self.largest_factor = f64::INFINITY;
         }
         for (k, servo) in servos.iter().enumerate() {

@@ -70,12 +70,9 @@ impl MeasuredGains {
                 self.leading(),
                 report.window()
             ),
-            Outcome::Unstable if let Some(passive) = self.unstable_without_servos => format!(
-                "The step is unstable without any servo, with {integrator} and {of}: without gains a mode grows by a factor {} per step, with them by {} ({}).",
-                number(passive, 6),
-                number(self.spectral_radius, 6),
-                self.leading()
-            ),
+            Outcome::Unstable if self.unstable_without_servos.is_some() || !self.has_servos() => {
+                self.unstable_by_itself(report)
+            }
             Outcome::Unstable => format!(
                 "The gains do not hold with {integrator} and {of}: a mode of the measured step grows by a factor {} per step ({}){}",
                 number(self.spectral_radius, 6),
@@ -88,6 +85,7 @@ impl MeasuredGains {
                 report.factor()
             ),
         });
+        sentences.extend(report.others.sentences(verdict.outcome == Outcome::Unknown));
         if let Some(point) = point.filter(|_| verdict.outcome != Outcome::Unknown) {
             if let Some(sentence) = point.sentence() {
                 sentences.insert(0, sentence);
@@ -99,7 +97,7 @@ impl MeasuredGains {
         if self.is_differentiable {
             sentences.extend(self.tightest());
             if self.grows && report.growth_in_continuous_time.is_none() {
-                sentences.push(report.substeps_in_words().trim().to_owned());
+                sentences.push(self.substeps_in_words(report));
             }
         }
         if !self.equilibrium.holds {
@@ -120,7 +118,44 @@ impl MeasuredGains {
         if !limits.is_empty() {
             sentences.push(limits);
         }
+        sentences.retain(|sentence| !sentence.is_empty());
         sentences.join(" ")
+    }
+
+    /// The sentence about a step that is unstable without gains of servos.
+    fn unstable_by_itself(&self, report: &GainReport) -> String {
+        let without = match (report.others.remaining(), self.has_servos()) {
+            (None, _) => "without any servo".to_owned(),
+            (Some(names), true) => {
+                format!("without gains of the servos, with other actuators as they are ({names})")
+            }
+            (Some(names), false) => format!("with its actuators as they are ({names})"),
+        };
+        let radius = number(self.spectral_radius, 6);
+        let growth = match self.unstable_without_servos.filter(|_| self.has_servos()) {
+            Some(passive) => format!(
+                "without gains a mode grows by a factor {} per step, with them by {radius}",
+                number(passive, 6)
+            ),
+            None => format!("a mode grows by a factor {radius} per step"),
+        };
+        format!(
+            "The step is unstable {without}, with {} and {}: {growth} ({}).",
+            ServoIntegrator::label(report.integrator),
+            report.steps(),
+            self.leading()
+        )
+    }
+
+    /// The fewest substeps, as a sentence.
+    fn substeps_in_words(&self, report: &GainReport) -> String {
+        match report.fewest_substeps {
+            Some(substeps) if !self.has_servos() => {
+                format!("With {} no mode grows.", plural(substeps as usize, "substep"))
+            }
+            None if !self.has_servos() => String::new(),
+            _ => report.substeps_in_words().trim().to_owned(),
+        }
     }
 
     /// The states of the mode that grows fastest.

@@ -7,12 +7,13 @@ use libration_report::verdict::Verdict;
 use serde::Serialize;
 
 use super::growth::Growth;
+use super::integrator_row::IntegratorRow;
 use super::limit_in_json::limit;
 use super::measured::MeasuredGains;
 use super::servo_mode::{ServoMode, modes};
 use super::servo_step::ServoStep;
 use super::stable_factors::{StableFactors, largest_gain, resolution_of};
-use super::{ServoIntegrator, Servos, Torque};
+use super::{OtherForces, ServoIntegrator, Servos, Torque};
 
 /// Most substeps that are tried.
 pub(super) const MOST_SUBSTEPS: u32 = 1000;
@@ -52,6 +53,9 @@ pub struct GainReport {
     /// Whether the gains of the servo model do not hold since they are at their limit.
     #[serde(skip)]
     pub(super) is_at_limit: bool,
+    /// Whether the gains of the servo model hold.
+    #[serde(skip)]
+    pub(super) holds_in_model: bool,
     /// Whether it is known if a motion of the servo model grows.
     #[serde(skip)]
     pub(super) is_known: bool,
@@ -61,6 +65,12 @@ pub struct GainReport {
     /// Servos that do not act, in words.
     #[serde(skip)]
     pub(super) idle: Vec<String>,
+    /// What acts besides the servos.
+    #[serde(skip)]
+    pub(super) others: OtherForces,
+    /// Whether limits were removed, since nothing is known of the gains.
+    #[serde(skip)]
+    pub(super) is_withheld: bool,
     /// The largest factor of all gains of position, with the same gains of velocity.
     #[serde(serialize_with = "limit")]
     pub largest_factor: f64,
@@ -104,50 +114,6 @@ pub struct JointRow {
     /// The same of its gain of velocity.
     #[serde(serialize_with = "limit")]
     pub largest_kv: f64,
-}
-
-/// What an integrator does with the gains.
-#[derive(Clone, Debug, Serialize)]
-pub struct IntegratorRow {
-    /// Its name.
-    pub name: &'static str,
-    /// The same in running text.
-    pub title: String,
-    /// Whether the gains hold; not if that is unknown.
-    pub holds: bool,
-    /// Whether it is known if they hold.
-    pub is_known: bool,
-    /// The largest factor of all gains of position.
-    #[serde(serialize_with = "limit")]
-    pub largest_factor: f64,
-    /// The least factor, if the given gains are too small; else 0.
-    pub least_factor: f64,
-    /// The fewest substeps.
-    pub fewest_substeps: Option<u32>,
-    /// The largest factor of a mode per substep.
-    pub spectral_radius: f64,
-    /// The same less 1, without cancellation.
-    pub spectral_radius_minus_one: f64,
-}
-
-impl IntegratorRow {
-    /// The fewest substeps in words.
-    pub fn substeps(&self) -> String {
-        match self.fewest_substeps {
-            Some(count) => count.to_string(),
-            None if !self.is_known => "unknown".into(),
-            None => format!("above {MOST_SUBSTEPS}"),
-        }
-    }
-
-    /// Whether the gains hold, in a word.
-    pub fn answer(&self) -> &'static str {
-        match (self.is_known, self.holds) {
-            (false, _) => "unknown",
-            (true, true) => "yes",
-            (true, false) => "no",
-        }
-    }
 }
 
 /// Whether the gains of servos hold at steps of `dt` seconds in `substeps` parts, by the servo model.
@@ -206,9 +172,12 @@ pub fn gains(
         spectral_radius: own.spectral_radius,
         spectral_radius_minus_one: own.spectral_radius_minus_one,
         is_at_limit: !own.holds && own.is_known && shorter == Growth::None,
+        holds_in_model: own.holds,
         is_known: own.is_known,
         saturated: Vec::new(),
         idle: Vec::new(),
+        others: OtherForces::default(),
+        is_withheld: false,
         largest_factor: own.largest_factor,
         least_factor: own.least_factor,
         fewest_substeps: own.fewest_substeps,

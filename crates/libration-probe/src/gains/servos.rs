@@ -9,7 +9,7 @@ use libration_report::notation::plural;
 use serde::Deserialize;
 use thiserror::Error;
 
-use super::{ServoGain, ServoIntegrator, Torque};
+use super::{OtherForces, ServoGain, ServoIntegrator, Torque};
 use crate::Description;
 
 /// Joints with servos: `M q̈ = −(K_p + K) q − (K_v + D) q̇` for small deviations.
@@ -56,9 +56,9 @@ pub struct ServosDescription {
     /// The servos of this step.
     #[serde(default)]
     pub servos: Vec<ServoGain>,
-    /// Actuators whose forces depend on the motion in another way.
+    /// What acts in it besides these servos.
     #[serde(default)]
-    pub other_servos: Vec<String>,
+    pub other_forces: OtherForces,
     /// Forces at a limit, where gains have no derivative, in words.
     #[serde(default)]
     pub saturated: Vec<String>,

@@ -3,7 +3,6 @@
 use libration_report::notation::{cut_off, number};
 use libration_report::verdict::{Outcome, Verdict};
 
-use super::measured::MeasuredGains;
 use super::report::MOST_SUBSTEPS;
 use super::{GainReport, ServoIntegrator, Torque};
 
@@ -14,97 +13,7 @@ const SMALL: f64 = 1e-4;
 const NOT_MODELLED: &str = "contacts, constraints, friction and limits of forces";
 
 impl GainReport {
-    /// The same by the measured step of the simulator, whose verdict and limits take the place of those of the servo model. The step was
-    /// not changed in the gains of `others`.
-    #[must_use]
-    pub fn with_measured(mut self, measured: MeasuredGains, others: &[String]) -> Self {
-        self.spectral_radius = measured.spectral_radius;
-        self.spectral_radius_minus_one = measured.spectral_radius - 1.0;
-        self.growth_in_continuous_time = measured.growth_of_system;
-        self.unstable_without_servos = measured.unstable_without_servos.is_some();
-        self.largest_factor = measured.largest_factor;
-        self.least_factor = measured.least_factor;
-        self.fewest_substeps = measured.fewest_substeps;
-        // Limits of the servo model are not those of the simulator.
-        for joint in &mut self.joints {
-            (joint.largest_kp, joint.largest_kv) = (f64::NAN, f64::NAN);
-        }
-        for servo in &measured.servos {
-            let own = |joint: &&mut super::JointRow| Some(&joint.name) == servo.joint.as_ref();
-            if let Some(joint) = self.joints.iter_mut().find(own) {
-                (joint.largest_kp, joint.largest_kv) = (servo.largest_kp, servo.largest_kv);
-            }
-        }
-        self.measured = Some(measured);
-        self.conclude();
-        for other in others {
-            self.verdict.not_examined.push(format!("other gains of `{other}`"));
-        }
-        self
-    }
-
-    /// The same where forces are at a limit, or where servos do not act: the gains have no effect that a derivative has, so that nothing is
-    /// known of them. A mode that grows without the servos that do not act grows all the same.
-    #[must_use]
-    pub fn with_inert_servos(mut self, saturated: Vec<String>, idle: Vec<String>) -> Self {
-        (self.saturated, self.idle) = (saturated, idle);
-        self.conclude();
-        self
-    }
-
-    /// Whether a force is at a limit, or a servo does not act.
-    pub(super) fn is_inert(&self) -> bool {
-        !(self.saturated.is_empty() && self.idle.is_empty())
-    }
-
-    /// Why nothing is known of the gains, whatever the step does; none if all servos act.
-    fn inert(&self, verdict: &Verdict) -> Option<Verdict> {
-        let grows = verdict.outcome == Outcome::Unstable;
-        let idle = self.idle.iter().filter(|_| !(grows && self.saturated.is_empty()));
-        let reasons: Vec<&str> = self.saturated.iter().chain(idle).map(String::as_str).collect();
-        let unknown = Verdict::unknown(reasons.join("; "));
-        (!reasons.is_empty())
-            .then(|| Verdict { not_examined: verdict.not_examined.clone(), ..unknown })
-    }
-
-    /// Removes all limits of gains, which would be read as gains that hold.
-    fn withhold(&mut self) {
-        (self.largest_factor, self.least_factor, self.fewest_substeps) = (f64::NAN, 0.0, None);
-        for joint in &mut self.joints {
-            (joint.largest_kp, joint.largest_kv) = (f64::NAN, f64::NAN);
-            joint.largest_turn = f64::NAN;
-        }
-        for row in &mut self.integrators {
-            (row.holds, row.is_known) = (false, false);
-            (row.largest_factor, row.least_factor, row.fewest_substeps) = (f64::NAN, 0.0, None);
-        }
-        if let Some(measured) = &mut self.measured {
-            (measured.largest_factor, measured.least_factor) = (f64::NAN, 0.0);
-            measured.fewest_substeps = None;
-            measured.not_searched.splice(0..0, measured.servos.drain(..).map(|servo| servo.name));
-        }
-    }
-
-    /// Sets the verdict and the answer.
-    pub(super) fn conclude(&mut self) {
-        let of_step = |report: &Self| match &report.measured {
-            Some(measured) => measured.verdict(),
-            None => report.verdict_of_model(),
-        };
-        self.verdict = of_step(self);
-        if self.inert(&self.verdict).is_some() {
-            self.withhold();
-            let of_step = of_step(self);
-            self.verdict = self.inert(&of_step).unwrap_or(of_step);
-        }
-        self.holds = self.verdict.is_good();
-        self.answer = match &self.measured {
-            Some(measured) => measured.summary(self),
-            None => self.summary(),
-        };
-    }
-
-    fn verdict_of_model(&self) -> Verdict {
+    pub(super) fn verdict_of_model(&self) -> Verdict {
         let radius = beside_one(self.spectral_radius_minus_one, 6);
         let verdict = match self.growth_in_continuous_time {
             Some(growth) => Verdict::new(
@@ -114,7 +23,7 @@ impl GainReport {
             None if !self.is_known => Verdict::unknown(format!(
                 "rounding may hide growth of the servo model: spectral radius {radius}"
             )),
-            None if self.holds => Verdict::new(
+            None if self.holds_in_model => Verdict::new(
                 Outcome::Stable,
                 format!("spectral radius {radius} of the servo model"),
             ),
@@ -178,8 +87,8 @@ impl GainReport {
         }
     }
 
-    fn summary(&self) -> String {
-        if self.verdict.outcome == Outcome::Unknown && self.is_inert() {
+    pub(super) fn summary(&self) -> String {
+        if self.is_withheld {
             return format!("Whether the gains hold is unknown: {}.", self.verdict.evidence);
         }
         let integrator = ServoIntegrator::label(self.integrator);

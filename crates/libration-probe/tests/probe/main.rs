@@ -24,6 +24,8 @@ mod neutral;
 #[path = "../../src/noise_free_matrix.rs"]
 mod noise_free_matrix;
 mod observations;
+mod operating_points;
+mod other_forces;
 mod pages;
 #[path = "../../src/rate_ranges.rs"]
 mod rate_ranges;

@@ -6,7 +6,7 @@ use libration_probe::{ServoIntegrator, ServosDescription, gains, gains_page};
 use libration_report::verdict::Outcome;
 
 /// Sliders with springs, servos and walls: kick, then drift.
-struct Sliders {
+pub(crate) struct Sliders {
     mass: f64,
     /// Stiffness of a spring of each slider.
     spring: Vec<f64>,
@@ -19,7 +19,7 @@ struct Sliders {
 }
 
 impl Sliders {
-    fn new(spring: &[f64], kp: &[f64], kv: &[f64]) -> Self {
+    pub(crate) fn new(spring: &[f64], kp: &[f64], kv: &[f64]) -> Self {
         Sliders {
             mass: 2.0,
             spring: spring.to_vec(),
@@ -72,9 +72,9 @@ impl BlackBox for Sliders {
     }
 }
 
-const DT: f64 = 0.01;
+pub(crate) const DT: f64 = 0.01;
 
-fn measured(mut sliders: Sliders, dt: f64) -> GainReport {
+pub(crate) fn measured(mut sliders: Sliders, dt: f64) -> GainReport {
     let n = sliders.spring.len();
     let mut subject = Subject::new("sliders", vec![0.0; 2 * n], vec![], dt);
     subject.pairs = Some((0..n).map(|i| (i, n + i)).collect());
@@ -92,7 +92,7 @@ fn measured(mut sliders: Sliders, dt: f64) -> GainReport {
     let model: ServosDescription = serde_json::from_value(model).unwrap();
     let found = MeasuredGains::measure(&mut sliders, &subject, &servos, 1).unwrap();
     gains(&model.servos().unwrap(), dt, 1, ServoIntegrator::SYMPLECTIC_EULER, vec![])
-        .with_measured(found, &[])
+        .with_measured(found)
 }
 
 fn close(found: f64, wanted: f64) {
@@ -184,7 +184,7 @@ fn a_step_without_a_derivative_has_no_verdict() {
     let servos: ServosDescription =
         serde_json::from_str(r#"{"mass": [2], "kp": [100], "kv": [3]}"#).unwrap();
     let model = gains(&servos.servos().unwrap(), DT, 1, ServoIntegrator::SYMPLECTIC_EULER, vec![]);
-    let page = gains_page(&model.with_measured(found, &[]));
+    let page = gains_page(&model.with_measured(found));
     let modes = page.split("of the system (1/s)").nth(1).unwrap().split("</table>").next().unwrap();
     // Growth and frequency of the one pair of modes.
     assert!(modes.matches(">unknown<").count() == 2 && !modes.contains(">0<"), "{modes}");
