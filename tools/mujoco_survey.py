@@ -3,7 +3,8 @@
     python tools/mujoco_survey.py target/debug/libration FOLDER ... [--python PROGRAM] [--most N]
 
 The right values use MuJoCo and NumPy alone: the spectral radius of central differences of ``mj_step``, the same on both sides of each
-largest gain, and a run of 5 s from the point. A line for each model says what agrees; a model whose verdict is `unknown` names its reason.
+largest gain, and a run of 5 s from the point. Differences are those without friction loss. A model with friction loss whose gains are said to
+hold runs from a displacement of 0.01 as well. A line for each model says what agrees; a model whose verdict is `unknown` names its reason.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ LENGTHS = (1e-5, 1e-6, 1e-7)
 AGREES = 1e-4
 # Growth that rounding of such differences may show: the root of 1e-10 in a repeated factor.
 GROWTH = 1e-4
+# Displacement of each position in m or rad, beyond what friction loss holds.
+DISPLACEMENT = 0.01
 
 
 def derivative(model, point, eps):
@@ -72,11 +75,35 @@ def with_gains(model, point, servo, kp, kv):
     return own
 
 
-def moves_away(model, point, seconds=5.0):
+def without_friction(model):
+    free = copy.deepcopy(model)
+    free.dof_frictionloss[:], free.tendon_frictionloss[:] = 0, 0
+    return free
+
+
+def displaced(model, point):
+    """Return the positions of a point with each joint moved, within its range; a free joint stays."""
+    change = np.zeros(model.nv)
+    for joint in range(model.njnt):
+        first, kind = int(model.jnt_dofadr[joint]), int(model.jnt_type[joint])
+        if kind in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE):
+            here, (low, high) = float(point.qpos[model.jnt_qposadr[joint]]), model.jnt_range[joint]
+            sides = [side for side in (DISPLACEMENT, -DISPLACEMENT) if not model.jnt_limited[joint] or low < here + side < high]
+            change[first] = sides[0] if sides else 0.0
+        elif kind == mujoco.mjtJoint.mjJNT_BALL:
+            change[first : first + 3] = DISPLACEMENT / 3
+    positions = np.array(point.qpos)
+    mujoco.mj_integratePos(model, positions, change, 1.0)
+    return positions
+
+
+def moves_away(model, point, seconds=5.0, positions=None):
     """Return the largest change of a position in a run, relative to 0.5 rad and a tenth of the extent."""
     data, change, largest = mujoco.MjData(model), np.zeros(model.nv), 0.0
     for name in ("qpos", "act", "ctrl", "mocap_pos", "mocap_quat", "eq_active"):
         getattr(data, name)[:] = getattr(point, name)
+    if positions is not None:
+        data.qpos[:] = positions
     limit = np.full(model.nv, 0.5)
     for joint in range(model.njnt):
         first, kind = int(model.jnt_dofadr[joint]), int(model.jnt_type[joint])
@@ -89,6 +116,14 @@ def moves_away(model, point, seconds=5.0):
         mujoco.mj_differentiatePos(model, change, 1.0, point.qpos, data.qpos)
         largest = max(largest, float(np.max(np.abs(np.nan_to_num(change, nan=np.inf)) / limit)))
     return largest
+
+
+def diverges_by_its_step(model, point):
+    """Whether a run from a displacement leaves the point, and one with a tenth of the step does not."""
+    finer = copy.deepcopy(model)
+    finer.opt.timestep /= 10
+    positions = displaced(model, point)
+    return moves_away(model, point, positions=positions) > 1 >= moves_away(finer, point, 0.5, positions)
 
 
 def report_of(words):
@@ -125,6 +160,10 @@ def survey(path, words, settle):
         point.qvel[:] = 0
         if model.na:
             return f"{outcome} (activations of the equilibrium unknown)", wrong
+    has_friction = np.any(model.dof_frictionloss) or np.any(model.tendon_frictionloss)
+    if has_friction and outcome == "stable" and diverges_by_its_step(model, point):
+        wrong.append(f"stable, but a run from a displacement of {DISPLACEMENT} diverges")
+    model = without_friction(model)
     radii = [radius(model, point, eps) for eps in LENGTHS]
     if max(radii) - min(radii) > AGREES * max(radii):
         if outcome == "stable":

@@ -175,7 +175,9 @@ class Gains:
         """Return whether the servos of a MuJoCo model hold: an ``MjModel``, or the path of an XML or MJB file.
 
         The verdict and the limits are those of the measured step of ``mj_step``, as in :func:`libration.probe`, with contacts, limits and
-        equality constraints as they are at the point. A servo model stands beside it: all actuators, by the derivatives of their forces;
+        equality constraints as they are at the point, and without friction loss, which holds small deviations only. The verdict is
+        ``unknown`` for a step that does not grow if no actuator has gains, or if one has another effect on the motion at each command. A
+        servo model stands beside it: all actuators, by the derivatives of their forces;
         gravity and springs of joints and tendons are the stiffness. ``dt`` and ``integrator`` are those of the model by default; with an
         integrator that MuJoCo does not have the result is that of the servo model alone. The other parameters are those of
         :func:`libration.hosts.mujoco_host`.
