@@ -133,3 +133,43 @@ def test_friction_that_is_unstable_while_it_holds_leaves_the_gains_unknown():
     assert radius(model, 1e-8) > 8 and radius(without_friction(model)) < 1
     assert report.verdict["outcome"] == "unknown" and "while friction loss holds, a mode grows by a factor 8.4" in report.answer
     assert not report.measured["servos"]
+
+
+# A servo that presses a joint against its limit, and one that presses a foot of 100 g against the floor.
+PRESSED = {
+    "limits of joints and tendons": (
+        model_of(ONE.format('range="0 60"'), '<position name="s" joint="j" kp="{kp}" kv="{kv}"/>'.format(kp=100, kv=60)),
+        -0.02,
+        0.01,
+    ),
+    "contacts": (
+        model_of(
+            '<geom type="plane" size="2 2 .1"/><body pos="0 0 .1"><joint name="z" type="slide" axis="0 0 1"/><geom size=".1" mass="0.1"/></body>',
+            '<position name="s" joint="z" kp="100" kv="150"/>',
+        ),
+        -0.02,
+        0.01,
+    ),
+}
+
+
+@pytest.mark.parametrize("what", PRESSED)
+def test_constraints_that_hide_a_fast_mode_of_free_motion_leave_the_gains_unknown(what):
+    model, ctrl, away = PRESSED[what]
+    data = mujoco.MjData(model)
+    data.ctrl[:] = ctrl
+    settled = gains.mujoco(model, data, state="settled").measured["operating_point"]["changes"]
+    data.qpos[:] += settled
+    # It stays where it is pressed, and does not return from a displacement.
+    for start, leaves in ((0.0, False), (away, True)):
+        own = copy.deepcopy(model)
+        own.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
+        run = mujoco.MjData(own)
+        for warning in run.warning:
+            warning.number = 1
+        run.qpos[:], run.ctrl[:] = data.qpos + start, ctrl
+        mujoco.mj_step(own, run, nstep=200)
+        assert (not np.abs(run.qpos - data.qpos).max() < 0.5) == leaves
+    report = gains.mujoco(model, data)
+    assert report.verdict["outcome"] == "unknown" and f"without the {what} that act at the point a fast mode grows" in report.answer
+    assert not report.measured["servos"]

@@ -14,7 +14,7 @@ from .._settings import count, positive
 from ._mujoco_force_limits import free_forces, idle_servos
 from ._mujoco_names import name_of, number_of_actuators, state_names
 from ._mujoco_operating_point import servos_of
-from ._mujoco_other_forces import other_forces, remove_friction
+from ._mujoco_other_forces import growth_of_free_motion, other_forces, remove_friction
 from ._mujoco_point import copy_of, model_of
 from ._mujoco_servos import NO_GAINS, mujoco_servos, of_free_motion
 from .host import Host
@@ -130,6 +130,7 @@ def mujoco_gains(
     described.update(saturated=saturated, idle=idle_servos(own, gains.moments, gains.servos))
     others = other_forces(own, gains.forward, gains.servos)
     others["friction"] = friction
+    others["undecided"] += growth_of_free_motion(own, host, gains.forward)
     if growth is not None:
         others["undecided"].append(f"while friction loss holds, a mode grows by a factor {growth:.4g} per step")
     if of_limits:

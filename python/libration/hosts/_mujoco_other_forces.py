@@ -18,12 +18,19 @@ Array = NDArray[np.float64]
 _LENGTHS = (1e-7, 1e-8)
 # Relative difference of radii that agree, and growth that rounding of such short differences may show.
 _AGREES = 1e-3
+# Off an equilibrium only modes that are fast beside the step count, by the distance of their factors from 1, and growth beyond this.
+_FAST, _GROWTH = 0.5, 1.01
 # What a derivative at the point does not have of constraints that act there.
+_CONTACT = ("CONTACT_FRICTIONLESS", "CONTACT_PYRAMIDAL", "CONTACT_ELLIPTIC")
+_LIMIT = ("LIMIT_JOINT", "LIMIT_TENDON")
 _ACTING = {
-    "contacts that slip, open or close": ("CONTACT_FRICTIONLESS", "CONTACT_PYRAMIDAL", "CONTACT_ELLIPTIC"),
-    "motion away from limits of joints": ("LIMIT_JOINT",),
-    "motion away from limits of tendons": ("LIMIT_TENDON",),
+    "contacts that slip, open or close": _CONTACT,
+    "motion away from limits of joints": _LIMIT[:1],
+    "motion away from limits of tendons": _LIMIT[1:],
 }
+_ONE_SIDED = (("contacts", "CONTACT", _CONTACT), ("limits of joints and tendons", "LIMIT", _LIMIT))
+# The step is smooth without them: the root of the rounding.
+_FREE_LENGTH = 1e-6
 
 
 def remove_friction(model: Any, host: Host) -> tuple[list[str], float | None]:
@@ -45,21 +52,39 @@ def remove_friction(model: Any, host: Host) -> tuple[list[str], float | None]:
     return names + [f"tendon `{name_of(model, 'tendon', int(k))}`" for k in tendons], growth
 
 
+def _factors(host: Host, eps: float) -> Array | None:
+    """Return the factors of the modes of a step by central differences; None if they are not finite."""
+    change = eps * np.eye(len(host.state))
+    actions = np.tile(host.action, (len(change), 1))
+    matrix = (host.step(host.state + change, actions, host.dt) - host.step(host.state - change, actions, host.dt)).T / (2 * eps)
+    host.reset()
+    return np.linalg.eigvals(matrix) if np.isfinite(matrix).all() else None
+
+
 def _held_growth(host: Host) -> float | None:
     """Return the largest factor of a mode of the step with the friction that holds, if one grows at an equilibrium."""
     if not host.equilibrium:
         return None
-    radii = []
-    for eps in _LENGTHS:
-        change = eps * np.eye(len(host.state))
-        actions = np.tile(host.action, (len(change), 1))
-        matrix = (host.step(host.state + change, actions, host.dt) - host.step(host.state - change, actions, host.dt)).T / (2 * eps)
-        host.reset()
-        if not np.isfinite(matrix).all():
-            return None
-        radii.append(float(np.abs(np.linalg.eigvals(matrix)).max(initial=0.0)))
+    factors = [_factors(host, eps) for eps in _LENGTHS]
+    radii = [0.0 if one is None else float(np.abs(one).max(initial=0.0)) for one in factors]
     is_known = abs(radii[0] - radii[1]) <= _AGREES * max(radii)
     return radii[0] if is_known and radii[0] > 1 + _AGREES else None
+
+
+def growth_of_free_motion(model: Any, host: Host, data: Any) -> list[str]:
+    """Return which constraints that act at the point, but not always, hide a fast mode that grows, in words."""
+    found = []
+    kinds, flags = set(np.asarray(data.efc_type)[: data.nefc].tolist()), int(model.opt.disableflags)
+    for what, flag, names in _ONE_SIDED:
+        if not kinds & set(_values(mujoco.mjtConstraint, "mjCNSTR", names)):
+            continue
+        model.opt.disableflags = flags | int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{flag}"))
+        factors = _factors(host, _FREE_LENGTH)
+        model.opt.disableflags = flags
+        growth = 0.0 if factors is None else float(np.abs(factors[np.abs(factors - 1) > _FAST]).max(initial=0.0))
+        if growth > _GROWTH:
+            found.append(f"without the {what} that act at the point a fast mode grows by a factor {growth:.4g} per step")
+    return found
 
 
 def other_forces(model: Any, data: Any, changed: list[int]) -> dict[str, Any]:

@@ -49,7 +49,7 @@ impl OtherForces {
                 in_words(&self.commanded)
             )];
         }
-        vec!["Examine the gains in a model without this friction.".into()]
+        vec!["Lower the gains: they must hold with and without what acts at the point.".into()]
     }
 
     /// The actuators that remain in a step without gains of servos; none if there are none.
