@@ -12,8 +12,6 @@ from ._mujoco_names import name_of, number_of_actuators
 from ._mujoco_operating_point import servos_of
 from .host import Host
 
-Array = NDArray[np.float64]
-
 # Lengths of differences within the hold of friction. Their spectral radii must agree, or the step has no derivative there.
 _LENGTHS = (1e-7, 1e-8)
 # Relative difference of radii that agree, and growth that rounding of such short differences may show.
@@ -52,13 +50,13 @@ def remove_friction(model: Any, host: Host) -> tuple[list[str], float | None]:
     return names + [f"tendon `{name_of(model, 'tendon', int(k))}`" for k in tendons], growth
 
 
-def _factors(host: Host, eps: float) -> Array | None:
+def _factors(host: Host, eps: float) -> NDArray[np.complex128] | None:
     """Return the factors of the modes of a step by central differences; None if they are not finite."""
     change = eps * np.eye(len(host.state))
     actions = np.tile(host.action, (len(change), 1))
     matrix = (host.step(host.state + change, actions, host.dt) - host.step(host.state - change, actions, host.dt)).T / (2 * eps)
     host.reset()
-    return np.linalg.eigvals(matrix) if np.isfinite(matrix).all() else None
+    return np.asarray(np.linalg.eigvals(matrix), dtype=np.complex128) if np.isfinite(matrix).all() else None
 
 
 def _held_growth(host: Host) -> float | None:
