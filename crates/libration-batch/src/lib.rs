@@ -11,8 +11,6 @@ pub mod ensemble;
 mod column_program;
 #[cfg(not(test))]
 mod machine;
-#[cfg(not(test))]
-mod machine_step;
 pub mod rl;
 #[cfg(not(test))]
 mod trajectory;

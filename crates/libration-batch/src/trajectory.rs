@@ -4,8 +4,7 @@ use libration_core::integrator::Exact;
 use libration_core::{AnyMethod, Float};
 use libration_equations::{Dynamics, StepProgram};
 
-use crate::machine::Lane;
-use crate::machine_step::MachineStep;
+use crate::machine::{Lane, MachineStep};
 
 /// A trajectory of a system without commands, in steps of equal length.
 ///

@@ -19,7 +19,7 @@ fn check<S: Float, M: Model<D>, const D: usize>(
     steps: u64,
 ) -> bool {
     let (start, dt) = (start.map(S::from_f64), S::from_f64(dt));
-    let mut simulator = Simulator::new(model.on::<S>(), method, start, dt).unwrap();
+    let mut simulator = Simulator::new(model.on::<S>(), method, start, dt).expect("a valid start");
     let end = simulator.run(steps, &mut ());
     let dynamics = Dynamics::of::<D>(&model, None);
     let first: Vec<S> = start.coordinates().collect();
@@ -69,11 +69,11 @@ fn exact_steps_in_parts_have_the_bits_of_the_compiled_ones() {
     // Of 0.6, 6, 63 and 630 radians, in 2 to 1300 parts.
     for dt in [0.2, 2.0, 20.0, 200.0] {
         let model = Oscillator { omega2: 10.0 };
-        let exact = Exact::new::<1>(model, dt).unwrap();
+        let exact = Exact::new::<1>(model, dt).expect("a valid start");
         let start = State { q: [1.0], v: [0.5] };
         let mut simulator =
-            Simulator::new(Model::<1>::on::<f64>(&model), exact, start, dt).unwrap();
-        simulator.run(20, &mut ()).unwrap();
+            Simulator::new(Model::<1>::on::<f64>(&model), exact, start, dt).expect("a valid start");
+        simulator.run(20, &mut ()).expect("a valid start");
         let dynamics = Dynamics::of::<1>(&model, None);
         let mut own = Trajectory::exact(exact, &dynamics, &[1.0, 0.5], dt);
         assert!(own.advance(20));

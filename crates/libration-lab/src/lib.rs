@@ -1,5 +1,6 @@
 //! The laboratory: runs all studies and writes their report.
 
+mod claim_changes;
 mod claims_table;
 pub mod claims_without_study;
 mod live_page;
@@ -8,6 +9,7 @@ mod report_check;
 mod report_cover;
 pub mod results;
 mod results_comparison;
+mod run_conditions;
 mod run_manifest;
 mod series;
 pub mod session;
@@ -16,9 +18,9 @@ mod system_page;
 mod system_studies;
 mod unjudged_claims;
 
+pub use claim_changes::ClaimChange;
 pub use report_check::{CheckedStudy, ReportCheck};
-pub use results_comparison::{
-    Change, ClaimChange, ComparedResults, Condition, NOISE, ResultsComparison,
-};
+pub use results_comparison::{Change, ComparedResults, NOISE, ResultsComparison};
+pub use run_conditions::Condition;
 pub use studies::STUDIES;
 pub use system_studies::{NotApplicable, SystemStudies};

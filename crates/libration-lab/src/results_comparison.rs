@@ -6,10 +6,12 @@ use std::path::Path;
 
 use libration_data::{read_text_bounded, read_text_regular};
 use libration_report::Record;
-use libration_report::record::{Agreement, Claim, ClaimVerdict, Finding};
+use libration_report::record::{Agreement, Claim, Finding};
 use serde::{Deserialize, Serialize};
 
+use crate::claim_changes::{ClaimChange, claim_changes};
 use crate::results::SCHEMA;
+use crate::run_conditions::{Condition, differing};
 
 /// Findings of two runs, compared.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -36,17 +38,6 @@ pub struct ResultsComparison {
     pub only_after: Vec<String>,
 }
 
-/// A condition of the runs that differs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Condition {
-    /// Its key in `results.json`.
-    pub key: String,
-    /// Its value in the first run.
-    pub before: String,
-    /// Its value in the second run.
-    pub after: String,
-}
-
 /// A finding that differs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Change {
@@ -69,19 +60,6 @@ pub struct Change {
     /// Unit of the first measurement, if it is another one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit_before: Option<String>,
-}
-
-/// A claim whose verdict differs, or that one run alone has.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ClaimChange {
-    /// Its number in the ledger.
-    pub id: String,
-    /// The verdict of the first run; none if it has none.
-    pub before: Option<ClaimVerdict>,
-    /// The verdict of the second run; none if it has none.
-    pub after: Option<ClaimVerdict>,
-    /// Whether it was certain, and the second run, which should have it, has another or none.
-    pub is_lost: bool,
 }
 
 /// What a comparison needs of a file with results.
@@ -149,7 +127,7 @@ impl ComparedResults {
     }
 
     /// The claims, each with the name of its study.
-    fn claims(&self) -> impl Iterator<Item = (&str, &Claim)> {
+    fn claims(&self) -> impl Iterator<Item = (&str, &Claim)> + Clone {
         self.studies
             .iter()
             .flat_map(|record| record.claims.iter().map(|claim| (record.name.as_str(), claim)))
@@ -182,7 +160,9 @@ impl ResultsComparison {
             improvements: Vec::new(),
             changed: Vec::new(),
             lost: Vec::new(),
-            claims: claim_changes(before, after),
+            claims: claim_changes(before.claims(), after.claims(), |study| {
+                after.should_have(before, study)
+            }),
             only_before: Vec::new(),
             only_after: Vec::new(),
         };
@@ -261,34 +241,6 @@ fn change(first: Option<&Finding>, second: &Finding) -> Change {
     }
 }
 
-/// The claims that one run alone has or judges otherwise.
-fn claim_changes(before: &ComparedResults, after: &ComparedResults) -> Vec<ClaimChange> {
-    let old: HashMap<&str, &Claim> =
-        before.claims().map(|(_, claim)| (claim.id.as_str(), claim)).collect();
-    let new: HashMap<&str, &Claim> =
-        after.claims().map(|(_, claim)| (claim.id.as_str(), claim)).collect();
-    let is_certain = |verdict| !matches!(verdict, ClaimVerdict::Undecided);
-    let changed = before.claims().filter_map(|(study, claim)| {
-        let second = new.get(claim.id.as_str()).map(|claim| claim.verdict);
-        let is_lost = is_certain(claim.verdict)
-            && match second {
-                // A certain verdict that another one contradicts, under the same settings.
-                Some(_) => true,
-                None => after.should_have(before, study),
-            };
-        let (id, first) = (claim.id.clone(), Some(claim.verdict));
-        (second != first).then_some(ClaimChange { id, before: first, after: second, is_lost })
-    });
-    let added = after.claims().filter(|(_, claim)| !old.contains_key(claim.id.as_str()));
-    let added = added.map(|(_, claim)| ClaimChange {
-        id: claim.id.clone(),
-        before: None,
-        after: Some(claim.verdict),
-        is_lost: false,
-    });
-    changed.chain(added).collect()
-}
-
 /// The verdict that the numbers of a finding give, whatever its file says. Files have no infinities, of which the file alone knows.
 fn verdict(own: &Finding) -> Agreement {
     match own.predicted.filter(|predicted| predicted.is_finite() && own.measured.is_finite()) {
@@ -323,27 +275,16 @@ fn is_within(first: &Finding, second: &Finding) -> bool {
     (second.measured - first.measured).abs() <= allowed && (after - before).abs() <= allowed
 }
 
-/// The conditions that differ, each with its key.
+/// The conditions that differ.
 fn conditions(before: &ComparedResults, after: &ComparedResults) -> Vec<Condition> {
-    let mut all = Vec::new();
-    if !(before.complete && after.complete) {
-        let [before, after] = [before, after].map(|results| results.complete.to_string());
-        all.push(Condition { key: "complete".to_owned(), before, after });
-    }
-    for (table, first, second) in
-        [("machine", &before.machine, &after.machine), ("config", &before.config, &after.config)]
-    {
-        let missing = serde_json::Value::Null;
-        let others = second.keys().filter(|key| !first.contains_key(*key));
-        for key in first.keys().chain(others) {
-            let of = |map: &serde_json::Map<String, serde_json::Value>| {
-                map.get(key).unwrap_or(&missing).to_string()
-            };
-            let (before, after) = (of(first), of(second));
-            if before != after {
-                all.push(Condition { key: format!("{table}.{key}"), before, after });
-            }
-        }
-    }
-    all
+    let is_complete = [before, after].map(|results| results.complete.to_string());
+    let [first, second] = is_complete;
+    let incomplete = (!(before.complete && after.complete)).then(|| Condition {
+        key: "complete".to_owned(),
+        before: first,
+        after: second,
+    });
+    let machine = differing("machine", [&before.machine, &after.machine]);
+    let config = differing("config", [&before.config, &after.config]);
+    incomplete.into_iter().chain(machine).chain(config).collect()
 }

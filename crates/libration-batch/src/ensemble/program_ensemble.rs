@@ -7,8 +7,7 @@ use libration_equations::{Dynamics, Program};
 
 use super::planes::Planes;
 use super::{BatchFloat, EnsembleError, Execution, GRAIN, MOVED};
-use crate::machine::{Block, BlockProgram};
-use crate::machine_step::MachineStep;
+use crate::machine::{Block, BlockProgram, MachineStep};
 
 /// Trajectories of a system by its program, as structure of arrays.
 ///

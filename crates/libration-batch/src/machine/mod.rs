@@ -12,8 +12,10 @@ mod lane;
 mod lowering;
 mod row_assignment;
 mod runs;
+mod step;
 
 pub(crate) use block::Block;
 pub(crate) use block_program::BlockProgram;
 pub(crate) use lane::Lane;
 pub(crate) use runs::MachineFloat;
+pub(crate) use step::MachineStep;

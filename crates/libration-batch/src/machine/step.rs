@@ -3,7 +3,7 @@
 use libration_core::{AnyMethod, with_method};
 use libration_equations::{Dynamics, StepProgram};
 
-use crate::machine::BlockProgram;
+use super::BlockProgram;
 
 /// A step for the machine, with its way from accelerations to accelerations where there is one.
 #[derive(Debug)]
