@@ -160,6 +160,24 @@ impl Bodies {
         self.pair_potential.as_ref()
     }
 
+    /// The energy of bodies `i` and `j` in the pair potential at a distance, and its derivative by the distance. Zero without a potential.
+    pub fn pair_terms(&self, i: usize, j: usize, distance: f64) -> [f64; 2] {
+        let pair = self.pair_at(i, j, distance);
+        self.pair_potential.as_ref().map_or([0.0; 2], |potential| potential.terms(&pair))
+    }
+
+    /// The second derivative of that energy.
+    pub fn pair_stiffness(&self, i: usize, j: usize, distance: f64) -> f64 {
+        let pair = self.pair_at(i, j, distance);
+        self.pair_potential.as_ref().map_or(0.0, |potential| potential.second_derivative(&pair))
+    }
+
+    fn pair_at(&self, i: usize, j: usize, distance: f64) -> [f64; 7] {
+        let (a, b) = (i.min(j), i.max(j));
+        let (masses, charges) = (&self.masses, &self.charges);
+        [distance, 0.0, 0.0, masses[a], masses[b], charges[a], charges[b]]
+    }
+
     /// The softening length.
     pub fn softening_length(&self) -> f64 {
         self.softening

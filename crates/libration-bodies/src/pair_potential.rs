@@ -20,6 +20,8 @@ pub struct PairPotential {
     parameters: Vec<(String, f64)>,
     /// From the offset of body and other to the force on the body.
     force: Program,
+    /// From the offset of body and other to the energy of both.
+    energy: Program,
     /// From the offset to the second derivative of the energy along it.
     stiffness: Program,
     columns: Arc<[ColumnProgram; 2]>,
@@ -55,7 +57,7 @@ impl PairPotential {
         });
         let columns = Arc::new([&force, &energy].map(ColumnProgram::new));
         let (text, parameters) = (text.to_owned(), parameters.to_vec());
-        Ok(PairPotential { text, parameters, force, stiffness, columns })
+        Ok(PairPotential { text, parameters, force, energy, stiffness, columns })
     }
 
     fn fault(kind: EquationErrorKind) -> EquationError {
@@ -83,6 +85,18 @@ impl PairPotential {
         &self.columns[1]
     }
 
+    /// The energy of two bodies and its derivative by their distance.
+    pub(crate) fn terms(&self, pair: &Pair) -> [f64; 2] {
+        let force = self.force.on::<f64>().run(pair).next();
+        let energy = self.energy.on::<f64>().run(pair).next();
+        [energy, force].map(|value| value.unwrap_or(f64::NAN))
+    }
+
+    /// The second derivative of the energy of two bodies by their distance.
+    pub(crate) fn second_derivative(&self, pair: &Pair) -> f64 {
+        self.stiffness.on::<f64>().run(pair).sum()
+    }
+
     /// The square of the rounding error of the force between two bodies, and of the derivative of the force along the line between them.
     pub(crate) fn errors(&self, pair: &Pair) -> [f64; 2] {
         let rounded = self.force.on::<f64>().run(pair).collect::<Vec<_>>();
@@ -92,7 +106,7 @@ impl PairPotential {
             let error = (*exact - TwoFloat::from_f64(*rounded)).hi();
             error * error
         });
-        let stiffness: f64 = self.stiffness.on::<f64>().run(pair).sum();
+        let stiffness = self.second_derivative(pair);
         [error.sum(), stiffness * stiffness]
     }
 }

@@ -2,6 +2,8 @@
 
 use libration::bodies::{Bodies, BodySimulation, Conserved, RoundingVariance};
 
+use super::approach::dot;
+
 /// The quantities, in this order.
 pub(super) const QUANTITIES: [&str; 3] = ["energy", "momentum", "angular momentum"];
 
@@ -16,7 +18,61 @@ pub(super) struct Changes {
     /// Sums of the variances of reading a state.
     of_reading: [f64; 3],
     samples: f64,
+    mass: f64,
+    exchange: Exchange,
 }
+
+/// The kinetic energy relative to the centre of mass.
+fn relative_kinetic(now: &Conserved, mass: f64) -> f64 {
+    match mass > 0.0 {
+        true => (now.kinetic - 0.5 * dot(now.momentum, now.momentum) / mass).max(0.0),
+        false => now.kinetic,
+    }
+}
+
+/// The energies that a motion exchanges.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Exchange {
+    kinetic: [f64; 2],
+    potential: [f64; 2],
+}
+
+impl Exchange {
+    pub(super) fn new(kinetic: f64, potential: f64) -> Self {
+        Exchange { kinetic: [kinetic; 2], potential: [potential; 2] }
+    }
+
+    pub(super) fn add(&mut self, kinetic: f64, potential: f64) {
+        for ([low, high], value) in [(&mut self.kinetic, kinetic), (&mut self.potential, potential)]
+        {
+            (*low, *high) = (low.min(value), high.max(value));
+        }
+    }
+
+    /// The larger of the ranges of both energies.
+    fn range(&self) -> f64 {
+        let range = |[low, high]: [f64; 2]| high - low;
+        range(self.kinetic).max(range(self.potential))
+    }
+
+    /// Whether the motion exchanges hardly any energy, as on a circle.
+    pub(super) fn is_steady(&self) -> bool {
+        self.range() <= STEADY * self.kinetic[1]
+    }
+
+    /// The energy that the motion exchanges; of a steady motion the largest kinetic energy.
+    pub(super) fn size(&self) -> f64 {
+        if self.is_steady() { self.kinetic[1] } else { self.range() }
+    }
+
+    /// The largest kinetic energy.
+    pub(super) fn largest_kinetic(&self) -> f64 {
+        self.kinetic[1]
+    }
+}
+
+/// The part of the kinetic energy that a motion exchanges at most, to be steady.
+const STEADY: f64 = 1e-3;
 
 /// Variances of energy, momentum and angular momentum.
 fn totals(variance: RoundingVariance) -> [f64; 3] {
@@ -27,9 +83,12 @@ fn totals(variance: RoundingVariance) -> [f64; 3] {
 
 impl Changes {
     /// No changes yet.
-    pub(super) fn new(start: &BodySimulation) -> Self {
-        let start = start.conserved();
+    pub(super) fn new(simulation: &BodySimulation) -> Self {
+        let start = simulation.conserved();
+        let mass = simulation.bodies().masses().iter().sum();
         Changes {
+            mass,
+            exchange: Exchange::new(relative_kinetic(&start, mass), start.potential),
             start,
             largest: [0.0; 3],
             variances: [0.0; 3],
@@ -66,6 +125,7 @@ impl Changes {
             self.variances[i] += variances[i];
             self.of_reading[i] += of_reading[i];
         }
+        self.exchange.add(relative_kinetic(&now, self.mass), now.potential);
         self.samples += 1.0;
         true
     }
@@ -73,6 +133,11 @@ impl Changes {
     /// The largest changes.
     pub(super) fn largest(&self) -> [f64; 3] {
         self.largest
+    }
+
+    /// The energies that the motion exchanged at the samples.
+    pub(super) fn exchange(&self) -> &Exchange {
+        &self.exchange
     }
 
     /// The energy at the start.
@@ -95,18 +160,39 @@ impl Changes {
 }
 
 /// The part of the kinetic energy below which an energy is the small difference of larger ones, as near a parabolic orbit, and no scale.
-const SMALL: f64 = 0.1;
+pub(super) const SMALL: f64 = 0.1;
 
-/// The sizes to which changes are compared: `|E|`, `Σ m|v|` and `Σ m|r||v|`; where the energy is small beside it, the kinetic energy.
-pub(super) fn sizes(bodies: &Bodies, start: &Conserved) -> [f64; 3] {
-    let length = |of: [f64; 3]| of.iter().map(|x| x * x).sum::<f64>().sqrt();
+/// The sizes to which changes are compared, and that of the energy in words: `|E|`, `Σ m|v|` and `Σ m|r||v|`.
+///
+/// Where the energy is small beside it, the kinetic energy. Neither has the motion of a centre of mass that moves fast. The zero of a
+/// pair potential is arbitrary: the size is then what the motion exchanges.
+pub(super) fn sizes(
+    bodies: &Bodies,
+    start: &Conserved,
+    exchange: &Exchange,
+) -> ([f64; 3], &'static str) {
+    let length = |of: [f64; 3]| dot(of, of).sqrt();
     let (mut momenta, mut turns) = (0.0, 0.0);
     for body in bodies.iter() {
         let momentum = body.mass * length(body.velocity);
         momenta += momentum;
         turns += momentum * length(body.position);
     }
-    let is_small = start.energy.abs() < SMALL * start.kinetic;
-    let energy = if is_small { start.kinetic } else { start.energy.abs() };
-    [energy, momenta, turns]
+    let kinetic = relative_kinetic(start, bodies.masses().iter().sum());
+    let inner = (kinetic + start.potential).abs();
+    let moves = start.kinetic - kinetic > SMALL * inner.max(kinetic);
+    let (energy, scale) = match bodies.pairs() {
+        Some(_) => (exchange.size(), EXCHANGED),
+        None if moves && inner < SMALL * kinetic => (kinetic, KINETIC),
+        None if moves => (inner, INNER),
+        None if start.energy.abs() < SMALL * start.kinetic => (start.kinetic, KINETIC),
+        None => (start.energy.abs(), TOTAL),
+    };
+    ([energy, momenta, turns], scale)
 }
+
+/// The size of the energy in words.
+const TOTAL: &str = "|E|";
+const KINETIC: &str = "the kinetic energy at the start";
+const INNER: &str = "|E| without the motion of the centre of mass";
+const EXCHANGED: &str = "the energy that the motion exchanges";

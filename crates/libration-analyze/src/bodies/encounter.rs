@@ -4,6 +4,7 @@ use libration::bodies::{Bodies, BodyIntegrator, BodySimulation};
 use serde::Serialize;
 
 use super::BodiesRequest;
+use super::watch::Watch;
 
 /// The two bodies of a motion that came nearest to each other.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -14,8 +15,9 @@ pub struct Encounter {
     pub distance: f64,
     /// The time.
     pub t: f64,
-    /// Steps of an orbit at that distance: `2π √(d³/G(m₁ + m₂))` over the time step. Below some 20 the step is too long for the encounter.
-    /// None without masses, for adaptive steps, and with the first body of a splitting around it, whose orbits are solved.
+    /// Steps of an orbit at that distance, `2π √(d³/G(m₁ + m₂))`, or of an oscillation in the pair potential there, over the time step. Of
+    /// a splitting around the first body, kicks in that time. Below some 20 the step is too long for the encounter. None without masses,
+    /// without forces, and for adaptive steps.
     pub steps_per_orbit: Option<f64>,
 }
 
@@ -25,7 +27,7 @@ pub const ENCOUNTERS_AT_EACH_STEP: usize = 16;
 /// Bodies up to which they are taken at each sample.
 const MOST: usize = 2048;
 
-/// The closest pair so far.
+/// The closest pair so far, of bodies that no watch looks at in each step.
 #[derive(Debug)]
 pub(super) struct Closest {
     count: usize,
@@ -35,12 +37,6 @@ pub(super) struct Closest {
 impl Closest {
     pub(super) fn new(bodies: &Bodies) -> Self {
         Closest { count: bodies.count(), found: None }
-    }
-
-    pub(super) fn start(&self, simulation: &mut BodySimulation) {
-        if self.count <= ENCOUNTERS_AT_EACH_STEP {
-            simulation.watch_encounters();
-        }
     }
 
     pub(super) fn sample(&mut self, simulation: &BodySimulation) {
@@ -56,16 +52,16 @@ impl Closest {
 
     pub(super) fn encounter(
         &self,
-        simulation: &BodySimulation,
+        watch: Option<&Watch>,
         request: &BodiesRequest,
     ) -> Option<Encounter> {
-        let (pair, distance, t) = simulation.closest_encounter().or(self.found)?;
+        let (pair, distance, t) = watch.and_then(Watch::closest).or(self.found)?;
         Some(Encounter::new(request, pair, distance, t))
     }
 }
 
 impl Encounter {
-    fn new(request: &BodiesRequest, [i, j]: [usize; 2], distance: f64, t: f64) -> Self {
+    pub(super) fn new(request: &BodiesRequest, [i, j]: [usize; 2], distance: f64, t: f64) -> Self {
         let names = &request.system.names;
         Encounter {
             bodies: [names[i].clone(), names[j].clone()],
@@ -96,9 +92,18 @@ impl Encounter {
 
 fn steps_per_orbit(request: &BodiesRequest, [i, j]: [usize; 2], distance: f64) -> Option<f64> {
     let bodies = &request.system.bodies;
-    let mass = bodies.constant() * (bodies.masses()[i] + bodies.masses()[j]);
-    let orbit = core::f64::consts::TAU * (distance.powi(3) / mass).sqrt();
-    let is_solved =
-        matches!(request.integrator, BodyIntegrator::WisdomHolman(_)) && (i == 0 || j == 0);
-    (mass > 0.0 && !request.is_adaptive && !is_solved).then(|| orbit / request.dt.abs())
+    let (a, b) = (bodies.masses()[i], bodies.masses()[j]);
+    let mut square = bodies.constant() * (a + b) / distance.powi(3);
+    if bodies.pairs().is_some() {
+        // Of a circle and of an oscillation along the line between the bodies.
+        let [_, slope] = bodies.pair_terms(i, j, distance);
+        let stiffness = bodies.pair_stiffness(i, j, distance);
+        square += (slope / distance).max(stiffness).max(0.0) * (1.0 / a + 1.0 / b);
+    }
+    let kicks = match request.integrator {
+        BodyIntegrator::WisdomHolman(_) => request.integrator.evaluations() as f64,
+        BodyIntegrator::Method(_) => 1.0,
+    };
+    let steps = core::f64::consts::TAU / square.sqrt() / request.dt.abs() * kicks;
+    (square > 0.0 && !request.is_adaptive).then_some(steps)
 }

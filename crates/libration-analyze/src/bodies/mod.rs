@@ -1,10 +1,13 @@
 //! Simulations of bodies, with an audit of what they conserve: the output of `libration bodies`.
 
+mod approach;
 mod changes;
 mod encounter;
+mod energies;
 mod files;
 mod request;
 mod verdict;
+mod watch;
 
 use libration::bodies::{BodiesError, BodySimulation};
 use libration_report::verdict::Verdict;
@@ -16,9 +19,13 @@ use crate::trajectory::{Monitor, TrajectoryError};
 use changes::{Changes, QUANTITIES, sizes};
 use encounter::Closest;
 pub use encounter::{ENCOUNTERS_AT_EACH_STEP, Encounter};
+pub use energies::PartEnergy;
 pub use files::write;
 pub use request::BodiesRequest;
-pub use verdict::FEW_STEPS;
+use verdict::BROKEN;
+pub use verdict::{FEW_OSCILLATION_STEPS, FEW_STEPS};
+use verdict::Evidence;
+use watch::Watch;
 
 /// Version of the JSON format.
 pub const SCHEMA: &str = "libration.bodies/1";
@@ -63,9 +70,13 @@ pub struct BodiesAudit {
     pub samples: u64,
     /// The energy at the start.
     pub energy: f64,
+    /// The size of the energy that its changes are relative to, in words.
+    pub energy_scale: &'static str,
     /// Changes of energy, momentum and angular momentum, measured and predicted.
     pub conserved: Vec<ConservedChange>,
-    /// The closest encounter: of up to 16 bodies at all steps, of up to 2048 at the samples; none of more or of a single body.
+    /// Changes of the energies of orbits and of bodies in none, of up to 16 bodies.
+    pub energies: Vec<PartEnergy>,
+    /// The closest encounter: of up to 16 bodies at all steps and between them, of up to 2048 at the samples; none of more or of a single body.
     pub encounter: Option<Encounter>,
     /// Why the motion ended before its last step, if it did.
     pub stopped: Option<String>,
@@ -83,7 +94,7 @@ pub struct ConservedChange {
     pub predicted_by_order: Option<f64>,
     /// What rounding predicts: a random walk.
     pub predicted_by_rounding: f64,
-    /// `|E|`, `Σ m|v|` or `Σ m|r||v|` at the start.
+    /// `|E|`, `Σ m|v|` or `Σ m|r||v|` at the start. With a pair potential, the energy that the motion exchanges in place of `|E|`.
     pub size: f64,
 }
 
@@ -105,11 +116,11 @@ pub fn simulate(
     let mut simulation = request.simulation(request.dt).map_err(|error| named(&error, request))?;
     let stride = request.stride();
     let mut closest = Closest::new(&request.system.bodies);
-    closest.start(&mut simulation);
     let start = simulation.conserved();
     if !start.energy.is_finite() {
         return Err(named(&BodiesError::Energy { time: 0.0 }, request));
     }
+    let mut watch = Watch::new(&simulation);
     let mut keep = |simulation: &BodySimulation| {
         for (i, body) in simulation.bodies().iter().enumerate() {
             let values: Vec<f64> = body.position.into_iter().chain(body.velocity).collect();
@@ -119,8 +130,8 @@ pub fn simulate(
         Ok::<(), TrajectoryError>(())
     };
     let (changes, samples, stopped) =
-        run(&mut simulation, request.steps, stride, monitor, 0, &mut keep)?;
-    let sizes = sizes(&request.system.bodies, &start);
+        run(&mut simulation, request.steps, stride, monitor, watch.as_mut(), &mut keep)?;
+    let (sizes, energy_scale) = sizes(&request.system.bodies, &start, changes.exchange());
     let by_order = match &stopped {
         None if request.is_predicted && request.steps >= 4 => {
             by_order(request, stride, monitor, sizes)?
@@ -153,11 +164,20 @@ pub fn simulate(
         is_adaptive: request.is_adaptive,
         samples,
         energy: changes.start_energy(),
+        energy_scale,
         conserved: conserved.collect(),
-        encounter: closest.encounter(&simulation, request),
+        energies: watch.as_ref().map_or_else(Vec::new, |watch| watch.energies(&request.system.names)),
+        encounter: closest.encounter(watch.as_ref(), request),
         stopped: stopped.map(|error| named(&error, request).to_string()),
     };
-    audit.verdict = audit.judge(Encounter::shortest_orbit(request).as_ref());
+    let pass = watch.as_ref().and_then(Watch::pass);
+    audit.verdict = audit.judge(&Evidence {
+        request,
+        shortest: Encounter::shortest_orbit(request),
+        pass: pass.map(|(pair, distance, t)| Encounter::new(request, pair, distance, t)),
+        largest_kinetic: changes.exchange().largest_kinetic(),
+        is_steady: changes.exchange().is_steady(),
+    });
     Ok(audit)
 }
 
@@ -181,13 +201,13 @@ fn relative(change: f64, size: f64) -> f64 {
     if size > 0.0 { change / size } else { change }
 }
 
-/// Runs to the end, or to a collision or overflow, and samples on the way. Progress begins at step `done`.
+/// Runs to the end, or to a collision or overflow, and samples on the way. A watch looks at each step.
 fn run(
     simulation: &mut BodySimulation,
     steps: u64,
     stride: u64,
     monitor: &dyn Monitor,
-    done: u64,
+    mut watch: Option<&mut Watch>,
     keep: &mut dyn FnMut(&BodySimulation) -> Result<(), TrajectoryError>,
 ) -> Result<(Changes, u64, Option<BodiesError>), TrajectoryError> {
     let mut changes = Changes::new(simulation);
@@ -211,10 +231,11 @@ fn run(
         if monitor.should_stop() {
             return Err(TrajectoryError::Interrupted);
         }
-        monitor.on_step(done + step);
+        monitor.on_step(step);
         let next = (step / stride + 1).saturating_mul(stride).min(steps);
-        match simulation.advance_until((next - step).min(look), &|| monitor.should_stop()) {
-            Ok(()) => {}
+        let steps_at_once = if watch.is_some() { 1 } else { (next - step).min(look) };
+        match simulation.advance_until(steps_at_once, &|| monitor.should_stop()) {
+            Ok(()) => watch.iter_mut().for_each(|watch| watch.step(simulation)),
             Err(BodiesError::Stopped) => return Err(TrajectoryError::Interrupted),
             Err(error) => return Ok((changes, samples, Some(error))),
         }
@@ -232,7 +253,7 @@ fn by_order(
     let steps = request.steps / 2;
     let stride = stride.div_ceil(2);
     let (changes, _, stopped) =
-        run(&mut coarse, steps, stride, &Quiet(monitor), 0, &mut |_| Ok(()))?;
+        run(&mut coarse, steps, stride, &Quiet(monitor), None, &mut |_| Ok(()))?;
     if stopped.is_some() {
         return Ok(None);
     }

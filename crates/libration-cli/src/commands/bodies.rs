@@ -8,7 +8,7 @@ use libration::bodies::{InitialConditions, PairPotential};
 use libration::ensemble::Execution;
 use libration::equations::Expression;
 use libration_analyze::bodies::{
-    BodiesAudit, BodiesRequest, ENCOUNTERS_AT_EACH_STEP, FEW_STEPS, simulate, write,
+    BodiesAudit, BodiesRequest, ENCOUNTERS_AT_EACH_STEP, FEW_OSCILLATION_STEPS, FEW_STEPS, simulate, write,
 };
 use libration_analyze::export::{ExportError, Rows};
 use libration_analyze::trajectory::TrajectoryError;
@@ -215,13 +215,17 @@ fn describe(audit: &BodiesAudit) -> String {
             short(encounter.distance),
             short(encounter.t)
         );
+        let (few, what) = match audit.pair_potential {
+            Some(_) => (FEW_OSCILLATION_STEPS, "oscillation"),
+            None => (FEW_STEPS, "orbit"),
+        };
         let _ = match encounter.steps_per_orbit {
-            Some(steps) if steps < FEW_STEPS => writeln!(
+            Some(steps) if steps < few => writeln!(
                 text,
-                ", where an orbit has {} steps: the time step is too long",
+                ", where an {what} has {} steps: the time step is too long",
                 short(steps)
             ),
-            Some(steps) => writeln!(text, ", where an orbit has {} steps", short(steps)),
+            Some(steps) => writeln!(text, ", where an {what} has {} steps", short(steps)),
             None => writeln!(text),
         };
     }
@@ -239,13 +243,12 @@ fn describe(audit: &BodiesAudit) -> String {
 /// The energy that its changes are relative to.
 fn energy_scale(audit: &BodiesAudit) -> String {
     let size = audit.conserved.iter().find(|one| one.quantity == "energy").map(|one| one.size);
-    match size.filter(|size| *size != audit.energy.abs()) {
-        Some(kinetic) => format!(
-            "the kinetic energy at the start = {}, as |E| = {} is small beside it",
-            short(kinetic),
-            short(audit.energy.abs())
-        ),
-        None => format!("|E| = {}", short(audit.energy.abs())),
+    let scale = format!("{} = {}", audit.energy_scale, short(size.unwrap_or(f64::NAN)));
+    match audit.energy_scale {
+        "the kinetic energy at the start" => {
+            format!("{scale}, as |E| = {} is small beside it", short(audit.energy.abs()))
+        }
+        _ => scale,
     }
 }
 

@@ -1,0 +1,85 @@
+//! What is looked at in each step of few bodies: encounters within steps, and the energies of orbits and single bodies.
+
+use libration::bodies::{Bodies, BodySimulation};
+
+use super::approach::{minus, nearest};
+use super::encounter::ENCOUNTERS_AT_EACH_STEP;
+use super::energies::{Energies, PartEnergy};
+
+/// A pair, its distance and the time.
+pub(super) type Found = ([usize; 2], f64, f64);
+
+/// The state before a step, and what was found so far.
+#[derive(Clone, Debug)]
+pub(super) struct Watch {
+    before: Bodies,
+    time: f64,
+    energies: Energies,
+    /// The nearest two bodies.
+    closest: Option<Found>,
+    /// Two bodies that were nearer than their radii within a step.
+    pass: Option<Found>,
+}
+
+impl Watch {
+    /// A watch from the start on; none of many bodies.
+    pub(super) fn new(simulation: &BodySimulation) -> Option<Self> {
+        let bodies = simulation.bodies();
+        let closest = bodies.closest_pair().map(|(pair, distance)| (pair, distance, 0.0));
+        (bodies.count() <= ENCOUNTERS_AT_EACH_STEP).then(|| Watch {
+            before: bodies.clone(),
+            time: 0.0,
+            energies: Energies::new(bodies),
+            closest,
+            pass: None,
+        })
+    }
+
+    /// Looks at a step.
+    pub(super) fn step(&mut self, simulation: &BodySimulation) {
+        let (bodies, time) = (simulation.bodies(), simulation.time());
+        self.energies.add(bodies, simulation.steps(), time, time - self.time);
+        self.approaches(bodies, time);
+        self.before.clone_from(bodies);
+        self.time = time;
+    }
+
+    fn approaches(&mut self, bodies: &Bodies, time: f64) {
+        let length = time - self.time;
+        let radii = bodies.radii();
+        let starts: Vec<_> = self.before.iter().collect();
+        let ends: Vec<_> = bodies.iter().collect();
+        for j in 1..ends.len() {
+            for i in 0..j {
+                let relative = |all: &[libration::bodies::Body]| {
+                    let (own, other) = (all[i], all[j]);
+                    [minus(other.position, own.position), minus(other.velocity, own.velocity)]
+                };
+                let (start, end) = (relative(&starts), relative(&ends));
+                let touch = if self.pass.is_some() { 0.0 } else { radii[i] + radii[j] };
+                let below = self.closest.map_or(f64::INFINITY, |(_, least, _)| least);
+                let found = nearest(start, end, length, below.max(touch));
+                let Some((distance, part)) = found else { continue };
+                let found = ([i, j], distance, self.time + part * length);
+                if distance < below {
+                    self.closest = Some(found);
+                }
+                if distance < touch {
+                    self.pass = Some(found);
+                }
+            }
+        }
+    }
+
+    pub(super) fn closest(&self) -> Option<Found> {
+        self.closest
+    }
+
+    pub(super) fn pass(&self) -> Option<Found> {
+        self.pass
+    }
+
+    pub(super) fn energies(&self, names: &[String]) -> Vec<PartEnergy> {
+        self.energies.changes(names)
+    }
+}
