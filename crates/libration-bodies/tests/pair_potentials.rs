@@ -178,3 +178,33 @@ fn what_does_not_go_with_a_pair_potential_is_refused() {
     let infinite = PairPotential::new("a/r", &[("a".to_owned(), f64::INFINITY)]).unwrap_err();
     assert!(infinite.to_string().contains("expected a finite number"), "{infinite}");
 }
+
+#[test]
+fn the_terms_of_a_pair_are_those_of_the_potential_and_its_derivatives() {
+    let body = |x: f64| Body {
+        mass: 1.0,
+        position: [x, 0.0, 0.0],
+        velocity: [0.0; 3],
+        radius: 0.0,
+        charge: 0.0,
+    };
+    let free = Bodies::new(&[body(0.0), body(1.0)]).unwrap();
+    assert_eq!((free.pair_terms(0, 1, 1.5), free.pair_stiffness(0, 1, 1.5)), ([0.0; 2], 0.0));
+    let potential = PairPotential::new("4*(r^-12-r^-6)", &[]).unwrap();
+    let bound = free.pair_potential(potential).unwrap();
+    for r in [0.9_f64, 1.1, 2.0] {
+        let (a, b) = (r.powi(-12), r.powi(-6));
+        let [energy, slope] = bound.pair_terms(1, 0, r);
+        let expected =
+            [4.0 * (a - b), 4.0 * (6.0 * b - 12.0 * a) / r, 4.0 * (156.0 * a - 42.0 * b) / (r * r)];
+        for (found, expected) in
+            [energy, slope, bound.pair_stiffness(1, 0, r)].into_iter().zip(expected)
+        {
+            // A few roundings of terms of up to 4·156·a.
+            assert!(
+                (found - expected).abs() < 1e-13 * (1.0 + 700.0 * a),
+                "{r}: {found} {expected}"
+            );
+        }
+    }
+}

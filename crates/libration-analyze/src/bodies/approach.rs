@@ -85,7 +85,10 @@ mod tests {
         // From x = -1 with speed 2 over a length of 1.5: nearest to the origin at half of a unit of time, a third of the step.
         let ends = |x: f64| [[x, 0.03, 0.04], [2.0, 0.0, 0.0]];
         let (distance, part) = nearest(ends(-1.0), ends(2.0), 1.5, f64::INFINITY).unwrap();
-        assert!((distance - 0.05).abs() < 1e-12 && (part - 1.0 / 3.0).abs() < 1e-6, "{distance} {part}");
+        assert!(
+            (distance - 0.05).abs() < 1e-12 && (part - 1.0 / 3.0).abs() < 1e-6,
+            "{distance} {part}"
+        );
         assert_eq!(nearest(ends(-1.0), ends(2.0), 1.5, 0.05 - 1e-9), None);
     }
 

@@ -2,7 +2,7 @@
 
 use libration::bodies::{Bodies, BodySimulation, Conserved, RoundingVariance};
 
-use super::approach::dot;
+use super::approach::{dot, minus};
 
 /// The quantities, in this order.
 pub(super) const QUANTITIES: [&str; 3] = ["energy", "momentum", "angular momentum"];
@@ -18,16 +18,22 @@ pub(super) struct Changes {
     /// Sums of the variances of reading a state.
     of_reading: [f64; 3],
     samples: f64,
-    mass: f64,
+    /// The kinetic energy at the start, relative to the centre of mass.
+    inner_kinetic: f64,
+    /// Whether energies are those relative to a centre of mass that moves fast.
+    is_inner: bool,
     exchange: Exchange,
 }
 
 /// The kinetic energy relative to the centre of mass.
-fn relative_kinetic(now: &Conserved, mass: f64) -> f64 {
-    match mass > 0.0 {
-        true => (now.kinetic - 0.5 * dot(now.momentum, now.momentum) / mass).max(0.0),
-        false => now.kinetic,
-    }
+fn inner_kinetic(bodies: &Bodies, momentum: [f64; 3]) -> f64 {
+    let mass: f64 = bodies.masses().iter().sum();
+    let centre = momentum.map(|p| if mass > 0.0 { p / mass } else { 0.0 });
+    let square = |velocity| {
+        let relative = minus(velocity, centre);
+        dot(relative, relative)
+    };
+    0.5 * bodies.iter().map(|body| body.mass * square(body.velocity)).sum::<f64>()
 }
 
 /// The energies that a motion exchanges.
@@ -85,10 +91,13 @@ impl Changes {
     /// No changes yet.
     pub(super) fn new(simulation: &BodySimulation) -> Self {
         let start = simulation.conserved();
-        let mass = simulation.bodies().masses().iter().sum();
+        let inner_kinetic = inner_kinetic(simulation.bodies(), start.momentum);
+        let inner = (inner_kinetic + start.potential).abs();
+        let moves = start.kinetic - inner_kinetic;
         Changes {
-            mass,
-            exchange: Exchange::new(relative_kinetic(&start, mass), start.potential),
+            inner_kinetic,
+            is_inner: moves > SMALL * inner.max(inner_kinetic),
+            exchange: Exchange::new(inner_kinetic, start.potential),
             start,
             largest: [0.0; 3],
             variances: [0.0; 3],
@@ -113,8 +122,13 @@ impl Changes {
         let distance = |a: [f64; 3], b: [f64; 3]| -> f64 {
             a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
         };
+        let kinetic = inner_kinetic(simulation.bodies(), now.momentum);
+        let change = match self.is_inner {
+            true => kinetic - self.inner_kinetic + (now.potential - self.start.potential),
+            false => now.energy - self.start.energy,
+        };
         let changes = [
-            (now.energy - self.start.energy).abs(),
+            change.abs(),
             distance(now.momentum, self.start.momentum),
             distance(now.angular_momentum, self.start.angular_momentum),
         ];
@@ -125,7 +139,7 @@ impl Changes {
             self.variances[i] += variances[i];
             self.of_reading[i] += of_reading[i];
         }
-        self.exchange.add(relative_kinetic(&now, self.mass), now.potential);
+        self.exchange.add(kinetic, now.potential);
         self.samples += 1.0;
         true
     }
@@ -166,11 +180,7 @@ pub(super) const SMALL: f64 = 0.1;
 ///
 /// Where the energy is small beside it, the kinetic energy. Neither has the motion of a centre of mass that moves fast. The zero of a
 /// pair potential is arbitrary: the size is then what the motion exchanges.
-pub(super) fn sizes(
-    bodies: &Bodies,
-    start: &Conserved,
-    exchange: &Exchange,
-) -> ([f64; 3], &'static str) {
+pub(super) fn sizes(bodies: &Bodies, changes: &Changes) -> ([f64; 3], &'static str) {
     let length = |of: [f64; 3]| dot(of, of).sqrt();
     let (mut momenta, mut turns) = (0.0, 0.0);
     for body in bodies.iter() {
@@ -178,13 +188,12 @@ pub(super) fn sizes(
         momenta += momentum;
         turns += momentum * length(body.position);
     }
-    let kinetic = relative_kinetic(start, bodies.masses().iter().sum());
-    let inner = (kinetic + start.potential).abs();
-    let moves = start.kinetic - kinetic > SMALL * inner.max(kinetic);
+    let Changes { start, inner_kinetic, .. } = changes;
+    let inner = (inner_kinetic + start.potential).abs();
     let (energy, scale) = match bodies.pairs() {
-        Some(_) => (exchange.size(), EXCHANGED),
-        None if moves && inner < SMALL * kinetic => (kinetic, KINETIC),
-        None if moves => (inner, INNER),
+        Some(_) => (changes.exchange.size(), EXCHANGED),
+        None if changes.is_inner && inner < SMALL * inner_kinetic => (*inner_kinetic, KINETIC),
+        None if changes.is_inner => (inner, INNER),
         None if start.energy.abs() < SMALL * start.kinetic => (start.kinetic, KINETIC),
         None => (start.energy.abs(), TOTAL),
     };

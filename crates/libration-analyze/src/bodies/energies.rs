@@ -6,6 +6,8 @@ use serde::Serialize;
 use super::BROKEN;
 use super::approach::{Vector, dot, minus, size};
 use super::changes::{Exchange, SMALL};
+use super::encounter::ENCOUNTERS_AT_EACH_STEP;
+use super::field::Field;
 
 /// The energy of an orbit, or of a single body in the field of all others, with the work that others do on it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -16,70 +18,19 @@ pub struct PartEnergy {
     pub largest_change: f64,
     /// The error of that work as an integral over the steps, in the same unit: its change with every other step alone.
     pub work_error: f64,
-    /// Whether the energy is lost beyond doubt.
+    /// Whether the energy is lost, beyond the error of the work.
     #[serde(skip)]
     pub(super) is_lost: bool,
+    /// Whether the others hardly work on it, so that steps may be few in an encounter.
+    #[serde(skip)]
+    pub(super) is_alone: bool,
 }
 
 /// The part of the attraction of two bodies up to which others may disturb them, so that they are an orbit.
 const MOST_DISTURBED: f64 = 0.5;
 
-/// Accelerations, potentials and powers of all bodies at one time.
-pub(super) struct Field {
-    places: Vec<Vector>,
-    /// Relative to the centre of mass.
-    velocities: Vec<Vector>,
-    accelerations: Vec<Vector>,
-    /// Potential energy per mass.
-    potentials: Vec<f64>,
-    /// The rate of the energy of each body, per mass: that of its potential where it is.
-    powers: Vec<f64>,
-}
-
-impl Field {
-    pub(super) fn new(bodies: &Bodies, centre_velocity: Vector) -> Self {
-        let count = bodies.count();
-        let mut field = Field {
-            places: bodies.iter().map(|body| body.position).collect(),
-            velocities: bodies.iter().map(|body| minus(body.velocity, centre_velocity)).collect(),
-            accelerations: vec![[0.0; 3]; count],
-            potentials: vec![0.0; count],
-            powers: vec![0.0; count],
-        };
-        let masses = bodies.masses();
-        for j in 1..count {
-            for i in (0..j).filter(|&i| masses[i] > 0.0 || masses[j] > 0.0) {
-                field.add(bodies, i, j);
-                field.add(bodies, j, i);
-            }
-        }
-        field
-    }
-
-    /// Adds what body `j` does to body `i`.
-    fn add(&mut self, bodies: &Bodies, i: usize, j: usize) {
-        let offset = minus(self.places[j], self.places[i]);
-        let square = dot(offset, offset);
-        let softened = square + bodies.softening_length().powi(2);
-        let strength = bodies.constant() * bodies.masses()[j];
-        let (mut weight, mut potential) = (0.0, 0.0);
-        if strength > 0.0 {
-            weight = strength / (softened * softened.sqrt());
-            potential = -strength / softened.sqrt();
-        }
-        if bodies.pairs().is_some() {
-            let (distance, mass) = (square.sqrt(), bodies.masses()[i]);
-            let [energy, slope] = bodies.pair_terms(i, j, distance);
-            weight += slope / (distance * mass);
-            potential += energy / mass;
-        }
-        for k in 0..3 {
-            self.accelerations[i][k] += weight * offset[k];
-        }
-        self.potentials[i] += potential;
-        self.powers[i] += weight * dot(offset, self.velocities[j]);
-    }
-}
+/// Pairs with a mass up to which energies are taken at each step.
+const MOST_PAIRS: usize = 1024;
 
 /// What has an energy of its own.
 #[derive(Clone, Copy, Debug)]
@@ -221,8 +172,7 @@ impl Course {
         let change = (energy - self.work).abs();
         self.most_work = self.most_work.max(self.work.abs());
         // Near a body all energies are large: a change of the orbit is one that stays. Of a pair that others part, their work is the size.
-        let size =
-            if has_zero { self.size().max(now.kinetic).max(self.most_work) } else { 1.0 };
+        let size = if has_zero { self.size().max(now.kinetic).max(self.most_work) } else { 1.0 };
         let [largest, of] = self.largest;
         // Of NaN, too.
         if !(change * of <= largest * size) {
@@ -242,7 +192,16 @@ pub(super) struct Energies {
 }
 
 impl Energies {
-    pub(super) fn new(bodies: &Bodies) -> Self {
+    /// The energies at the start. None of many bodies.
+    pub(super) fn new(bodies: &Bodies) -> Option<Self> {
+        let sources = bodies.masses().iter().filter(|&&mass| mass > 0.0).count();
+        let is_allowed = match bodies.pairs() {
+            Some(_) => bodies.count() <= ENCOUNTERS_AT_EACH_STEP,
+            None => sources * bodies.count() <= MOST_PAIRS,
+        };
+        if !is_allowed {
+            return None;
+        }
         let total: f64 = bodies.masses().iter().sum();
         let centre_velocity = core::array::from_fn(|k| match total > 0.0 {
             true => bodies.iter().map(|body| body.mass * body.velocity[k]).sum::<f64>() / total,
@@ -250,12 +209,12 @@ impl Energies {
         });
         let field = Field::new(bodies, centre_velocity);
         let course = |part: Part| Course::new(part, part.read(bodies, &field));
-        Energies {
+        Some(Energies {
             courses: parts(bodies, &field).into_iter().map(course).collect(),
             has_zero: bodies.pairs().is_none(),
             centre_velocity,
             even_time: 0.0,
-        }
+        })
     }
 
     /// Adds the state after step number `step`, of this length.
@@ -277,12 +236,14 @@ impl Energies {
             let [change, at] = course.largest;
             let size = if self.has_zero { at } else { course.exchange.size() };
             // A steady motion that loses energy exchanges what it loses.
-            let certain = if self.has_zero { at } else { size.max(course.exchange.largest_kinetic()) };
+            let certain =
+                if self.has_zero { at } else { size.max(course.exchange.largest_kinetic()) };
             let over = |x: f64| if x == 0.0 { 0.0 } else { x / size };
             PartEnergy {
                 bodies: course.part.names(names),
                 largest_change: over(change),
                 work_error: over(course.work_error),
+                is_alone: course.most_work <= BROKEN * certain,
                 is_lost: change - course.work_error > BROKEN * certain,
             }
         };

@@ -4,6 +4,7 @@ mod approach;
 mod changes;
 mod encounter;
 mod energies;
+mod field;
 mod files;
 mod request;
 mod verdict;
@@ -23,8 +24,8 @@ pub use energies::PartEnergy;
 pub use files::write;
 pub use request::BodiesRequest;
 use verdict::BROKEN;
-pub use verdict::{FEW_OSCILLATION_STEPS, FEW_STEPS};
 use verdict::Evidence;
+pub use verdict::{FEW_OSCILLATION_STEPS, FEW_STEPS};
 use watch::Watch;
 
 /// Version of the JSON format.
@@ -74,7 +75,7 @@ pub struct BodiesAudit {
     pub energy_scale: &'static str,
     /// Changes of energy, momentum and angular momentum, measured and predicted.
     pub conserved: Vec<ConservedChange>,
-    /// Changes of the energies of orbits and of bodies in none, of up to 16 bodies.
+    /// Changes of the energies of orbits and of bodies in none: of up to 16 bodies, and of more with up to 1024 pairs with a mass.
     pub energies: Vec<PartEnergy>,
     /// The closest encounter: of up to 16 bodies at all steps and between them, of up to 2048 at the samples; none of more or of a single body.
     pub encounter: Option<Encounter>,
@@ -131,7 +132,7 @@ pub fn simulate(
     };
     let (changes, samples, stopped) =
         run(&mut simulation, request.steps, stride, monitor, watch.as_mut(), &mut keep)?;
-    let (sizes, energy_scale) = sizes(&request.system.bodies, &start, changes.exchange());
+    let (sizes, energy_scale) = sizes(&request.system.bodies, &changes);
     let by_order = match &stopped {
         None if request.is_predicted && request.steps >= 4 => {
             by_order(request, stride, monitor, sizes)?
@@ -166,7 +167,9 @@ pub fn simulate(
         energy: changes.start_energy(),
         energy_scale,
         conserved: conserved.collect(),
-        energies: watch.as_ref().map_or_else(Vec::new, |watch| watch.energies(&request.system.names)),
+        energies: watch
+            .as_ref()
+            .map_or_else(Vec::new, |watch| watch.energies(&request.system.names)),
         encounter: closest.encounter(watch.as_ref(), request),
         stopped: stopped.map(|error| named(&error, request).to_string()),
     };

@@ -39,8 +39,7 @@ impl BodiesAudit {
             return Verdict::new(Outcome::Fault, reason.clone());
         }
         let energy = self.conserved.iter().find(|one| one.quantity == "energy");
-        let (change, size) =
-            energy.map_or((f64::NAN, 1.0), |one| (one.largest_change, one.size));
+        let (change, size) = energy.map_or((f64::NAN, 1.0), |one| (one.largest_change, one.size));
         let what = match self.pair_potential {
             Some(_) => "what the motion exchanges",
             None => "its size",
@@ -52,17 +51,19 @@ impl BodiesAudit {
         if change.is_nan() || (change > BROKEN && is_certain) {
             return Verdict::new(Outcome::Fault, said);
         }
-        if let Some(part) = self.largest_part(|part| part.is_lost) {
+        let few = self.few_steps(evidence);
+        let is_lost = |part: &PartEnergy| part.is_lost && (few.is_none() || part.is_alone);
+        if let Some(part) = self.largest_part(is_lost) {
             return Verdict::new(Outcome::Fault, said_of(part));
         }
-        match self.doubt(evidence, change) {
+        match self.doubt(evidence, few, change) {
             Some(reason) => Verdict::unknown(format!("{reason}; {said}")),
             None => self.good(evidence, said),
         }
     }
 
     /// Why the evidence does not decide, if so.
-    fn doubt(&self, evidence: &Evidence<'_>, change: f64) -> Option<String> {
+    fn doubt(&self, evidence: &Evidence<'_>, few: Option<String>, change: f64) -> Option<String> {
         if let Some(pass) = &evidence.pass {
             let [a, b] = &pass.bodies;
             return Some(format!(
@@ -71,18 +72,8 @@ impl BodiesAudit {
                 number(pass.t, 4)
             ));
         }
-        let (few, what) = match self.pair_potential {
-            Some(_) => (FEW_OSCILLATION_STEPS, "oscillation"),
-            None => (FEW_STEPS, "orbit"),
-        };
-        let of_few = |own: &&Encounter| own.steps_per_orbit.is_some_and(|steps| steps < few);
-        if let Some(own) = self.encounter.iter().chain(&evidence.shortest).find(of_few) {
-            let [a, b] = &own.bodies;
-            return Some(format!(
-                "an {what} at the distance of {a} and {b} at t = {} has {} steps, fewer than {few}",
-                number(own.t, 4),
-                number(own.steps_per_orbit.unwrap_or_default(), 2)
-            ));
+        if few.is_some() {
+            return few;
         }
         if change > BROKEN {
             return Some("a steady motion may lose as much of its energy".to_owned());
@@ -98,10 +89,26 @@ impl BodiesAudit {
         Some(format!("the energy of {light} is too small a part of the energy to be seen in it"))
     }
 
+    /// An orbit or oscillation with few steps.
+    fn few_steps(&self, evidence: &Evidence<'_>) -> Option<String> {
+        let (few, what) = match self.pair_potential {
+            Some(_) => (FEW_OSCILLATION_STEPS, "oscillation"),
+            None => (FEW_STEPS, "orbit"),
+        };
+        let of_few = |own: &&Encounter| own.steps_per_orbit.is_some_and(|steps| steps < few);
+        let own = self.encounter.iter().chain(&evidence.shortest).find(of_few)?;
+        let [a, b] = &own.bodies;
+        Some(format!(
+            "an {what} at the distance of {a} and {b} at t = {} has {} steps, fewer than {few}",
+            number(own.t, 4),
+            number(own.steps_per_orbit.unwrap_or_default(), 2)
+        ))
+    }
+
     /// A body whose mass is far below the mean and whose energy may have changed by as much as that of all. None where each is looked at.
     fn light<'a>(&self, request: &'a BodiesRequest, change: f64) -> Option<&'a str> {
         let masses = request.system.bodies.masses();
-        if masses.len() <= ENCOUNTERS_AT_EACH_STEP {
+        if !self.energies.is_empty() {
             return None;
         }
         let total: f64 = masses.iter().sum();
@@ -131,10 +138,12 @@ impl BodiesAudit {
         if self.pair_potential.is_some() && evidence.is_steady {
             verdict = verdict.without("oscillations with a thousandth of the kinetic energy");
         }
+        if self.energies.is_empty() && self.bodies > 1 {
+            verdict = verdict.without("energies of single bodies");
+        }
         if self.bodies <= ENCOUNTERS_AT_EACH_STEP {
             return verdict;
         }
-        let verdict = verdict.without("energies of single bodies");
         match evidence.request.system.bodies.radii().iter().any(|&radius| radius > 0.0) {
             true => verdict.without("collisions between steps"),
             false => verdict,
@@ -144,5 +153,8 @@ impl BodiesAudit {
 
 fn said_of(part: &PartEnergy) -> String {
     let change = number(part.largest_change, 3);
-    format!("the energy of {} changes by {change} of its size besides the work of others", part.text())
+    format!(
+        "the energy of {} changes by {change} of its size besides the work of others",
+        part.text()
+    )
 }

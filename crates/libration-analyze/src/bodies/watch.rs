@@ -1,6 +1,6 @@
-//! What is looked at in each step of few bodies: encounters within steps, and the energies of orbits and single bodies.
+//! Encounters within steps, and the energies of orbits and single bodies, of few bodies in each step.
 
-use libration::bodies::{Bodies, BodySimulation};
+use libration::bodies::{Bodies, Body, BodySimulation};
 
 use super::approach::{minus, nearest};
 use super::encounter::ENCOUNTERS_AT_EACH_STEP;
@@ -12,9 +12,10 @@ pub(super) type Found = ([usize; 2], f64, f64);
 /// The state before a step, and what was found so far.
 #[derive(Clone, Debug)]
 pub(super) struct Watch {
-    before: Bodies,
+    /// Of few bodies.
+    before: Option<Bodies>,
     time: f64,
-    energies: Energies,
+    energies: Option<Energies>,
     /// The nearest two bodies.
     closest: Option<Found>,
     /// Two bodies that were nearer than their radii within a step.
@@ -25,12 +26,14 @@ impl Watch {
     /// A watch from the start on; none of many bodies.
     pub(super) fn new(simulation: &BodySimulation) -> Option<Self> {
         let bodies = simulation.bodies();
-        let closest = bodies.closest_pair().map(|(pair, distance)| (pair, distance, 0.0));
-        (bodies.count() <= ENCOUNTERS_AT_EACH_STEP).then(|| Watch {
-            before: bodies.clone(),
+        let energies = Energies::new(bodies);
+        let is_few = bodies.count() <= ENCOUNTERS_AT_EACH_STEP;
+        let closest = bodies.closest_pair().filter(|_| is_few);
+        (is_few || energies.is_some()).then(|| Watch {
+            before: is_few.then(|| bodies.clone()),
             time: 0.0,
-            energies: Energies::new(bodies),
-            closest,
+            energies,
+            closest: closest.map(|(pair, distance)| (pair, distance, 0.0)),
             pass: None,
         })
     }
@@ -38,20 +41,25 @@ impl Watch {
     /// Looks at a step.
     pub(super) fn step(&mut self, simulation: &BodySimulation) {
         let (bodies, time) = (simulation.bodies(), simulation.time());
-        self.energies.add(bodies, simulation.steps(), time, time - self.time);
-        self.approaches(bodies, time);
-        self.before.clone_from(bodies);
+        if let Some(energies) = &mut self.energies {
+            energies.add(bodies, simulation.steps(), time, time - self.time);
+        }
+        if let Some(mut before) = self.before.take() {
+            self.approaches(&before, bodies, time);
+            before.clone_from(bodies);
+            self.before = Some(before);
+        }
         self.time = time;
     }
 
-    fn approaches(&mut self, bodies: &Bodies, time: f64) {
+    fn approaches(&mut self, before: &Bodies, bodies: &Bodies, time: f64) {
         let length = time - self.time;
         let radii = bodies.radii();
-        let starts: Vec<_> = self.before.iter().collect();
+        let starts: Vec<_> = before.iter().collect();
         let ends: Vec<_> = bodies.iter().collect();
         for j in 1..ends.len() {
             for i in 0..j {
-                let relative = |all: &[libration::bodies::Body]| {
+                let relative = |all: &[Body]| {
                     let (own, other) = (all[i], all[j]);
                     [minus(other.position, own.position), minus(other.velocity, own.velocity)]
                 };
@@ -80,6 +88,6 @@ impl Watch {
     }
 
     pub(super) fn energies(&self, names: &[String]) -> Vec<PartEnergy> {
-        self.energies.changes(names)
+        self.energies.as_ref().map_or_else(Vec::new, |energies| energies.changes(names))
     }
 }

@@ -8,7 +8,8 @@ use libration::bodies::{InitialConditions, PairPotential};
 use libration::ensemble::Execution;
 use libration::equations::Expression;
 use libration_analyze::bodies::{
-    BodiesAudit, BodiesRequest, ENCOUNTERS_AT_EACH_STEP, FEW_OSCILLATION_STEPS, FEW_STEPS, simulate, write,
+    BodiesAudit, BodiesRequest, ENCOUNTERS_AT_EACH_STEP, FEW_OSCILLATION_STEPS, FEW_STEPS,
+    simulate, write,
 };
 use libration_analyze::export::{ExportError, Rows};
 use libration_analyze::trajectory::TrajectoryError;
