@@ -1,5 +1,8 @@
 //! The nearest approach of two bodies within a step.
 
+/// Bodies up to which all pairs are looked at in each step.
+pub const ENCOUNTERS_AT_EACH_STEP: usize = 16;
+
 /// A point or vector.
 pub(super) type Vector = [f64; 3];
 

@@ -4,6 +4,7 @@ use libration::bodies::{Bodies, BodyIntegrator, BodySimulation};
 use serde::Serialize;
 
 use super::BodiesRequest;
+use super::approach::ENCOUNTERS_AT_EACH_STEP;
 use super::watch::Watch;
 
 /// The two bodies of a motion that came nearest to each other.
@@ -20,9 +21,6 @@ pub struct Encounter {
     /// without forces, and for adaptive steps.
     pub steps_per_orbit: Option<f64>,
 }
-
-/// Bodies up to which distances of all pairs are taken at each step.
-pub const ENCOUNTERS_AT_EACH_STEP: usize = 16;
 
 /// Bodies up to which they are taken at each sample.
 const MOST: usize = 2048;

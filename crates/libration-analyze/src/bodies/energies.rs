@@ -3,10 +3,8 @@
 use libration::bodies::Bodies;
 use serde::Serialize;
 
-use super::BROKEN;
-use super::approach::{Vector, dot, minus, size};
+use super::approach::{ENCOUNTERS_AT_EACH_STEP, Vector, dot, minus, size};
 use super::changes::{Exchange, SMALL};
-use super::encounter::ENCOUNTERS_AT_EACH_STEP;
 use super::field::Field;
 
 /// The energy of an orbit, or of a single body in the field of all others, with the work that others do on it.
@@ -16,7 +14,7 @@ pub struct PartEnergy {
     pub bodies: Vec<String>,
     /// The largest change that the work of the others does not explain, relative to the energy at the start or to what the part exchanges.
     pub largest_change: f64,
-    /// The error of that work as an integral over the steps, in the same unit: its change with every other step alone.
+    /// The error of that work as an integral over the steps, in the same unit: a third of its change with every other step alone.
     pub work_error: f64,
     /// Whether the energy is lost, beyond the error of the work.
     #[serde(skip)]
@@ -28,6 +26,9 @@ pub struct PartEnergy {
 
 /// The part of the attraction of two bodies up to which others may disturb them, so that they are an orbit.
 const MOST_DISTURBED: f64 = 0.5;
+
+/// The part of its size by which the energy changes in a motion that is not that of the bodies: distances change by as much.
+pub(super) const BROKEN: f64 = 0.1;
 
 /// Pairs with a mass up to which energies are taken at each step.
 const MOST_PAIRS: usize = 1024;
@@ -163,7 +164,7 @@ impl Course {
         self.work += 0.5 * length * (self.last.power + now.power);
         if let Some(length) = even_length {
             self.coarse_work += 0.5 * length * (self.even.power + now.power);
-            self.work_error = self.work_error.max((self.work - self.coarse_work).abs());
+            self.work_error = self.work_error.max((self.work - self.coarse_work).abs() / 3.0);
             self.even = now;
         }
         self.last = now;
@@ -252,9 +253,14 @@ impl Energies {
 }
 
 impl PartEnergy {
+    /// The largest change that is possible with the error of the work.
+    pub(super) fn most(&self) -> f64 {
+        self.largest_change + self.work_error
+    }
+
     /// Whether the energy may be lost.
     pub(super) fn is_in_doubt(&self) -> bool {
-        !(self.largest_change <= BROKEN)
+        !(self.most() <= BROKEN)
     }
 
     /// `the orbit of a and b`, or `a alone`.

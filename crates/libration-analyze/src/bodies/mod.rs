@@ -17,13 +17,13 @@ use serde::Serialize;
 
 use crate::export::Rows;
 use crate::trajectory::{Monitor, TrajectoryError};
+pub use approach::ENCOUNTERS_AT_EACH_STEP;
 use changes::{Changes, QUANTITIES, sizes};
 use encounter::Closest;
-pub use encounter::{ENCOUNTERS_AT_EACH_STEP, Encounter};
+pub use encounter::Encounter;
 pub use energies::PartEnergy;
 pub use files::write;
 pub use request::BodiesRequest;
-use verdict::BROKEN;
 use verdict::Evidence;
 pub use verdict::{FEW_OSCILLATION_STEPS, FEW_STEPS};
 use watch::Watch;

@@ -3,8 +3,9 @@
 use libration_report::notation::number;
 use libration_report::verdict::{Outcome, Verdict};
 
-use super::encounter::{ENCOUNTERS_AT_EACH_STEP, Encounter};
-use super::energies::PartEnergy;
+use super::approach::ENCOUNTERS_AT_EACH_STEP;
+use super::encounter::Encounter;
+use super::energies::{BROKEN, PartEnergy};
 use super::{BodiesAudit, BodiesRequest};
 
 /// Steps of an orbit below which an encounter is too fast for the time step.
@@ -12,9 +13,6 @@ pub const FEW_STEPS: f64 = 20.0;
 
 /// The same of an oscillation in a pair potential, whose kicks no pericentre makes shorter: its phase is then within two hundredths.
 pub const FEW_OSCILLATION_STEPS: f64 = 10.0;
-
-/// The part of its size by which the energy changes in a motion that is not that of the bodies: distances change by as much.
-pub(super) const BROKEN: f64 = 0.1;
 
 /// The part of the mean mass below which the energies of other bodies hide that of a body.
 const LIGHT: f64 = 0.01;
@@ -123,14 +121,14 @@ impl BodiesAudit {
 
     fn largest_part(&self, of: impl Fn(&PartEnergy) -> bool) -> Option<&PartEnergy> {
         let parts = self.energies.iter().filter(|part| of(part));
-        parts.max_by(|a, b| a.largest_change.total_cmp(&b.largest_change))
+        parts.max_by(|a, b| a.most().total_cmp(&b.most()))
     }
 
     fn good(&self, evidence: &Evidence<'_>, said: String) -> Verdict {
         let said = match self.largest_part(|_| true) {
             Some(part) => {
-                let change = number(part.largest_change, 3);
-                format!("{said}, that of {} by {change} besides the work of others", part.text())
+                let change = number(part.most(), 3);
+                format!("{said}, that of {} by at most {change}", part.text())
             }
             None => said,
         };

@@ -2,8 +2,7 @@
 
 use libration::bodies::{Bodies, Body, BodySimulation};
 
-use super::approach::{minus, nearest};
-use super::encounter::ENCOUNTERS_AT_EACH_STEP;
+use super::approach::{ENCOUNTERS_AT_EACH_STEP, minus, nearest};
 use super::energies::{Energies, PartEnergy};
 
 /// A pair, its distance and the time.
