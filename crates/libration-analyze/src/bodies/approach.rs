@@ -38,8 +38,7 @@ fn search(curve: &[Vector; 4], [from, to]: [f64; 2], halvings: u32, best: &mut (
     let part = if square > 0.0 { (-dot(curve[0], along) / square).clamp(0.0, 1.0) } else { 0.0 };
     let of_chord = size(chord(part));
     let least = of_chord - deviation;
-    // Of NaN, too.
-    if !(least < best.0) {
+    if least.is_nan() || least >= best.0 {
         return;
     }
     let at = size(halves(curve, part)[0][3]);

@@ -175,8 +175,7 @@ impl Course {
         // Near a body all energies are large: a change of the orbit is one that stays. Of a pair that others part, their work is the size.
         let size = if has_zero { self.size().max(now.kinetic).max(self.most_work) } else { 1.0 };
         let [largest, of] = self.largest;
-        // Of NaN, too.
-        if !(change * of <= largest * size) {
+        if change.is_nan() || change * of > largest * size {
             self.largest = [change, size];
         }
     }
@@ -260,7 +259,7 @@ impl PartEnergy {
 
     /// Whether the energy may be lost.
     pub(super) fn is_in_doubt(&self) -> bool {
-        !(self.most() <= BROKEN)
+        self.most().is_nan() || self.most() > BROKEN
     }
 
     /// `the orbit of a and b`, or `a alone`.

@@ -54,8 +54,8 @@ impl Field {
             weight += slope / (distance * mass);
             potential += energy / mass;
         }
-        for k in 0..3 {
-            self.accelerations[i][k] += weight * offset[k];
+        for (sum, x) in self.accelerations[i].iter_mut().zip(offset) {
+            *sum += weight * x;
         }
         self.potentials[i] += potential;
         self.powers[i] += weight * dot(offset, self.velocities[j]);
