@@ -22,8 +22,17 @@ pub(super) fn nearest(
     length: f64,
     below: f64,
 ) -> Option<(f64, f64)> {
-    let inner = core::array::from_fn(|k| place[k] + length / 3.0 * speed[k]);
-    let outer = core::array::from_fn(|k| last[k] - length / 3.0 * last_speed[k]);
+    let inner: Vector = core::array::from_fn(|k| place[k] + length / 3.0 * speed[k]);
+    let outer: Vector = core::array::from_fn(|k| last[k] - length / 3.0 * last_speed[k]);
+    // All of the curve is within its control points: most pairs are too far apart.
+    let farthest = [inner, outer, last].map(|point| {
+        let way = minus(point, place);
+        dot(way, way)
+    });
+    let farthest = farthest.into_iter().fold(0.0, f64::max);
+    if size(place) - farthest.sqrt() > below {
+        return None;
+    }
     let mut best = (below, f64::NAN);
     search(&[place, inner, outer, last], [0.0, 1.0], MOST_HALVINGS, &mut best);
     (best.0 < below).then_some(best)

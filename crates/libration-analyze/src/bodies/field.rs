@@ -28,36 +28,42 @@ impl Field {
             powers: vec![0.0; count],
         };
         let masses = bodies.masses();
+        let softening = bodies.softening_length().powi(2);
         for j in 1..count {
             for i in (0..j).filter(|&i| masses[i] > 0.0 || masses[j] > 0.0) {
-                field.add(bodies, i, j);
-                field.add(bodies, j, i);
+                field.add(bodies, softening, i, j);
             }
         }
         field
     }
 
-    /// Adds what body `j` does to body `i`.
-    fn add(&mut self, bodies: &Bodies, i: usize, j: usize) {
-        let offset = minus(self.places[j], self.places[i]);
+    /// Adds what bodies `i` and `j` do to each other.
+    fn add(&mut self, bodies: &Bodies, softening: f64, i: usize, j: usize) {
+        let (masses, offset) = (bodies.masses(), minus(self.places[j], self.places[i]));
         let square = dot(offset, offset);
-        let softened = square + bodies.softening_length().powi(2);
-        let strength = bodies.constant() * bodies.masses()[j];
-        let (mut weight, mut potential) = (0.0, 0.0);
-        if strength > 0.0 {
-            weight = strength / (softened * softened.sqrt());
-            potential = -strength / softened.sqrt();
+        let inverse = 1.0 / (square + softening).sqrt();
+        let [potential, slope] = match bodies.pairs() {
+            Some(_) => bodies.pair_terms(i, j, square.sqrt()),
+            None => [0.0; 2],
+        };
+        for (own, other, sign) in [(i, j, 1.0), (j, i, -1.0)] {
+            let strength = bodies.constant() * masses[other];
+            if strength > 0.0 {
+                let weight = sign * strength * inverse * inverse * inverse;
+                self.act(own, other, weight, offset, -strength * inverse);
+            }
+            if bodies.pairs().is_some() {
+                let weight = sign * slope / (square.sqrt() * masses[own]);
+                self.act(own, other, weight, offset, potential / masses[own]);
+            }
         }
-        if bodies.pairs().is_some() {
-            let (distance, mass) = (square.sqrt(), bodies.masses()[i]);
-            let [energy, slope] = bodies.pair_terms(i, j, distance);
-            weight += slope / (distance * mass);
-            potential += energy / mass;
-        }
-        for (sum, x) in self.accelerations[i].iter_mut().zip(offset) {
+    }
+
+    fn act(&mut self, own: usize, other: usize, weight: f64, offset: Vector, potential: f64) {
+        for (sum, x) in self.accelerations[own].iter_mut().zip(offset) {
             *sum += weight * x;
         }
-        self.potentials[i] += potential;
-        self.powers[i] += weight * dot(offset, self.velocities[j]);
+        self.potentials[own] += potential;
+        self.powers[own] += weight * dot(offset, self.velocities[other]);
     }
 }

@@ -1,8 +1,8 @@
 //! Encounters within steps, and the energies of orbits and single bodies, of few bodies in each step.
 
-use libration::bodies::{Bodies, Body, BodySimulation};
+use libration::bodies::{Bodies, BodySimulation};
 
-use super::approach::{ENCOUNTERS_AT_EACH_STEP, minus, nearest};
+use super::approach::{ENCOUNTERS_AT_EACH_STEP, Vector, nearest};
 use super::energies::{Energies, PartEnergy};
 
 /// A pair, its distance and the time.
@@ -11,8 +11,8 @@ pub(super) type Found = ([usize; 2], f64, f64);
 /// The state before a step, and what was found so far.
 #[derive(Clone, Debug)]
 pub(super) struct Watch {
-    /// Of few bodies.
-    before: Option<Bodies>,
+    /// Positions and velocities, of few bodies.
+    before: Option<[Vec<f64>; 2]>,
     time: f64,
     energies: Option<Energies>,
     /// The nearest two bodies.
@@ -29,7 +29,7 @@ impl Watch {
         let is_few = bodies.count() <= ENCOUNTERS_AT_EACH_STEP;
         let closest = bodies.closest_pair().filter(|_| is_few);
         (is_few || energies.is_some()).then(|| Watch {
-            before: is_few.then(|| bodies.clone()),
+            before: is_few.then(|| [bodies.positions(), bodies.velocities()].map(<[f64]>::to_vec)),
             time: 0.0,
             energies,
             closest: closest.map(|(pair, distance)| (pair, distance, 0.0)),
@@ -45,24 +45,24 @@ impl Watch {
         }
         if let Some(mut before) = self.before.take() {
             self.approaches(&before, bodies, time);
-            before.clone_from(bodies);
+            before[0].copy_from_slice(bodies.positions());
+            before[1].copy_from_slice(bodies.velocities());
             self.before = Some(before);
         }
         self.time = time;
     }
 
-    fn approaches(&mut self, before: &Bodies, bodies: &Bodies, time: f64) {
+    fn approaches(&mut self, before: &[Vec<f64>; 2], bodies: &Bodies, time: f64) {
         let length = time - self.time;
         let radii = bodies.radii();
-        let starts: Vec<_> = before.iter().collect();
-        let ends: Vec<_> = bodies.iter().collect();
-        for j in 1..ends.len() {
+        let count = bodies.count();
+        for j in 1..count {
             for i in 0..j {
-                let relative = |all: &[Body]| {
-                    let (own, other) = (all[i], all[j]);
-                    [minus(other.position, own.position), minus(other.velocity, own.velocity)]
+                let offset = |all: &[f64]| -> Vector {
+                    core::array::from_fn(|k| all[k * count + j] - all[k * count + i])
                 };
-                let (start, end) = (relative(&starts), relative(&ends));
+                let start = [offset(&before[0]), offset(&before[1])];
+                let end = [offset(bodies.positions()), offset(bodies.velocities())];
                 let touch = if self.pass.is_some() { 0.0 } else { radii[i] + radii[j] };
                 let below = self.closest.map_or(f64::INFINITY, |(_, least, _)| least);
                 let found = nearest(start, end, length, below.max(touch));
