@@ -236,9 +236,18 @@ fn run(
         }
         monitor.on_step(step);
         let next = (step / stride + 1).saturating_mul(stride).min(steps);
-        let steps_at_once = if watch.is_some() { 1 } else { (next - step).min(look) };
-        match simulation.advance_until(steps_at_once, &|| monitor.should_stop()) {
-            Ok(()) => watch.iter_mut().for_each(|watch| watch.step(simulation)),
+        let steps = (next - step).min(look);
+        let should_stop = || monitor.should_stop();
+        let taken = match watch.as_deref_mut() {
+            Some(watch) => (0..steps).try_for_each(|_| {
+                simulation.advance_until(1, &should_stop)?;
+                watch.step(simulation);
+                Ok(())
+            }),
+            None => simulation.advance_until(steps, &should_stop),
+        };
+        match taken {
+            Ok(()) => {}
             Err(BodiesError::Stopped) => return Err(TrajectoryError::Interrupted),
             Err(error) => return Ok((changes, samples, Some(error))),
         }
