@@ -31,6 +31,7 @@ pub(crate) struct EnergyGrowth<'a> {
     power: Power<'a>,
     scale: EnergyScale,
     steps: u64,
+    sample: u64,
     next: u64,
     first: f64,
     last: f64,
@@ -50,6 +51,7 @@ impl<'a> EnergyGrowth<'a> {
             power: Power::new(dynamics)?,
             scale: EnergyScale::new(),
             steps,
+            sample: 0,
             next: 0,
             first: f64::NAN,
             last: f64::NAN,
@@ -80,10 +82,10 @@ impl<'a> EnergyGrowth<'a> {
         let [power, sum] = self.power.largest(&state);
         self.is_passive &= power <= ROUNDING * sum;
         self.is_conservative &= power.abs() <= ROUNDING * sum;
-        let sample = self.next.saturating_mul(SAMPLES) / self.steps.max(1) + 1;
+        self.sample += 1;
         // Fractions of the golden ratio are never near a rhythm.
-        let offset = (sample as f64 * 0.618_033_988_749_895).fract();
-        let next = (sample as f64 - offset) / SAMPLES as f64 * self.steps as f64;
+        let offset = (self.sample as f64 * 0.618_033_988_749_895).fract();
+        let next = (self.sample as f64 - offset) / SAMPLES as f64 * self.steps as f64;
         self.next = (next as u64).max(step + 1).min(self.steps);
     }
 

@@ -1,7 +1,9 @@
 //! Tests of energies that diverge although no force adds any.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use libration::{AnySystem, Method};
-use libration_analyze::trajectory::{Outcome, Request, simulate};
+use libration_analyze::trajectory::{Monitor, Outcome, Request, simulate, simulate_until};
 use libration_settings::equations::EquationSystem;
 
 use super::trajectory::{from, request};
@@ -66,4 +68,25 @@ fn an_energy_that_a_force_adds_or_that_falls_is_no_fault() {
     assert_eq!(of("sin(x)", "x'^2/2 + cos(x)", 1e-9, Method::VelocityVerlet, 0.1, 230), None);
     // A potential without a lower end: the energy is kept while its parts grow without end.
     assert_eq!(of("x", "x'^2/2 - x^2/2", 1.0, Method::Rk4, 0.01, 2000), None);
+}
+
+/// The number of pieces in which a run is taken.
+#[derive(Default)]
+struct Pieces(AtomicU64);
+
+impl Monitor for Pieces {
+    fn on_step(&self, _: u64) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+    }
+}
+
+#[test]
+fn a_long_run_is_looked_at_64_times() {
+    let steps = 1_000_000;
+    let long = Request { every: steps, ..request("oscillator", Method::Leapfrog, 0.01, steps) };
+    let pieces = Pieces::default();
+    simulate_until(&long, &pieces).unwrap();
+    // Beside them the monitor is asked after each 65536 steps.
+    let found = pieces.0.into_inner();
+    assert!((64..=64 + steps / 65_536 + 2).contains(&found), "{found}");
 }
