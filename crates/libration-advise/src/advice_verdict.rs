@@ -21,6 +21,11 @@ pub enum Doubt {
 impl Doubt {
     /// Makes a verdict unknown, and gives its answer the reason first and what it holds for.
     pub(super) fn apply(self, verdict: &mut Verdict, answer: &mut String) {
+        // A loop that is bad with the intervals that there are is bad.
+        let is_bad = matches!(verdict.outcome, Outcome::Unstable | Outcome::Exceeds);
+        if matches!(self, Doubt::ShortRecord) && is_bad {
+            return;
+        }
         let [reason, premise] = match self {
             Doubt::OtherClock => [
                 "the record is not the clock of this loop",

@@ -1,7 +1,7 @@
-//! An energy that grows in a run although no force adds any.
+//! An energy that a run does not keep although no force changes it.
 
 use libration::Float;
-use libration::equations::{Dynamics, Evaluation};
+use libration::equations::{Degree, Dynamics, Evaluation};
 use libration::number::Dual;
 use libration_report::notation::number;
 use libration_report::verdict::{Outcome, Verdict};
@@ -15,17 +15,13 @@ const SAMPLES: u64 = 64;
 /// The part of the single powers of all states up to which their sum is zero: their rounding, with a wide margin.
 const ROUNDING: f64 = 1e-9;
 
-/// The change of the energy over what the motion exchanges from which it may diverge: of growth without end it becomes 1.
-const DIVERGED: f64 = 0.5;
-
-/// The largest change in the second half of a run over that in the first, from which a change grows. That of symplectic steps near their
-/// limit is large as well, but comes and goes.
-const GROWS: f64 = 2.0;
+/// The change of the energy from which it is lost, as a part of all that the motion exchanges: of growth without end it becomes 1.
+const LOST: f64 = 0.5;
 
 /// The energy of a run, at states that follow no rhythm.
 ///
 /// The power of all forces is the derivative of the energy along the flow, by dual numbers. It is taken with the velocities of the run and
-/// with the opposite ones: a force that depends on time adds energy with one of them.
+/// with the opposite ones. Forces that depend on time, and those with kinks and jumps, may act between the states, and are not judged.
 pub(crate) struct EnergyGrowth<'a> {
     energy: EnergyOf<'a>,
     power: Power<'a>,
@@ -34,18 +30,22 @@ pub(crate) struct EnergyGrowth<'a> {
     sample: u64,
     next: u64,
     first: f64,
-    last: f64,
-    /// The largest changes in both halves.
-    halves: [f64; 2],
+    /// The energy that is furthest from the first, upwards and in either direction.
+    highest: f64,
+    furthest: f64,
+    looks: u32,
     /// Whether no power was positive, and whether all were zero.
     is_passive: bool,
     is_conservative: bool,
 }
 
 impl<'a> EnergyGrowth<'a> {
-    /// For a run of so many steps; none of a system without an energy.
+    /// For a run of so many steps; none of a system without an energy, or with forces that are not judged.
     pub(crate) fn new(system: &'a EquationSystem, steps: u64) -> Option<Self> {
         let dynamics = system.equations.dynamics();
+        let is_timeless = !system.equations.degrees().contains(&Degree::Time);
+        let is_smooth = dynamics.accelerations().is_smooth() && dynamics.energy()?.is_smooth();
+        (is_timeless && is_smooth).then_some(())?;
         Some(EnergyGrowth {
             energy: EnergyOf::new(dynamics)?,
             power: Power::new(dynamics)?,
@@ -54,8 +54,9 @@ impl<'a> EnergyGrowth<'a> {
             sample: 0,
             next: 0,
             first: f64::NAN,
-            last: f64::NAN,
-            halves: [0.0; 2],
+            highest: f64::NAN,
+            furthest: f64::NAN,
+            looks: 0,
             is_passive: true,
             is_conservative: true,
         })
@@ -72,16 +73,25 @@ impl<'a> EnergyGrowth<'a> {
             return;
         }
         let state: Vec<f64> = state.iter().map(|x| x.to_f64()).collect();
-        self.last = self.energy.total(&state);
+        let energy = self.energy.total(&state);
         if step == 0 {
-            self.first = self.last;
+            (self.first, self.highest, self.furthest) = (energy, energy, energy);
+        }
+        // What is no number is furthest.
+        if energy.is_nan() || energy > self.highest {
+            self.highest = energy;
+        }
+        if energy.is_nan() || (energy - self.first).abs() > (self.furthest - self.first).abs() {
+            self.furthest = energy;
         }
         self.scale.add(&mut self.energy, &state);
-        let half = &mut self.halves[usize::from(step > self.steps / 2)];
-        *half = half.max((self.last - self.first).abs());
         let [power, sum] = self.power.largest(&state);
-        self.is_passive &= power <= ROUNDING * sum;
-        self.is_conservative &= power.abs() <= ROUNDING * sum;
+        // Of powers beyond the range of numbers nothing is known.
+        if sum.is_finite() {
+            self.looks += 1;
+            self.is_passive &= power <= ROUNDING * sum;
+            self.is_conservative &= power.abs() <= ROUNDING * sum;
+        }
         self.sample += 1;
         // Fractions of the golden ratio are never near a rhythm.
         let offset = (self.sample as f64 * 0.618_033_988_749_895).fract();
@@ -89,22 +99,25 @@ impl<'a> EnergyGrowth<'a> {
         self.next = (next as u64).max(step + 1).min(self.steps);
     }
 
-    /// The verdict on an energy that diverges; none if it does not, or if a force may add energy.
+    /// The verdict on an energy that is lost; none if it is kept, or if a force may change it.
     pub(crate) fn fault(&self) -> Option<Verdict> {
-        let change = self.last - self.first;
-        let grown = if self.is_conservative { change.abs() } else { change };
+        let other = if self.is_conservative { self.furthest } else { self.highest };
+        let change = (other - self.first).abs();
         let scale = self.scale.value()?;
-        let [before, after] = self.halves;
-        let diverges = grown > DIVERGED * scale && after > GROWS * before;
-        (self.is_passive && diverges).then(|| {
+        let is_kept = change <= LOST * scale;
+        (self.first.is_finite() && self.looks > 1 && self.is_passive && !is_kept).then(|| {
             let forces = if self.is_conservative { "conserve it" } else { "add none" };
+            let part = match change.is_finite() {
+                true => format!("{} % of all that the motion exchanges", number(100.0 * change / scale, 2)),
+                false => "beyond the range of numbers".to_owned(),
+            };
             Verdict::new(
                 Outcome::Fault,
                 format!(
-                    "the energy goes from {} to {}, {} % of all that the motion exchanges, though the forces {forces}",
+                    "the energy goes from {} to {}, {part}, though the forces {forces} at {} states that were looked at",
                     number(self.first, 4),
-                    number(self.last, 4),
-                    number(100.0 * grown / scale, 2)
+                    number(other, 4),
+                    self.looks
                 ),
             )
         })

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use libration_report::record::{Claim, ClaimVerdict};
 use serde::Serialize;
 
-/// A claim whose verdict differs, or that one run alone has.
+/// A claim whose verdict, condition or findings differ, or that one run alone has.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ClaimChange {
     /// Its number in the ledger.
@@ -40,7 +40,15 @@ pub(crate) fn claim_changes<'a>(
                 None => should_have(study),
             };
         let (id, first) = (claim.id.clone(), Some(claim.verdict));
-        (second != first).then_some(ClaimChange { id, before: first, after: second, is_lost })
+        let is_other = new
+            .get(claim.id.as_str())
+            .is_some_and(|new| new.condition != claim.condition || new.findings != claim.findings);
+        (second != first || is_other).then_some(ClaimChange {
+            id,
+            before: first,
+            after: second,
+            is_lost,
+        })
     });
     let added = after.filter(|(_, claim)| !old.contains_key(claim.id.as_str()));
     let added = added.map(|(_, claim)| ClaimChange {

@@ -216,6 +216,10 @@ impl ResultsComparison {
                 self.regressions.push(change())
             }
             (Agreement::Disagrees, Agreement::Agrees) => self.improvements.push(change()),
+            // A rate in another unit may have fallen.
+            (Agreement::Measured, _) if first.unit.ends_with("/s") && first.unit != second.unit => {
+                self.regressions.push(change())
+            }
             (before, after) if is_another || before != after => self.changed.push(change()),
             _ if is_equal && first.predicted == second.predicted => self.same += 1,
             (Agreement::Measured, _) if is_rate && fell => self.regressions.push(change()),

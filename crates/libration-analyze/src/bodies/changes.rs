@@ -80,6 +80,9 @@ impl Exchange {
 /// The part of the kinetic energy that a motion exchanges at most, to be steady.
 const STEADY: f64 = 1e-3;
 
+/// Roundings of an energy, whose terms are rounded one by one, with a margin.
+const ROUNDINGS: f64 = 64.0;
+
 /// Variances of energy, momentum and angular momentum.
 fn totals(variance: RoundingVariance) -> [f64; 3] {
     let RoundingVariance { energy, momentum, angular_momentum } = variance;
@@ -142,6 +145,12 @@ impl Changes {
         self.exchange.add(kinetic, now.potential);
         self.samples += 1.0;
         true
+    }
+
+    /// The energy below which the roundings of the energies of one state hide what the motion exchanges.
+    pub(super) fn rounding(&self) -> f64 {
+        let [low, high] = self.exchange.potential;
+        ROUNDINGS * f64::EPSILON * (low.abs().max(high.abs()) + self.start.kinetic)
     }
 
     /// The largest changes.

@@ -180,6 +180,8 @@ pub fn simulate(
         pass: pass.map(|(pair, distance, t)| Encounter::new(request, pair, distance, t)),
         largest_kinetic: changes.exchange().largest_kinetic(),
         is_steady: changes.exchange().is_steady(),
+        exchanged: changes.exchange().size(),
+        rounding: changes.rounding(),
     });
     Ok(audit)
 }

@@ -28,6 +28,10 @@ pub(super) struct Evidence<'a> {
     pub(super) largest_kinetic: f64,
     /// Whether the motion exchanges hardly any energy.
     pub(super) is_steady: bool,
+    /// The energy that the motion exchanges.
+    pub(super) exchanged: f64,
+    /// The energy that rounding hides.
+    pub(super) rounding: f64,
 }
 
 impl BodiesAudit {
@@ -43,6 +47,13 @@ impl BodiesAudit {
             None => "its size",
         };
         let said = format!("the energy changes by {} of {what}", number(change, 3));
+        if self.pair_potential.is_some() && evidence.rounding > BROKEN * evidence.exchanged {
+            return Verdict::unknown(format!(
+                "the motion exchanges an energy of {}, and those of its states are rounded by up to {}",
+                number(evidence.exchanged, 2),
+                number(evidence.rounding, 2)
+            ));
+        }
         // Of a steady motion in a pair potential that loses energy, the loss is all that it exchanges.
         let is_certain =
             self.pair_potential.is_none() || change * size > BROKEN * evidence.largest_kinetic;
@@ -142,6 +153,7 @@ impl BodiesAudit {
         if self.bodies <= ENCOUNTERS_AT_EACH_STEP {
             return verdict;
         }
+        verdict = verdict.without("encounters between samples");
         match evidence.request.system.bodies.radii().iter().any(|&radius| radius > 0.0) {
             true => verdict.without("collisions between steps"),
             false => verdict,

@@ -125,7 +125,7 @@ pub(crate) struct AdviseArgs {
 }
 
 /// Options that conflict with a request file.
-const REQUEST_OPTIONS: [&str; 15] = [
+const REQUEST_OPTIONS: [&str; 16] = [
     "plant",
     "lqr",
     "gain",
@@ -133,6 +133,7 @@ const REQUEST_OPTIONS: [&str; 15] = [
     "force",
     "set",
     "q",
+    "start",
     "v",
     "feedback",
     "period",
@@ -178,18 +179,16 @@ impl AdviseArgs {
                 "no request is given; expected --config FILE, --system NAME or --plant FILE, and their options",
             ));
         };
-        let InitialValueProblem { system, actuation, q, mut v } = {
+        let InitialValueProblem { system, actuation, q, v } = {
             let mut given = system.clone();
             one_degree_of_freedom(given.system.as_deref().unwrap_or_default(), self.feedback)?;
             // The operating point of a loop is the origin by default.
-            if self.feedback.is_some() && given.q.is_none() {
-                given.q = Some(number::Coordinates::origin());
+            if self.feedback.is_some() {
+                given.q.get_or_insert_with(number::Coordinates::origin);
+                given.v.get_or_insert_with(number::Coordinates::origin);
             }
             given.resolve()?
         };
-        if self.feedback.is_some() && self.system.as_ref().is_some_and(|given| given.v.is_none()) {
-            v = vec![0.0; q.len()];
-        }
         let control = self.feedback.map(|gains| Control {
             law: Law::Pd(gains),
             period: self.period().unwrap_or(0.01),

@@ -18,6 +18,7 @@ impl AdviseArgs {
         let given = [
             ("--q", system.is_some_and(|system| system.q.is_some())),
             ("--v", system.is_some_and(|system| system.v.is_some())),
+            ("--start", system.is_some_and(|system| !system.start.is_empty())),
             ("--feedback", self.feedback.is_some()),
         ];
         match given.into_iter().find(|(_, given)| *given) {

@@ -39,8 +39,18 @@ pub(crate) struct LinearArgs {
 }
 
 /// Options that are about systems of the catalogue.
-const NOT_LINEAR: [&str; 9] =
-    ["system", "force", "set", "q", "v", "feedback", "cost_weights", "deviation", "horizon"];
+const NOT_LINEAR: [&str; 10] = [
+    "system",
+    "force",
+    "set",
+    "q",
+    "v",
+    "start",
+    "feedback",
+    "cost_weights",
+    "deviation",
+    "horizon",
+];
 
 impl LinearArgs {
     /// Whether a controller is designed from weights of the options.

@@ -39,11 +39,12 @@ pub(crate) struct LinearAnalysisArgs {
 }
 
 /// Options that are about systems of the catalogue.
-const NOT_LINEAR: [&str; 12] = [
+const NOT_LINEAR: [&str; 13] = [
     "system",
     "force",
     "set",
     "q",
+    "start",
     "v",
     "feedback",
     "skew",

@@ -63,8 +63,19 @@ pub(crate) struct LinearSimulationArgs {
 const LINEAR: &str = "loop";
 
 /// Options that are about systems of the catalogue.
-const NOT_LINEAR: [&str; 10] =
-    ["system", "force", "set", "q", "v", "integrator", "dt", "float", "skew", "time_stamps"];
+const NOT_LINEAR: [&str; 11] = [
+    "system",
+    "force",
+    "set",
+    "q",
+    "v",
+    "start",
+    "integrator",
+    "dt",
+    "float",
+    "skew",
+    "time_stamps",
+];
 
 impl SimulateArgs {
     /// Returns the request for a linear plant, if there is one.
@@ -177,7 +188,7 @@ impl SimulateArgs {
             reference: values("reference", "output", reference, &plant.outputs)?,
             disturbance: values("disturbance", "input", disturbance, &plant.inputs)?,
             record: request.recorded_periods().map(<[f64]>::to_vec),
-            steps: self.steps,
+            steps: self.steps_of(linear.period())?,
             every: self.every,
             ensemble: self.ensemble()?,
             seed: self.seed,

@@ -7,10 +7,12 @@ use clap::{ArgGroup, Args};
 use libration::ensemble::InstructionSet;
 use libration_analyze::adaptive::StepControl;
 use libration_analyze::trajectory::{FloatType, Format};
+use libration_settings::limits;
 
-use super::number::{count, seed, trajectory_steps, whole_number};
+use super::number::{count, seed, time, trajectory_steps, whole_number};
 use super::timing::TimingArgs;
 use super::{LinearSimulationArgs, StepArgs, SystemArgs, TopicArgs, simd};
+use crate::error::Failure;
 
 /// Arguments of `simulate`.
 #[derive(Args, Debug)]
@@ -27,8 +29,17 @@ pub(crate) struct SimulateArgs {
     #[command(flatten)]
     pub(crate) linear: LinearSimulationArgs,
     /// Number of steps (of a loop around a plant: of periods), up to 2^53; --save-every limits the number of rows
-    #[arg(long, value_name = "N", value_parser = trajectory_steps, allow_hyphen_values = true)]
-    pub(crate) steps: u64,
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = trajectory_steps,
+        allow_hyphen_values = true,
+        required_unless_present = "duration"
+    )]
+    steps: Option<u64>,
+    /// Simulated time in place of --steps, in s, also as 10min: the steps that reach it
+    #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true, conflicts_with = "steps")]
+    duration: Option<f64>,
     /// Let the length of the steps follow the forces: --dt is the first; see `docs/adaptive.md`
     #[arg(
         long,
@@ -111,7 +122,8 @@ Examples:
       --steps 200 --output balance.csv
 
 The columns are step, t, the coordinates by name, their velocities with a prime, states of first order, and the energy;
-with --num-trajectories the first column is trajectory. If the energy diverges although no force adds any, a warning says so.
+with --num-trajectories the first column is trajectory. If a single trajectory loses an energy that its
+forces conserve or only take, a warning says so (not with --adaptive and loops, nor of forces with time, kinks or jumps).
 With --plant, --config, --lqr or --gain a row belongs to the beginning of a period. Its columns are step, t, the states,
 `measured NAME` (what the controller reads), `input NAME` (what acts), and the cost so far.
 If the state overflows, the rows end and a note says so. With --num-trajectories, --feedback, --jitter, --skew
@@ -120,6 +132,30 @@ With --jitter, --skew or --time-stamps, t is the true time: the sum of the actua
 Until the first command arrives, the command is 0.
 The bits of a trajectory are independent of --num-trajectories, --simd and --threads.
 The output file appears only when it is complete.";
+
+impl SimulateArgs {
+    /// The number of steps of so many seconds, or of periods.
+    ///
+    /// # Errors
+    /// If a duration is no time, or takes more steps than there may be.
+    pub(crate) fn steps_of(&self, dt: f64) -> Result<u64, Failure> {
+        let Some(duration) = self.duration else { return Ok(self.steps.unwrap_or_default()) };
+        // The quotient of two rounded numbers may be a little above a whole number.
+        let steps = (duration / dt * (1.0 - 2.0 * f64::EPSILON)).ceil();
+        match steps >= 1.0 && limits::TRAJECTORY_STEPS.contains(&(steps as u64)) {
+            true => Ok(steps as u64),
+            false => Err(Failure::usage(format!(
+                "--duration {duration} s is {steps} steps of {dt} s; expected {}",
+                limits::trajectory_steps_allowed()
+            ))),
+        }
+    }
+
+    /// Whether a duration is given.
+    pub(crate) fn has_duration(&self) -> bool {
+        self.duration.is_some()
+    }
+}
 
 /// The option that sets a field of a request.
 pub(crate) fn option_of(field: &str) -> &str {

@@ -11,6 +11,7 @@ use libration::catalog::{ENTRIES, Entry};
 use libration::integrator::Exact;
 use libration::{AnyMethod, CatalogError, catalog};
 use libration_analyze::Stepping;
+use libration_settings::equations::EquationSystem;
 use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::{Number, suggestions};
 
@@ -37,6 +38,15 @@ pub(crate) struct SystemArgs {
     /// Initial velocities, separated by commas [default: those of the system]
     #[arg(long, value_name = "V,…", value_parser = coordinates, allow_hyphen_values = true)]
     pub(crate) v: Option<Coordinates>,
+    /// Initial states by name, separated by commas, e.g. "theta=0.1,theta'=0"; the others are those of --q and --v, or of the system
+    #[arg(
+        long,
+        value_name = "NAME=VALUE,…",
+        value_parser = assignment,
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
+    pub(crate) start: Vec<(String, f64)>,
 }
 
 /// The integrator and its time step.
@@ -127,7 +137,7 @@ impl SystemArgs {
 
     /// The options as words of a command line.
     pub(crate) fn words(&self) -> String {
-        let SystemArgs { system, force, set, q, v } = self;
+        let SystemArgs { system, force, set, q, v, start } = self;
         let mut words = Vec::new();
         let mut option = |name: &str, value: String| words.extend([name.to_owned(), value]);
         system.iter().for_each(|name| option("--system", name.clone()));
@@ -135,6 +145,7 @@ impl SystemArgs {
         set.iter().for_each(|(name, value)| option("--set", format!("{name}={value}")));
         q.iter().for_each(|list| option("--q", list.to_string()));
         v.iter().for_each(|list| option("--v", list.to_string()));
+        start.iter().for_each(|(name, value)| option("--start", format!("{name}={value}")));
         quoted(words)
     }
 
@@ -171,8 +182,15 @@ impl SystemArgs {
             return Err(unequal_counts(q, v));
         }
         let given = |x: &Option<Coordinates>| x.as_ref().map(|x| x.0.clone());
-        InitialValueProblem::new((system, actuation), given(&self.q), given(&self.v))
-            .map_err(Failure::usage)
+        let problem = InitialValueProblem::new((system, actuation), given(&self.q), given(&self.v))
+            .map_err(Failure::usage)?;
+        if self.start.is_empty() {
+            return Ok(problem);
+        }
+        let mut begun = EquationSystem::of_catalogue(problem.clone()).map_err(Failure::run)?;
+        begun.begin_at(None, None, &self.start).map_err(Failure::usage)?;
+        let EquationSystem { q, v, .. } = begun;
+        Ok(InitialValueProblem { q, v, ..problem })
     }
 }
 

@@ -29,7 +29,12 @@ pub(super) fn request(
             )));
         }
     };
-    let (dt, steps, every) = (step.dt, args.steps, args.every);
+    if args.has_duration() {
+        return Err(Failure::usage(
+            "--duration: the steps of --adaptive have no equal length; expected --steps",
+        ));
+    }
+    let (dt, steps, every) = (step.dt, args.steps_of(step.dt)?, args.every);
     let system = equation_file::any_system(options)?;
     let states = system.states.iter().map(|state| AdaptiveState {
         place: state.place,

@@ -40,8 +40,8 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
     ];
     let refuted = match comparison.claims.iter().filter(|claim| claim.is_lost).count() {
         0 => None,
-        1 => Some("a claim lost its verdict".to_owned()),
-        n => Some(format!("{n} claims lost their verdicts")),
+        1 => Some("a claim has another verdict".to_owned()),
+        n => Some(format!("{n} claims have other verdicts")),
     };
     let failures: Vec<String> = worse.into_iter().chain(lost).chain(refuted).collect();
     if failures.is_empty() { Ok(()) } else { Err(Failure::run(failures.join(", "))) }
@@ -82,7 +82,13 @@ fn describe(comparison: &ResultsComparison) -> String {
     }
     for ClaimChange { id, before, after, .. } in &comparison.claims {
         let words = |verdict: &Option<ClaimVerdict>| verdict.map_or("none", ClaimVerdict::name);
-        let _ = writeln!(text, "  {}: {}, then {}", printable(id), words(before), words(after));
+        let (before, after) = (words(before), words(after));
+        let _ = match before == after {
+            true => {
+                writeln!(text, "  {}: {before}, on other conditions or findings", printable(id))
+            }
+            false => writeln!(text, "  {}: {before}, then {after}", printable(id)),
+        };
     }
     for (title, ids) in [("first", &comparison.only_before), ("second", &comparison.only_after)] {
         if !ids.is_empty() {

@@ -24,17 +24,16 @@ pub(super) fn system(options: &SystemArgs) -> Option<Result<EquationSystem, Fail
     if let Some(error) = is_of_equations.then(|| options.equation_parameters().err()).flatten() {
         return Some(Err(error));
     }
-    if let Some(file) = options.file() {
-        let given = [("--q", options.q.is_some()), ("--v", options.v.is_some())];
-        return Some(match given.into_iter().find(|(_, given)| *given) {
-            Some((flag, _)) => Err(Failure::usage(format!(
-                "{flag} requires a system of the catalogue or --force; `{}` has its `start`",
-                file.display()
-            ))),
-            None => read(file, &options.set),
-        });
-    }
-    (!options.force.is_empty()).then(|| by_forces(options))
+    let system = match options.file() {
+        Some(file) => read(file, &options.set),
+        None if options.force.is_empty() => return None,
+        None => by_forces(options),
+    };
+    Some(system.and_then(|mut system| {
+        let [q, v] = [&options.q, &options.v].map(|given| given.as_ref().map(Coordinates::values));
+        system.begin_at(q, v, &options.start).map_err(Failure::usage)?;
+        Ok(system)
+    }))
 }
 
 /// The system of the options, whatever describes it.

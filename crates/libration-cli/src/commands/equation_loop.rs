@@ -26,6 +26,7 @@ fn of_file(
     let unsupported = [
         ("--q", options.q.is_some()),
         ("--v", options.v.is_some()),
+        ("--start", !options.start.is_empty()),
         ("--time-stamps", args.time_stamps.is_some()),
         ("--dtype", args.float != FloatType::F64),
         ("--feedback and --skew", {

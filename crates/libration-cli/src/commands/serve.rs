@@ -72,10 +72,15 @@ fn page(options: &SystemArgs) -> Result<String, Failure> {
 
 /// The first option that changes a system, if there is one.
 fn first_of_start(options: &SystemArgs) -> Option<&'static str> {
-    let SystemArgs { set, q, v, .. } = options;
-    [(!set.is_empty(), "--set"), (q.is_some(), "--q"), (v.is_some(), "--v")]
-        .into_iter()
-        .find_map(|(given, name)| given.then_some(name))
+    let SystemArgs { set, q, v, start, .. } = options;
+    [
+        (!set.is_empty(), "--set"),
+        (q.is_some(), "--q"),
+        (v.is_some(), "--v"),
+        (!start.is_empty(), "--start"),
+    ]
+    .into_iter()
+    .find_map(|(given, name)| given.then_some(name))
 }
 
 /// Replaces the start by that of the options.
@@ -96,6 +101,9 @@ fn begin_at(setting: &mut Setting, options: &SystemArgs) -> Result<(), Failure> 
             let key = format!("start.{name}{prime}");
             setting.set(&key, &value.to_string()).map_err(Failure::usage)?;
         }
+    }
+    for (name, value) in &options.start {
+        setting.set(&format!("start.{name}"), &value.to_string()).map_err(Failure::usage)?;
     }
     Ok(())
 }

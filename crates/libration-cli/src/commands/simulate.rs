@@ -41,13 +41,13 @@ pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
     };
     if let Some(request) = args.linear_request(read) {
         let request = request?;
-        return write(args, quiet, format, &|out, watcher| {
+        return write(args, quiet, (format, request.steps), &|out, watcher| {
             linear_trajectory::write(&request, format, out, watcher)
         });
     }
     if let Some(request) = equation_loop::request(args) {
         let request = request?;
-        return write(args, quiet, format, &|out, watcher| {
+        return write(args, quiet, (format, request.steps), &|out, watcher| {
             linear_trajectory::write(&request, format, out, watcher)
         });
     }
@@ -56,7 +56,7 @@ pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
         if let Some(reason) = request.irreversibility().filter(|_| !quiet) {
             terminal::say(&format!("note: the steps are not reversible: {reason}"));
         }
-        return write(args, quiet, format, &|out, watcher| {
+        return write(args, quiet, (format, request.steps), &|out, watcher| {
             adaptive::write(&request, format, out, watcher)
         });
     }
@@ -64,7 +64,9 @@ pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
     if let Some(caveat) = request.caveat().filter(|_| !quiet) {
         terminal::say(&format!("note: {caveat}"));
     }
-    write(args, quiet, format, &|out, watcher| trajectory::write(&request, format, out, watcher))
+    write(args, quiet, (format, request.steps), &|out, watcher| {
+        trajectory::write(&request, format, out, watcher)
+    })
 }
 
 /// Writes rows into `out`.
@@ -78,12 +80,12 @@ type WriteRows<'a> =
 fn write(
     args: &SimulateArgs,
     quiet: bool,
-    format: Format,
+    (format, steps): (Format, u64),
     rows: WriteRows<'_>,
 ) -> Result<(), Failure> {
     // Rows on the same terminal would break a bar.
     let rows_shown = args.output.is_none() && io::stdout().is_terminal();
-    let watcher = Watcher::new(quiet || rows_shown, args.steps, interrupt::listen());
+    let watcher = Watcher::new(quiet || rows_shown, steps, interrupt::listen());
     let outcome = match &args.output {
         Some(path) => into_file(path, rows, &watcher),
         None => into_stdout(rows, format, &watcher),
@@ -153,7 +155,7 @@ fn request(args: &SimulateArgs) -> Result<Request, Failure> {
         stepping: step.integrator,
         float: args.float,
         dt: step.dt,
-        steps: args.steps,
+        steps: args.steps_of(step.dt)?,
         every: args.every,
         ensemble: args.ensemble()?,
         timing: args.timing.timing(),

@@ -1,4 +1,6 @@
 //! Verdicts of `libration bodies`: light bodies, fast orbits, pair potentials and passes within a step.
+//!
+//! long: all kinds share how an audit is taken and compared.
 
 use std::fs;
 use std::path::Path;
@@ -271,4 +273,39 @@ fn bodies_that_pass_through_each_other_within_a_step_are_unknown() {
     // Without radii, masses that pass within a step have an encounter with too few steps.
     let audit = audit(&system(0.0, 1e-6, 0.0), "--integrator leapfrog --dt 0.3 --steps 10", None);
     assert_outcome(&audit, "unknown", "an orbit at the distance of a and b");
+}
+
+#[test]
+fn a_motion_below_the_rounding_of_its_energies_is_unknown_and_no_fault() {
+    let folder = tempfile::tempdir().unwrap();
+    // Three atoms at rest at their distance of rest, and a spring that a millionth of its length stretches.
+    let rest = [
+        HEAD,
+        "a,1,0,0,0,0,0,0",
+        "b,1,1.122462048309373,0,0,0,0,0",
+        "c,1,0.5612310241546865,0.9720806486198328,0,0,0,0",
+    ];
+    let system = file(folder.path(), "rest.csv", &rest);
+    let well = "4*(1/r^12 - 1/r^6)";
+    let words = "--integrator leapfrog --dt 0.005 --steps 2000";
+    assert_outcome(&audit(&system, words, Some(well)), "unknown", "are rounded by up to");
+    let spring = [HEAD, "a,1,0,0,0,0,0,0", "b,1,1.000001,0,0,0,0,0"];
+    let system = file(folder.path(), "spring.csv", &spring);
+    let words = "--integrator leapfrog --dt 0.05 --steps 2000";
+    for (constant, outcome) in [("", "no-fault"), (" + 1e3", "unknown"), (" + 1e9", "unknown")] {
+        let found = audit(&system, words, Some(&format!("0.5*(r - 1)^2{constant}")));
+        assert_outcome(&found, outcome, "");
+    }
+}
+
+#[test]
+fn encounters_of_many_bodies_are_named_as_looked_for_at_samples_only() {
+    let folder = tempfile::tempdir().unwrap();
+    let far: Vec<String> = (0..16).map(|i| format!("m{i},0,{},0,0,0,0,0", 1000 + i)).collect();
+    let mut rows = vec![HEAD, "sun,1,0,0,0,0,0,0"];
+    rows.extend(far.iter().map(String::as_str));
+    let system = file(folder.path(), "many.csv", &rows);
+    let found = audit(&system, "--integrator leapfrog --dt 0.01 --steps 10", None);
+    let named = found["verdict"]["not_examined"].to_string();
+    assert!(named.contains("encounters between samples"), "{found}");
 }

@@ -111,7 +111,7 @@ fn wrong_files_and_options_name_the_place_and_what_is_allowed() {
         (vec!["simulate", "--system", &cart_pole, "--set", "pol=1"], "did you mean `pole`?"),
         (
             vec!["analyze", "--system", &cart_pole, "--q", "1"],
-            "--q requires a system of the catalogue",
+            "--q has 1 numbers; `cart-pole` has 2 coordinates",
         ),
         (vec!["simulate", "--system", "nowhere.toml"], "cannot read `nowhere.toml` (--system)"),
     ] {

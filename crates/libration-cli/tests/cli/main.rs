@@ -74,6 +74,7 @@ mod short_answers;
 mod simulate;
 mod snapshots;
 mod stability;
+mod starts;
 mod steps;
 mod system_advice;
 mod system_lab;

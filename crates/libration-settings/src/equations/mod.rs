@@ -2,6 +2,7 @@
 
 mod catalogue;
 mod expression_error;
+mod start;
 mod table;
 mod task;
 

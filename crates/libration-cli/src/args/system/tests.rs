@@ -53,7 +53,10 @@ fn the_other_flags_are_read() {
     assert_eq!(setting.system.parameters(), [("omega2", 2.0)]);
     let step = probe.args.step.unwrap();
     assert_eq!((step.integrator, step.dt), (Stepping::Method(libration::Method::Rk4), 0.01));
-    assert_eq!((probe.args.steps, probe.args.float), (1_000_000, FloatType::Bf16));
+    assert_eq!(
+        (probe.args.steps_of(1.0).ok(), probe.args.float),
+        (Some(1_000_000), FloatType::Bf16)
+    );
 }
 
 #[test]
