@@ -1,4 +1,4 @@
-//! An energy that a run does not keep although no force changes it.
+//! An energy that grows in a run although no force adds any.
 
 use libration::Float;
 use libration::equations::{Degree, Dynamics, Evaluation};
@@ -15,8 +15,8 @@ const SAMPLES: u64 = 64;
 /// The part of the single powers of all states up to which their sum is zero: their rounding, with a wide margin.
 const ROUNDING: f64 = 1e-9;
 
-/// The change of the energy from which it is lost, as a part of all that the motion exchanges: of growth without end it becomes 1.
-const LOST: f64 = 0.5;
+/// The growth of the energy from which it is a fault, as a part of all that the motion exchanges: of growth without end it becomes 1.
+const GROWN: f64 = 0.5;
 
 /// The energy of a run, at states that follow no rhythm.
 ///
@@ -30,9 +30,7 @@ pub(crate) struct EnergyGrowth<'a> {
     sample: u64,
     next: u64,
     first: f64,
-    /// The energy that is furthest from the first, upwards and in either direction.
     highest: f64,
-    furthest: f64,
     looks: u32,
     /// Whether no power was positive, and whether all were zero.
     is_passive: bool,
@@ -55,7 +53,6 @@ impl<'a> EnergyGrowth<'a> {
             next: 0,
             first: f64::NAN,
             highest: f64::NAN,
-            furthest: f64::NAN,
             looks: 0,
             is_passive: true,
             is_conservative: true,
@@ -75,14 +72,11 @@ impl<'a> EnergyGrowth<'a> {
         let state: Vec<f64> = state.iter().map(|x| x.to_f64()).collect();
         let energy = self.energy.total(&state);
         if step == 0 {
-            (self.first, self.highest, self.furthest) = (energy, energy, energy);
+            (self.first, self.highest) = (energy, energy);
         }
-        // What is no number is furthest.
+        // What is no number is highest.
         if energy.is_nan() || energy > self.highest {
             self.highest = energy;
-        }
-        if energy.is_nan() || (energy - self.first).abs() > (self.furthest - self.first).abs() {
-            self.furthest = energy;
         }
         self.scale.add(&mut self.energy, &state);
         let [power, sum] = self.power.largest(&state);
@@ -99,12 +93,11 @@ impl<'a> EnergyGrowth<'a> {
         self.next = (next as u64).max(step + 1).min(self.steps);
     }
 
-    /// The verdict on an energy that is lost; none if it is kept, or if a force may change it.
+    /// The verdict on an energy that grows; none if it does not, or if a force may add some.
     pub(crate) fn fault(&self) -> Option<Verdict> {
-        let other = if self.is_conservative { self.furthest } else { self.highest };
-        let change = (other - self.first).abs();
+        let change = self.highest - self.first;
         let scale = self.scale.value()?;
-        let is_kept = change <= LOST * scale;
+        let is_kept = change <= GROWN * scale;
         (self.first.is_finite() && self.looks > 1 && self.is_passive && !is_kept).then(|| {
             let forces = if self.is_conservative { "conserve it" } else { "add none" };
             let part = match change.is_finite() {
@@ -116,7 +109,7 @@ impl<'a> EnergyGrowth<'a> {
                 format!(
                     "the energy goes from {} to {}, {part}, though the forces {forces} at {} states that were looked at",
                     number(self.first, 4),
-                    number(other, 4),
+                    number(self.highest, 4),
                     self.looks
                 ),
             )

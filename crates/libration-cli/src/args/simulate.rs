@@ -122,8 +122,8 @@ Examples:
       --steps 200 --output balance.csv
 
 The columns are step, t, the coordinates by name, their velocities with a prime, states of first order, and the energy;
-with --num-trajectories the first column is trajectory. If a single trajectory loses an energy that its
-forces conserve or only take, a warning says so (not with --adaptive and loops, nor of forces with time, kinks or jumps).
+with --num-trajectories the first column is trajectory. If the energy of a single trajectory
+grows although its forces add none, a warning says so (not with --adaptive and loops, nor of forces with time, kinks or jumps).
 With --plant, --config, --lqr or --gain a row belongs to the beginning of a period. Its columns are step, t, the states,
 `measured NAME` (what the controller reads), `input NAME` (what acts), and the cost so far.
 If the state overflows, the rows end and a note says so. With --num-trajectories, --feedback, --jitter, --skew
