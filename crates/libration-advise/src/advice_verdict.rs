@@ -21,7 +21,7 @@ pub enum Doubt {
 impl Doubt {
     /// Makes a verdict unknown, and gives its answer the reason first and what it holds for.
     pub(super) fn apply(self, verdict: &mut Verdict, answer: &mut String) {
-        // A loop that is bad with the intervals that there are is bad.
+        // Few intervals can hide that a loop is bad, not make it so.
         let is_bad = matches!(verdict.outcome, Outcome::Unstable | Outcome::Exceeds);
         if matches!(self, Doubt::ShortRecord) && is_bad {
             return;

@@ -74,13 +74,13 @@ impl<'a> EnergyGrowth<'a> {
         if step == 0 {
             (self.first, self.highest) = (energy, energy);
         }
-        // What is no number is highest.
+        // An energy that is not a number counts as the highest.
         if energy.is_nan() || energy > self.highest {
             self.highest = energy;
         }
         self.scale.add(&mut self.energy, &state);
         let [power, sum] = self.power.largest(&state);
-        // Of powers beyond the range of numbers nothing is known.
+        // A power beyond the range of numbers says nothing.
         if sum.is_finite() {
             self.looks += 1;
             self.is_passive &= power <= ROUNDING * sum;
@@ -133,7 +133,7 @@ impl<'a> Power<'a> {
         })
     }
 
-    /// The larger power of these velocities and the opposite ones, and the sum of its absolute parts.
+    /// The larger power with these velocities and with the opposite ones, and the sum of its absolute parts.
     fn largest(&mut self, state: &[f64]) -> [f64; 2] {
         let mut opposite = state.to_vec();
         opposite[self.degrees..].iter_mut().for_each(|v| *v = -*v);

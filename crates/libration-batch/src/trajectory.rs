@@ -40,24 +40,17 @@ impl<S: Float> Trajectory<S> {
     }
 
     /// In steps that are so many equal parts.
-    fn of_parts(
-        MachineStep { step, first }: &MachineStep,
-        dynamics: &Dynamics,
-        start: &[S],
-        dt: S,
-        parts: i32,
-    ) -> Self {
+    fn of_parts(step: &MachineStep, dynamics: &Dynamics, start: &[S], dt: S, parts: i32) -> Self {
         let states = 2 * dynamics.degrees();
-        let carried = if first.is_some() { dynamics.degrees() } else { 0 };
-        let mut inputs = vec![S::zero(); states + carried + dynamics.inputs()];
+        let mut inputs = vec![S::zero(); step.inputs(dynamics)];
         inputs.push(dt.ratio(1, parts));
-        let mut lane = Lane::new(step, &inputs);
+        let mut lane = Lane::new(&step.step, &inputs);
         lane.rows_mut()[..states].copy_from_slice(&start[..states]);
-        if let Some(first) = first {
+        if let Some(first) = &step.first {
             let mut first = Lane::new(first, &inputs);
             first.rows_mut()[..states].copy_from_slice(&start[..states]);
             first.run(1, 0);
-            let known = states..states + carried;
+            let known = states..states + dynamics.degrees();
             lane.rows_mut()[known.clone()].copy_from_slice(&first.rows()[known]);
         }
         Trajectory {

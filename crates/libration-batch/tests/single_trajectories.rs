@@ -66,7 +66,7 @@ fn a_trajectory_stays_before_the_step_that_is_not_finite() {
 
 #[test]
 fn exact_steps_in_parts_have_the_bits_of_the_compiled_ones() {
-    // Of 0.6, 6, 63 and 630 radians, in 2 to 1300 parts.
+    // Steps of 0.6, 6, 63 and 630 radians have 2 to 1300 parts.
     for dt in [0.2, 2.0, 20.0, 200.0] {
         let model = Oscillator { omega2: 10.0 };
         let exact = Exact::new::<1>(model, dt).expect("a valid start");

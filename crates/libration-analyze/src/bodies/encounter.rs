@@ -93,7 +93,7 @@ fn steps_per_orbit(request: &BodiesRequest, [i, j]: [usize; 2], distance: f64) -
     let (a, b) = (bodies.masses()[i], bodies.masses()[j]);
     let mut square = bodies.constant() * (a + b) / distance.powi(3);
     if bodies.pairs().is_some() {
-        // Of a circle and of an oscillation along the line between the bodies.
+        // The faster of a circle and of an oscillation along the line between the bodies.
         let [_, slope] = bodies.pair_terms(i, j, distance);
         let stiffness = bodies.pair_stiffness(i, j, distance);
         square += (slope / distance).max(stiffness).max(0.0) * (1.0 / a + 1.0 / b);

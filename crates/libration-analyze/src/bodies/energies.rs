@@ -33,7 +33,7 @@ pub(super) const BROKEN: f64 = 0.1;
 /// Pairs with a mass up to which energies are taken at each step.
 const MOST_PAIRS: usize = 1024;
 
-/// What has an energy of its own.
+/// An orbit or a body with an energy of its own.
 #[derive(Clone, Copy, Debug)]
 enum Part {
     Orbit(usize, usize),
@@ -88,7 +88,7 @@ fn attraction(bodies: &Bodies, field: &Field, i: usize, j: usize) -> (Vector, f6
     (offset.map(|x| -mass * x / distance.powi(3)), -mass / distance)
 }
 
-/// What all others add to the acceleration of body `j` relative to body `i`.
+/// The acceleration of body `j` relative to body `i` by all other bodies.
 fn disturbance(field: &Field, attraction: Vector, i: usize, j: usize) -> Vector {
     minus(minus(field.accelerations[j], field.accelerations[i]), attraction)
 }

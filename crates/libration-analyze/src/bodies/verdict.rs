@@ -17,7 +17,7 @@ pub const FEW_OSCILLATION_STEPS: f64 = 10.0;
 /// The part of the mean mass below which the energies of other bodies hide that of a body.
 const LIGHT: f64 = 0.01;
 
-/// What a verdict rests on besides the audit.
+/// The evidence of a verdict besides the audit.
 pub(super) struct Evidence<'a> {
     pub(super) request: &'a BodiesRequest,
     /// The pair with the fewest steps per orbit at the start.
@@ -54,7 +54,7 @@ impl BodiesAudit {
                 number(evidence.rounding, 2)
             ));
         }
-        // Of a steady motion in a pair potential that loses energy, the loss is all that it exchanges.
+        // A steady motion in a pair potential that loses energy exchanges this loss alone.
         let is_certain =
             self.pair_potential.is_none() || change * size > BROKEN * evidence.largest_kinetic;
         if change.is_nan() || (change > BROKEN && is_certain) {

@@ -15,7 +15,7 @@ pub enum Outcome {
     Complete,
     /// All states are finite. The steps solved equations by an iteration, which left a residual.
     Iterated(NewtonResidual),
-    /// All states are finite, but the energy of the single trajectory diverges.
+    /// All states are finite, but the energy of the single trajectory grows, which no force explains.
     EnergyDiverges {
         /// The fault.
         verdict: Verdict,

@@ -1,11 +1,11 @@
-//! What an integrator does with gains.
+//! The answer of an integrator to gains.
 
 use serde::Serialize;
 
 use super::limit_in_json::limit;
 use super::report::MOST_SUBSTEPS;
 
-/// What an integrator does with the gains.
+/// The answer of an integrator to the gains.
 #[derive(Clone, Debug, Serialize)]
 pub struct IntegratorRow {
     /// Its name.
