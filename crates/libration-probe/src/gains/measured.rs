@@ -59,6 +59,10 @@ pub struct MeasuredGains {
     pub neutral_modes: usize,
     /// Growth per substep that errors of the step may hide.
     pub hidden_growth: f64,
+    /// The same as a growth rate in 1/s.
+    pub hidden_growth_rate: f64,
+    /// A servo with a negative gain of position: where it moves nothing but a neutral mode, that mode grows, however slowly.
+    pub negative_gain: Option<String>,
     /// Whether a mode grows beyond errors.
     pub grows: bool,
     /// The growth rate in 1/s of a mode that grows in the system as well, whatever the step.
@@ -108,6 +112,11 @@ impl MeasuredGains {
             modes: found,
             neutral_modes: 0,
             hidden_growth: 0.0,
+            hidden_growth_rate: 0.0,
+            negative_gain: servos
+                .iter()
+                .find(|servo| servo.kp < 0.0)
+                .map(|servo| servo.name.clone()),
             grows: false,
             growth_of_system: None,
             unstable_without_servos: None,
@@ -136,8 +145,9 @@ impl MeasuredGains {
         let (outside, neutral_modes) = search.errors(&step.a)?;
         search.outside = outside;
         (report.neutral_modes, report.hidden_growth) = (neutral_modes, outside);
+        report.hidden_growth_rate = outside / subject.dt;
         report.grows = search.is_unstable(&step.a);
-        report.growth_of_system = report.growth(outside / subject.dt);
+        report.growth_of_system = report.growth(report.hidden_growth_rate);
         if report.grows {
             let none = vec![0.0; servos.len()];
             let passive = search.step(&(none.clone(), none), subject.dt)?;
@@ -150,6 +160,14 @@ impl MeasuredGains {
         report.limits(&mut search, servos, start)?;
         report.fewest_substeps = search.fewest_substeps(substeps)?;
         Ok(report)
+    }
+
+    /// The mode that grows beyond its own error where errors of other modes may hide as much; none where growth is known.
+    pub(super) fn doubtful_growth(&self) -> Option<&ProbedMode> {
+        let growing = |mode: &&ProbedMode| mode.step.growth_rate > ERRORS * mode.error;
+        let most =
+            |a: &&ProbedMode, b: &&ProbedMode| a.step.growth_rate.total_cmp(&b.step.growth_rate);
+        self.modes.iter().filter(growing).max_by(most).filter(|_| !self.grows)
     }
 
     /// Whether there are servos whose gains are changed.

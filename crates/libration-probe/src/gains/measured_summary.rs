@@ -45,6 +45,23 @@ impl MeasuredGains {
                 "errors of the measured step may hide a growth of {} per step; spectral radius {radius}",
                 number(self.hidden_growth, 1)
             ))
+        } else if let Some(mode) = self.doubtful_growth() {
+            Verdict::unknown(format!(
+                "a mode ({}) grows at {} 1/s, and errors of the measured step may hide as much",
+                mode.names(),
+                number(mode.step.growth_rate, 3)
+            ))
+        } else if let Some(servo) = self.negative_gain.as_ref().filter(|_| self.neutral_modes > 0) {
+            Verdict::unknown(format!(
+                "kp of {servo} is negative, and a mode is neutral within errors, which may hide a growth of {} 1/s",
+                number(self.hidden_growth_rate, 1)
+            ))
+        } else if self.neutral_modes > 0 {
+            Verdict::new(Outcome::Stable, format!("spectral radius {radius} of the measured step"))
+                .without(format!(
+                    "growth of neutral modes below {} 1/s",
+                    number(self.hidden_growth_rate, 1)
+                ))
         } else {
             Verdict::new(Outcome::Stable, format!("spectral radius {radius} of the measured step"))
         };

@@ -162,6 +162,33 @@ fn a_spring_that_is_unstable_alone_is_named_and_neutral_modes_are_counted() {
 }
 
 #[test]
+fn growth_too_slow_for_the_differences_of_a_step_is_never_a_gain_that_holds() {
+    // m s² + kv s + kp + spring = 0 with kv = 1 and a small stiffness k: a mode grows at −k 1/s, below 10⁻⁷ per step from k = −10⁻⁵ on.
+    for (spring, kp) in [
+        (0.0, -5e-6),
+        (0.0, -1e-7),
+        (0.0, -1e-9),
+        (0.0, -1e-13),
+        (-5e-6, 0.0),
+        (-1e-5, 5e-6),
+        (-1e-6, -1e-6),
+    ] {
+        let found = measured(Sliders::new(&[spring], &[kp], &[1.0]), DT);
+        assert_eq!(found.verdict.outcome, Outcome::Unknown, "{spring:e} {kp:e}: {}", found.answer);
+        assert!(found.largest_factor.is_nan() && !found.holds, "{}", found.answer);
+    }
+    // Beyond it the growth is known, and a spring that is stiffer than a negative gain holds.
+    let fast = measured(Sliders::new(&[0.0], &[-5e-5], &[1.0]), DT);
+    assert_eq!(fast.verdict.outcome, Outcome::Unstable, "{}", fast.answer);
+    let held = measured(Sliders::new(&[2.0], &[-1.0], &[1.0]), DT);
+    assert!(held.holds && held.verdict.not_examined.is_empty(), "{}", held.answer);
+    close(held.largest_factor, 2.0);
+    // Of a neutral mode the verdict names the growth that it cannot tell from none.
+    let free = measured(Sliders::new(&[0.0], &[0.0], &[1.0]), DT);
+    assert!(free.holds && free.answer.contains("Not examined: growth of neutral modes below"));
+}
+
+#[test]
 fn a_step_without_a_derivative_has_no_verdict() {
     struct Kink(Sliders);
     impl BlackBox for Kink {
