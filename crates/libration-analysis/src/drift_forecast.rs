@@ -3,7 +3,7 @@
 use libration_core::number::{TwoFloat, Wide};
 use libration_core::{Elementary, Float, Hamiltonian, Model, Scalar, State};
 
-use super::UpdateMatrix;
+use super::{QuadraticForm, UpdateMatrix};
 
 /// Steps before the last that are tried where the orbit leaves the range of the search; a growing
 /// spiral has its largest energy in its last turn.
@@ -25,6 +25,21 @@ impl DriftForecast {
     /// Steps that are searched one by one. Over more of them, an orbit that does not close comes
     /// closer to its extremes by less than a part in 10¹².
     pub const SEARCHED: u64 = 4_000_000;
+
+    /// As [`forecast_drift`], of degrees of freedom that move by the same map, each from its start, with the same energy.
+    pub fn of_orbits(
+        energy: &QuadraticForm<Wide>,
+        step: &UpdateMatrix<Wide>,
+        starts: &[State<f64, 1>],
+        steps: u64,
+    ) -> Option<Self> {
+        forecast(energy, step, starts, steps, f64::INFINITY)
+    }
+}
+
+fn energy_of(model: impl Model<1>) -> QuadraticForm<Wide> {
+    let system = model.on::<Wide>();
+    QuadraticForm::of(|state| system.energy(state))
 }
 
 /// The largest relative energy drift within `steps` steps of the linear map `step` from `start`.
@@ -34,39 +49,40 @@ impl DriftForecast {
 /// to the top. The drift there is computed from `Mⁿ` in 1024 bits: what is returned carries no visible
 /// rounding, and is zero where there is nothing else, below `2⁻¹⁰⁰⁰` for each step. None where the
 /// initial energy is zero.
-pub fn forecast_drift<const D: usize>(
-    model: impl Model<D>,
-    step: &UpdateMatrix<Wide, D>,
-    start: &State<f64, D>,
+pub fn forecast_drift(
+    model: impl Model<1>,
+    step: &UpdateMatrix<Wide>,
+    start: &State<f64, 1>,
     steps: u64,
 ) -> Option<DriftForecast> {
-    forecast(model, step, start, steps, f64::INFINITY)
+    DriftForecast::of_orbits(&energy_of(model), step, &[*start], steps)
 }
 
 /// Whether the largest relative energy drift of [`forecast_drift`] is at most `limit`. The search stops at the first step that is
 /// clearly beyond it. None where the initial energy is zero.
-pub fn drift_keeps_within<const D: usize>(
-    model: impl Model<D>,
-    step: &UpdateMatrix<Wide, D>,
-    start: &State<f64, D>,
+pub fn drift_keeps_within(
+    model: impl Model<1>,
+    step: &UpdateMatrix<Wide>,
+    start: &State<f64, 1>,
     steps: u64,
     limit: f64,
 ) -> Option<bool> {
-    let forecast = forecast(model, step, start, steps, limit * (1.0 + CLEARLY))?;
+    let (energy, enough) = (energy_of(model), limit * (1.0 + CLEARLY));
+    let forecast = forecast(&energy, step, &[*start], steps, enough)?;
     Some(forecast.drift.to_f64() <= limit)
 }
 
 /// The forecast, or one of a step at which the drift exceeds `enough`.
-fn forecast<const D: usize>(
-    model: impl Model<D>,
-    step: &UpdateMatrix<Wide, D>,
-    start: &State<f64, D>,
+fn forecast(
+    energy: &QuadraticForm<Wide>,
+    step: &UpdateMatrix<Wide>,
+    starts: &[State<f64, 1>],
     steps: u64,
     enough: f64,
 ) -> Option<DriftForecast> {
-    let drift = exact_drift(model, step, start)?;
+    let drift = exact_drift(energy, step, starts)?;
     let searched = steps.min(DriftForecast::SEARCHED);
-    let (found, covered) = search(model, step, start, searched, enough);
+    let (found, covered) = search(energy, step, starts, searched, enough);
     let tail = if covered < searched { LAST_TURN } else { 1 };
     let forecast = |n| DriftForecast { drift: drift(n), at_step: n };
     let mut best = forecast(found);
@@ -84,7 +100,7 @@ fn forecast<const D: usize>(
     // Orbits so slow that the search saw but a part of a turn.
     let stride = steps.div_ceil(DriftForecast::SEARCHED);
     if stride > 1 {
-        let (far, _) = search(model, &step.power(stride), start, steps / stride, enough);
+        let (far, _) = search(energy, &step.power(stride), starts, steps / stride, enough);
         let mut at = far * stride;
         consider(at);
         let mut reach = stride;
@@ -100,16 +116,21 @@ fn forecast<const D: usize>(
 }
 
 /// The relative drift after `n` steps as a function of `n`.
-fn exact_drift<const D: usize>(
-    model: impl Model<D>,
-    step: &UpdateMatrix<Wide, D>,
-    start: &State<f64, D>,
+fn exact_drift(
+    energy: &QuadraticForm<Wide>,
+    step: &UpdateMatrix<Wide>,
+    starts: &[State<f64, 1>],
 ) -> Option<impl Fn(u64) -> Wide> {
-    let (system, start, step) = (model.on::<Wide>(), start.map(Wide::from_f64), *step);
-    let initial = system.energy(&start);
+    let starts: Vec<_> = starts.iter().map(|start| start.map(Wide::from_f64)).collect();
+    let sum = move |of: &dyn Fn(&State<Wide, 1>) -> Wide| {
+        starts.iter().fold(Wide::ZERO, |sum, start| sum + of(start))
+    };
+    let (energy, step) = (*energy, *step);
+    let initial = sum(&|start| energy.at(start));
     let scale = initial.abs().recip();
     let drift = move |n| {
-        let energy = system.energy(&step.power(n).apply(&start));
+        let power = step.power(n);
+        let energy = sum(&|start| energy.at(&power.apply(start)));
         let drift = (energy - initial).abs() * scale;
         // n steps of a few operations, each to 2⁻¹⁰²³.
         let rounding = Wide::from_f64(n as f64).scaled(-1000);
@@ -119,22 +140,24 @@ fn exact_drift<const D: usize>(
 }
 
 /// The step of the largest drift in double-double, or the first above `enough`, and how many steps stayed finite.
-fn search<const D: usize>(
-    model: impl Model<D>,
-    step: &UpdateMatrix<Wide, D>,
-    start: &State<f64, D>,
+fn search(
+    energy: &QuadraticForm<Wide>,
+    step: &UpdateMatrix<Wide>,
+    starts: &[State<f64, 1>],
     steps: u64,
     enough: f64,
 ) -> (u64, u64) {
-    let system = model.on::<TwoFloat>();
-    let step = step.map(TwoFloat::from);
-    let mut state = start.map(TwoFloat::from_f64);
-    let initial = system.energy(&state);
+    let (energy, step) = (energy.map(TwoFloat::from), step.map(TwoFloat::from));
+    let of_all = |states: &[State<TwoFloat, 1>]| {
+        states.iter().fold(TwoFloat::zero(), |sum, state| sum + energy.at(state))
+    };
+    let mut states: Vec<_> = starts.iter().map(|start| start.map(TwoFloat::from_f64)).collect();
+    let initial = of_all(&states);
     let enough = initial.abs().hi() * enough;
     let (mut largest, mut at_step) = (TwoFloat::zero(), 0);
     for n in 1..=steps {
-        state = step.apply(&state);
-        let drift = (system.energy(&state) - initial).abs();
+        states.iter_mut().for_each(|state| *state = step.apply(state));
+        let drift = (of_all(&states) - initial).abs();
         if !drift.is_finite() {
             return (at_step, n - 1);
         }

@@ -7,7 +7,7 @@
 use libration_core::Scalar;
 use libration_core::number::Wide;
 
-use super::{Complex, UpdateMatrix};
+use super::{Complex, LinearMap};
 
 /// Sweeps of the iteration. A double root gains one bit a sweep, a simple one doubles its bits.
 const SWEEPS: usize = 400;
@@ -16,14 +16,14 @@ const SWEEPS: usize = 400;
 const SETTLED: i64 = 600;
 
 /// All eigenvalues of `matrix`, multiple ones repeated, by falling real part.
-pub fn eigenvalues<const D: usize>(matrix: &UpdateMatrix<Wide, D>) -> Vec<Complex> {
+pub fn eigenvalues(matrix: &LinearMap) -> Vec<Complex> {
     let mut roots = roots(&characteristic_polynomial(&matrix.rows()));
     roots.sort_by(|a, b| b.re.partial_cmp(&a.re).unwrap_or(core::cmp::Ordering::Equal));
     roots
 }
 
 /// The determinant of `matrix`.
-pub fn determinant<const D: usize>(matrix: &UpdateMatrix<Wide, D>) -> Wide {
+pub fn determinant(matrix: &LinearMap) -> Wide {
     // The dimension 2D is even, so the constant term carries the sign of the determinant.
     characteristic_polynomial(&matrix.rows())[0]
 }
@@ -95,8 +95,6 @@ pub(super) fn roots(coefficients: &[Wide]) -> Vec<Complex> {
 
 #[cfg(test)]
 mod tests {
-    use libration_core::State;
-
     use super::*;
 
     #[test]
@@ -104,10 +102,13 @@ mod tests {
         // q₀, v₀ rotate by 0.3 rad and shrink by 0.9; q₁, v₁ shear: eigenvalue 1, twice, defective.
         let (s, c) = Wide::from_f64(0.3).sin_cos();
         let factor = Wide::from_f64(0.9);
-        let matrix = UpdateMatrix::<Wide, 2>::from_map(|State { q, v }| State {
-            q: [factor * (c * q[0] + s * v[0]), q[1] + v[1]],
-            v: [factor * (c * v[0] - s * q[0]), v[1]],
-        });
+        let (zero, one) = (Wide::ZERO, Wide::one());
+        let matrix = LinearMap::of_rows(&[
+            vec![factor * c, zero, factor * s, zero],
+            vec![zero, one, zero, one],
+            vec![-factor * s, zero, factor * c, zero],
+            vec![zero, zero, zero, one],
+        ]);
         let found = eigenvalues(&matrix);
         assert!((determinant(&matrix) - factor * factor).abs().to_f64() < 1e-290);
         // One bit a sweep for the double root: 2⁻⁴⁰⁰ is 10⁻¹²⁰, and rounding stops it earlier.
@@ -122,7 +123,7 @@ mod tests {
 
     #[test]
     fn a_matrix_of_zeros_has_the_eigenvalue_zero() {
-        let zero = UpdateMatrix::<Wide, 2>::from_map(|e| e.map(|_| Wide::ZERO));
+        let zero = LinearMap::of_rows(&vec![vec![Wide::ZERO; 4]; 4]);
         assert!(eigenvalues(&zero).iter().all(|z| z.abs().to_f64() < 1e-60));
     }
 }

@@ -31,7 +31,7 @@ impl ErrorForecast {
     /// not oscillate.
     pub fn new(
         model: Oscillator<f64>,
-        step: &UpdateMatrix<Wide, 1>,
+        step: &UpdateMatrix<Wide>,
         dt: f64,
         start: &State<f64, 1>,
     ) -> Option<Self> {
@@ -107,11 +107,10 @@ mod tests {
     use libration_core::{Method, with_method};
 
     use super::*;
-    use crate::Linearisation;
 
     fn forecast(method: Method, dt: f64) -> ErrorForecast {
         let (model, start) = (Oscillator { omega2: 10.0 }, State { q: [1.0], v: [0.0] });
-        let step = with_method!(method, |m| Linearisation::new(m, model, &start, dt)).step;
+        let step = with_method!(method, |m| UpdateMatrix::of_step(m, model, &start, dt));
         ErrorForecast::new(model, &step, dt, &start).unwrap()
     }
 

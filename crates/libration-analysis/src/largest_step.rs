@@ -225,12 +225,12 @@ fn root(x: Wide, n: u64) -> Wide {
 
 #[cfg(test)]
 mod tests {
-    use libration_core::{Method, State, with_method};
+    use libration_core::{Method, with_method};
 
     use super::*;
 
     fn rest() -> OrbitStart {
-        OrbitStart::new(&State { q: [1.0], v: [0.0] })
+        OrbitStart::new(&[1.0], &[0.0])
     }
 
     fn largest(method: Method, criterion: Criterion) -> f64 {

@@ -18,6 +18,7 @@ mod factorisation;
 mod langevin_formula;
 mod langevin_mode;
 mod largest_step;
+mod linear_map;
 mod linear_step;
 mod linear_stepper;
 mod linearisation;
@@ -62,9 +63,10 @@ pub use langevin_mode::{
     stability_margin,
 };
 pub use largest_step::{Criterion, LargestStep};
+pub use linear_map::LinearMap;
 pub use linear_step::StepOn;
 pub use linear_stepper::{LinearStepper, positions_and_velocities};
-pub use linearisation::{Linearisation, StepFunction};
+pub use linearisation::Linearisation;
 pub use nystrom_certificate::NystromCertificate;
 pub use orbit_error::OrbitError;
 pub use orbit_start::OrbitStart;

@@ -33,7 +33,7 @@ impl OrbitError {
             return None;
         }
         let z = Wide::from_f64(z);
-        let matrix: UpdateMatrix<Wide, 1> = step.matrix.map(|p| p.eval_wide(z));
+        let matrix: UpdateMatrix<Wide> = step.matrix.map(|p| p.eval_wide(z));
         let band = EnergyBand::new(Oscillator { omega2: 1.0 }, &matrix)?;
         let spectrum = Spectrum::new(&matrix);
         Some(OrbitError {
@@ -150,7 +150,7 @@ mod tests {
     /// `‖Mⁿ − R(nz)‖₂` from the powers of the matrix itself, the largest within `steps`.
     fn by_powers(step: &SymbolicStep, z: f64, steps: u64) -> f64 {
         let matrix = step.matrix.map(|p| p.eval_f64(z));
-        let mut power = UpdateMatrix::<f64, 1>::identity();
+        let mut power = UpdateMatrix::<f64>::identity();
         let mut worst = 0.0_f64;
         for n in 1..=steps {
             power = matrix.after(&power);

@@ -1,7 +1,7 @@
 //! The start of an orbit, as criteria require it.
 
 use libration_core::number::Wide;
-use libration_core::{Elementary, Scalar, State};
+use libration_core::{Elementary, Scalar};
 
 /// Where an orbit of an isotropic oscillator starts, as far as criteria ask: the sums of `q²`, `q·v`
 /// and `v²` over its degrees of freedom.
@@ -16,19 +16,20 @@ pub struct OrbitStart {
 pub(super) const NEGLIGIBLE: i64 = 200;
 
 impl OrbitStart {
-    /// The start at `state`, in units in which `ω = 1`, as `(q, v/ω)`.
-    pub fn new<const D: usize>(state: &State<f64, D>) -> Self {
-        let state = state.map(Wide::from_f64);
-        let largest = state.coordinates().filter_map(Wide::exponent).max().unwrap_or(0);
+    /// The start at positions `q` and velocities `v`, in units in which `ω = 1`, as `(q, v/ω)`.
+    pub fn new(q: &[f64], v: &[f64]) -> Self {
+        let wide = |state: &[f64]| state.iter().map(|&x| Wide::from_f64(x)).collect::<Vec<_>>();
+        let (q, v) = (wide(q), wide(v));
+        let exponents = q.iter().chain(&v).filter_map(|x| x.exponent());
+        let largest = exponents.max().unwrap_or(0);
         let seen = |x: Wide| match x.exponent() {
             Some(exponent) if exponent >= largest - NEGLIGIBLE => x,
             _ => Wide::ZERO,
         };
-        let sum = |a: [Wide; D], b: [Wide; D]| {
-            a.into_iter().zip(b).fold(Wide::ZERO, |sum, (a, b)| sum + seen(a) * seen(b))
+        let sum = |a: &[Wide], b: &[Wide]| {
+            a.iter().zip(b).fold(Wide::ZERO, |sum, (&a, &b)| sum + seen(a) * seen(b))
         };
-        let State { q, v } = state;
-        OrbitStart { qq: sum(q, q), qv: sum(q, v), vv: sum(v, v) }
+        OrbitStart { qq: sum(&q, &q), qv: sum(&q, &v), vv: sum(&v, &v) }
     }
 
     /// The largest `q²` on the circle of the exact orbit.

@@ -29,7 +29,7 @@ impl<S: Scalar> QuadraticForm<S> {
     ///
     /// Of a symplectic step it is conserved: up to a factor, the modified Hamiltonian (Hairer,
     /// Lubich, Wanner: Geometric Numerical Integration, 2nd ed., §IX.3), here in closed form.
-    pub fn carried_by(step: &UpdateMatrix<S, 1>) -> Self {
+    pub fn carried_by(step: &UpdateMatrix<S>) -> Self {
         QuadraticForm {
             qq: -step.entry(1, 0),
             qv: (step.entry(0, 0) - step.entry(1, 1)).ratio(1, 2),

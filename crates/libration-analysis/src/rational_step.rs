@@ -17,7 +17,7 @@ pub type UnknownImplicitStep = RationalFunction<8>;
 #[derive(Clone, Copy, Debug)]
 pub struct RationalStep {
     /// The update matrix.
-    pub matrix: UpdateMatrix<UnknownImplicitStep, 1>,
+    pub matrix: UpdateMatrix<UnknownImplicitStep>,
 }
 
 impl RationalStep {

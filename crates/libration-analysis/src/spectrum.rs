@@ -69,7 +69,7 @@ impl Eigenvalues {
 
 impl Spectrum {
     /// The spectrum of `matrix`.
-    pub fn new(matrix: &UpdateMatrix<Wide, 1>) -> Self {
+    pub fn new(matrix: &UpdateMatrix<Wide>) -> Self {
         let (trace, determinant) = (matrix.trace(), matrix.determinant());
         let half = trace.ratio(1, 2);
         let unless_rounding = |x: Wide, scale| if negligible(x, scale) { Wide::ZERO } else { x };

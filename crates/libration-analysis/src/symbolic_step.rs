@@ -18,7 +18,7 @@ pub type UnknownStep = Poly<32>;
 #[derive(Clone, Copy, Debug)]
 pub struct SymbolicStep {
     /// The update matrix.
-    pub matrix: UpdateMatrix<UnknownStep, 1>,
+    pub matrix: UpdateMatrix<UnknownStep>,
 }
 
 impl SymbolicStep {
@@ -51,7 +51,7 @@ impl SymbolicStep {
 
     /// `M(−z)·M(z) − 1`, which is zero for a time-reversible method; none if the polynomials outgrow
     /// their exact arithmetic.
-    pub fn reversibility_residual(&self) -> Option<UpdateMatrix<UnknownStep, 1>> {
+    pub fn reversibility_residual(&self) -> Option<UpdateMatrix<UnknownStep>> {
         let round_trip = self.matrix.map(UnknownStep::reflected).after(&self.matrix);
         let residual =
             UpdateMatrix::from_map(|e| round_trip.apply(&e).plus(-UnknownStep::one(), e));

@@ -1,6 +1,6 @@
 //! Coverage of an invariant curve by a discrete orbit.
 
-use libration::analysis::{EnergyBand, Linearisation, drift_keeps_within, forecast_drift};
+use libration::analysis::{EnergyBand, UpdateMatrix, drift_keeps_within, forecast_drift};
 use libration::system::Oscillator;
 use libration::{Method, State};
 
@@ -9,7 +9,7 @@ use libration::{Method, State};
 pub(super) fn exponent(method: Method, start: &State<f64, 1>, steps: u64, z: f64) -> f64 {
     let unit = Oscillator { omega2: 1.0 };
     let ln_drift = |z: f64| {
-        let step = Linearisation::new(method, unit, start, z).step;
+        let step = UpdateMatrix::of_step(method, unit, start, z);
         let (low, high) = EnergyBand::new(unit, &step)?.drift_after(start, steps);
         Some(low.abs().max(high.abs()).ln())
     };
@@ -36,7 +36,7 @@ pub(super) fn slack(
     let unit = Oscillator { omega2: 1.0 };
     let beyond = |i: u32| FURTHEST * (f64::from(i) / f64::from(LOOKS)).powi(2);
     let keeps = |z: f64| {
-        let step = Linearisation::new(method, unit, start, z).step;
+        let step = UpdateMatrix::of_step(method, unit, start, z);
         drift_keeps_within(unit, &step, start, steps.min(ENOUGH), tolerance) == Some(true)
     };
     // A search ends just where the criterion fails.
@@ -53,7 +53,7 @@ pub(super) fn slack(
 /// step merely repeats or stretches, and no extreme of any curve comes by.
 pub(super) fn turns(method: Method, start: &State<f64, 1>, z: f64) -> bool {
     let unit = Oscillator { omega2: 1.0 };
-    let step = Linearisation::new(method, unit, start, z).step;
+    let step = UpdateMatrix::of_step(method, unit, start, z);
     EnergyBand::new(unit, &step).is_some()
 }
 
@@ -63,7 +63,7 @@ pub(super) fn turns(method: Method, start: &State<f64, 1>, z: f64) -> bool {
 /// is in units in which `ω = 1`.
 pub(super) fn lacking(method: Method, start: &State<f64, 1>, steps: u64, z: f64) -> f64 {
     let unit = Oscillator { omega2: 1.0 };
-    let step = |z: f64| Linearisation::new(method, unit, start, z).step;
+    let step = |z: f64| UpdateMatrix::of_step(method, unit, start, z);
     // Where the energy changes by the determinant alone all phases are alike.
     if EnergyBand::new(unit, &step(z)).is_none_or(|band| band.worst_start().is_none()) {
         return 0.0;

@@ -1,6 +1,6 @@
 //! Shared parts of the bounds on rounding.
 
-use libration::analysis::{Linearisation, UpdateMatrix};
+use libration::analysis::UpdateMatrix;
 use libration::integrator::{SUZUKI4, YOSHIDA4};
 use libration::number::Wide;
 use libration::system::Oscillator;
@@ -81,7 +81,7 @@ pub(super) fn slip_of_run(method: Method, omega: f64, dt: f64, steps: u64) -> f6
 pub(super) fn condition(method: Method, z: f64, steps: u64) -> f64 {
     let anywhere = State { q: [1.0], v: [0.0] };
     let unit = Oscillator { omega2: 1.0 };
-    let step = Linearisation::new(method, unit, &anywhere, z).step;
+    let step = UpdateMatrix::of_step(method, unit, &anywhere, z);
     let (departure, gap) = schur(&step);
     if departure == 0.0 {
         return 1.0;
@@ -91,7 +91,7 @@ pub(super) fn condition(method: Method, z: f64, steps: u64) -> f64 {
 }
 
 /// `Δ` and `g` of a real `2 × 2` matrix.
-fn schur(matrix: &UpdateMatrix<Wide, 1>) -> (f64, f64) {
+fn schur(matrix: &UpdateMatrix<Wide>) -> (f64, f64) {
     let entry = |i: usize, j: usize| matrix.entry(i, j);
     let (skew, twist) = (entry(0, 0) - entry(1, 1), entry(0, 1) + entry(1, 0));
     let (difference, product) = (entry(0, 1) - entry(1, 0), entry(0, 1) * entry(1, 0));

@@ -1,6 +1,7 @@
 //! A custom system: a bead on a rotating hoop, used with every instrument.
 
 use libration::analysis::Linearisation;
+use libration::equations::{Dynamics, StepProgram};
 use libration::integrator::{Rk4, VelocityVerlet};
 use libration::simulation::{EnergyDrift, SimulationError, Simulator};
 use libration::{Elementary, Hamiltonian, Model, State, System};
@@ -47,8 +48,11 @@ fn main() -> Result<(), SimulationError> {
     Simulator::new(bead, VelocityVerlet, start, 0.01)?.run(100_000, &mut drift)?;
     println!("largest drift over 1000 s          {:e}", drift.largest());
 
-    let verlet = Linearisation::new(VelocityVerlet, bead, &start, 0.01);
-    let rk4 = Linearisation::new(Rk4, bead, &start, 0.01);
+    // The system is a program as well, and so is a step on it.
+    let (dynamics, at) = (Dynamics::of::<1>(&bead, None), [0.9, 0.0]);
+    let linear = |step| Linearisation::new(&step, &dynamics, &at, 0.01);
+    let verlet = linear(StepProgram::new(VelocityVerlet, &dynamics));
+    let rk4 = linear(StepProgram::new(Rk4, &dynamics));
     println!(
         "‖MᵀJM − J‖, velocity Verlet        {:e}",
         verlet.step.symplecticity_defect().to_f64()

@@ -1,7 +1,7 @@
 //! One definition of a step, four instruments: it simulates, differentiates, and prints its own
 //! update matrix.
 
-use libration::analysis::{Linearisation, Spectrum, SymbolicStep};
+use libration::analysis::{Spectrum, SymbolicStep, UpdateMatrix};
 use libration::integrator::{Rk4, VelocityVerlet};
 use libration::simulation::{EnergyDrift, SimulationError, Simulator};
 use libration::system::{Oscillator, Pendulum};
@@ -26,8 +26,8 @@ fn main() -> Result<(), SimulationError> {
     // On dual numbers with 1024 bits it is linearised, here about a swinging pendulum.
     let pendulum = Pendulum { omega2: 9.81 };
     let about = State { q: [2.0], v: [0.3] };
-    let linear = Linearisation::new(VelocityVerlet, pendulum, &about, 0.05);
-    let spectrum = Spectrum::new(&linear.step);
+    let matrix = UpdateMatrix::of_step(VelocityVerlet, pendulum, &about, 0.05);
+    let spectrum = Spectrum::new(&matrix);
     println!("pendulum, det M − 1                {}", spectrum.determinant_minus_one().to_f64());
 
     // The same model on another number type is the same physics with fewer bits.

@@ -98,7 +98,9 @@ mod tests {
     use libration_core::{Integrator, Model, Scalar};
 
     use super::*;
-    use crate::{EnergyBand, Linearisation, QuadraticForm};
+    use libration_core::number::Wide;
+
+    use crate::{EnergyBand, QuadraticForm, UpdateMatrix};
 
     const START: State<f64, 1> = State { q: [1.0], v: [0.0] };
     const MODEL: Oscillator<f64> = Oscillator { omega2: 10.0 };
@@ -116,13 +118,13 @@ mod tests {
             move |state| self.method.step(&system, state, F::from_f64(self.dt))
         }
 
-        fn linear<F: Float>(self) -> Linearisation<1> {
-            Linearisation::new(self.method, MODEL, &START, F::from_f64(self.dt).to_f64())
+        fn matrix<F: Float>(self) -> UpdateMatrix<Wide> {
+            UpdateMatrix::of_step(self.method, MODEL, &START, F::from_f64(self.dt).to_f64())
         }
 
         /// `count` points of orbits a little smaller than that of the start.
         fn starts<F: Float>(self, count: usize) -> Vec<State<F, 1>> {
-            let band = EnergyBand::new(MODEL, &self.linear::<F>().step).unwrap();
+            let band = EnergyBand::new(MODEL, &self.matrix::<F>()).unwrap();
             let scaled = |(i, point): (usize, State<f64, 1>)| {
                 // Multiples of the golden ratio fill an interval evenly in any order.
                 let size = 1.0 - 1e-3 * (0.618_033_988_749_895 * i as f64).fract();
@@ -134,7 +136,7 @@ mod tests {
         /// The prediction from about `samples` steps.
         fn local<F: Float, W: Float>(self, steps: u64) -> LocalRounding {
             let turn = (TAU / (MODEL.omega2.sqrt() * self.dt)).round() as u64;
-            let form = QuadraticForm::carried_by(&self.linear::<F>().step);
+            let form = QuadraticForm::carried_by(&self.matrix::<F>());
             let form = form.map(|x| W::from_f64(x.to_f64()));
             let rounded = F::from_f64(self.dt).to_f64();
             let exact = Setting { dt: rounded, ..self };
@@ -145,7 +147,7 @@ mod tests {
 
         /// Mean and scatter of the energy over `orbits` after `n` steps.
         fn simulated<F: Float>(self, orbits: usize, n: u64) -> (f64, f64) {
-            let form = QuadraticForm::carried_by(&self.linear::<F>().step).map(TwoFloat::from);
+            let form = QuadraticForm::carried_by(&self.matrix::<F>()).map(TwoFloat::from);
             let energy =
                 |state: &State<F, 1>| form.at(&state.map(|x| TwoFloat::from_f64(x.to_f64())));
             let step = self.step::<F>();

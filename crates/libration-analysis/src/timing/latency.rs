@@ -73,7 +73,7 @@ impl Plant<'_> {
 
 /// `y' = Φy + Γ_old·u_old + Γ_new·u_new`: a step within which a command takes over from another.
 pub(super) struct SplitStep {
-    pub(super) phi: UpdateMatrix<Wide, 1>,
+    pub(super) phi: UpdateMatrix<Wide>,
     pub(super) old: State<Wide, 1>,
     pub(super) new: State<Wide, 1>,
 }
@@ -82,7 +82,7 @@ pub(super) struct SplitStep {
 fn polynomial(
     feedback: Feedback,
     m: u64,
-    phi: UpdateMatrix<Wide, 1>,
+    phi: UpdateMatrix<Wide>,
     old: State<Wide, 1>,
     new: State<Wide, 1>,
 ) -> DelayPolynomial {

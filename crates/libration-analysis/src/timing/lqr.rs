@@ -81,7 +81,7 @@ impl Plant<'_> {
         let image = cost.apply(&gamma);
         let price = command + dot(&image, &gamma);
         let gain = |column: &State<Wide, 1>| (dot(&image, column) / price).to_f64();
-        let feedback = Feedback { position: gain(&phi.dq[0]), velocity: gain(&phi.dv[0]) };
+        let feedback = Feedback { position: gain(&phi.dq), velocity: gain(&phi.dv) };
         let excess = Spectrum::new(&self.closed(feedback, self.dt)).radius_minus_one();
         if !excess.is_negative() {
             return Err(LqrError::Unseen);

@@ -38,8 +38,8 @@ impl Plant<'_> {
         let gamma = [gamma.q[0], gamma.v[0]].map(Wide::to_f64);
         let entries = self.noise_of(gamma).map(|row| row.map(|x| Wide::from_f64(x * acceleration)));
         let covariance = super::riccati::Matrix {
-            dq: [State { q: [entries[0][0]], v: [entries[1][0]] }],
-            dv: [State { q: [entries[0][1]], v: [entries[1][1]] }],
+            dq: State { q: [entries[0][0]], v: [entries[1][0]] },
+            dv: State { q: [entries[0][1]], v: [entries[1][1]] },
         };
         let seen = State { q: [Wide::one()], v: [Wide::ZERO] };
         let variance = Wide::from_f64(position);

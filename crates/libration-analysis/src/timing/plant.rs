@@ -7,7 +7,7 @@ use libration_core::number::Wide;
 use libration_core::{Integrator, Model, Scalar, State};
 
 use super::ZohStep;
-use crate::{Linearisation, UpdateMatrix};
+use crate::UpdateMatrix;
 
 /// Steps of any size.
 type Steps<'a> = Rc<dyn Fn(Wide) -> ZohStep + 'a>;
@@ -19,7 +19,7 @@ pub struct Plant<'a> {
     /// The number of equal substeps and their kind.
     pub(super) grid: Option<(u64, Steps<'a>)>,
     /// The Jacobian of the rate of change.
-    pub(super) generator: UpdateMatrix<Wide, 1>,
+    pub(super) generator: UpdateMatrix<Wide>,
     /// The time step in seconds.
     pub(super) dt: Wide,
     /// Whether steps have no error, so that all is known of what lies between their ends.
@@ -36,14 +36,14 @@ impl<'a> Plant<'a> {
         at: State<f64, 1>,
         dt: f64,
     ) -> Self {
-        let generator = Linearisation::generator_of(model, &at);
+        let generator = UpdateMatrix::of_rates(model, &at);
         let step = Rc::new(move |h| ZohStep::of(integrator, model, &at, h));
         Plant { step, generator, dt: Wide::from_f64(dt), exact: false, flows: false, grid: None }
     }
 
     /// A plant with exact steps, without an integrator.
     pub fn exact(model: impl Model<1> + 'a, at: State<f64, 1>, dt: f64) -> Self {
-        let generator = Linearisation::generator_of(model, &at);
+        let generator = UpdateMatrix::of_rates(model, &at);
         let step = Rc::new(move |h| ZohStep::exact(model, &at, h));
         Plant { step, generator, dt: Wide::from_f64(dt), exact: true, flows: true, grid: None }
     }
@@ -68,7 +68,7 @@ impl<'a> Plant<'a> {
     }
 
     /// A step of the loop that `feedback` closes at once, of `dt` seconds.
-    pub(super) fn closed(&self, feedback: Feedback, dt: Wide) -> UpdateMatrix<Wide, 1> {
+    pub(super) fn closed(&self, feedback: Feedback, dt: Wide) -> UpdateMatrix<Wide> {
         let ZohStep { phi, gamma } = (self.step)(dt);
         UpdateMatrix::from_map(|e| phi.apply(&e).plus(-fed_back(feedback, &e), gamma))
     }

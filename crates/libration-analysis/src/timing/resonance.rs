@@ -111,7 +111,7 @@ impl Resonance {
     }
 }
 
-fn divided(matrix: &UpdateMatrix<Wide, 1>, by: Wide) -> UpdateMatrix<Wide, 1> {
+fn divided(matrix: &UpdateMatrix<Wide>, by: Wide) -> UpdateMatrix<Wide> {
     matrix.map(|x| x / by)
 }
 

@@ -9,7 +9,7 @@ use crate::spectrum::negligible;
 /// Doublings of the horizon: enough for a loop whose deviations fall by 10⁻¹⁵ a step.
 pub(super) const DOUBLINGS: usize = 64;
 
-pub(super) type Matrix = UpdateMatrix<Wide, 1>;
+pub(super) type Matrix = UpdateMatrix<Wide>;
 
 /// The solution of `X = Q + ΦᵀXΦ − ΦᵀXΓ(r + ΓᵀXΓ)⁻¹ΓᵀXΦ` that is approached from a finite horizon, if the iteration
 /// settles.

@@ -4,14 +4,14 @@ use libration_core::number::{Dual, Wide};
 use libration_core::system::CommandedSystem;
 use libration_core::{Integrator, Model, Scalar, State};
 
+use crate::UpdateMatrix;
 use crate::exponential::exponential;
-use crate::{Linearisation, UpdateMatrix};
 
 /// One step of a plant with one degree of freedom, `y' = Φy + Γu`, linearised, in 1024 bits.
 #[derive(Clone, Copy, Debug)]
 pub struct ZohStep {
     /// The matrix `Φ` on the state.
-    pub phi: UpdateMatrix<Wide, 1>,
+    pub phi: UpdateMatrix<Wide>,
     /// The effect `Γ` of a unit command.
     pub gamma: State<Wide, 1>,
 }
@@ -52,7 +52,7 @@ impl ZohStep {
     /// `Φ` and `Γ` (C. F. Van Loan, *Computing integrals involving the matrix exponential*, IEEE Transactions on
     /// Automatic Control 23, 1978).
     pub fn exact(model: impl Model<1>, at: &State<f64, 1>, dt: Wide) -> Self {
-        let generator = Linearisation::<1>::generator_of(model, at);
+        let generator = UpdateMatrix::of_rates(model, at);
         let mut rows = generator.rows();
         for (row, command) in rows.iter_mut().zip([Wide::ZERO, Wide::one()]) {
             row.push(command);
@@ -62,10 +62,7 @@ impl ZohStep {
         let [qq, qv, qu] = [0, 1, 2].map(|j| all[0][j]);
         let [vq, vv, vu] = [0, 1, 2].map(|j| all[1][j]);
         ZohStep {
-            phi: UpdateMatrix {
-                dq: [State { q: [qq], v: [vq] }],
-                dv: [State { q: [qv], v: [vv] }],
-            },
+            phi: UpdateMatrix { dq: State { q: [qq], v: [vq] }, dv: State { q: [qv], v: [vv] } },
             gamma: State { q: [qu], v: [vu] },
         }
     }

@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 
 use libration::Scalar;
-use libration::analysis::{DriftForecast, QuadraticForm, UpdateMatrix};
+use libration::analysis::{DriftForecast, LinearMap, QuadraticForm};
 use libration::number::Wide;
-use libration::simulation::{EnergyDrift, SimulationError};
 use serde::{Serialize, Serializer};
 use serde_json::value::RawValue;
 
@@ -155,10 +154,7 @@ pub struct ModifiedHamiltonian {
 impl ModifiedHamiltonian {
     /// The form of a linear step; none if the step does not conserve areas in each degree of
     /// freedom, or if `q` does not depend on `v`.
-    pub(super) fn of<const D: usize>(
-        step: &UpdateMatrix<Wide, D>,
-        conserves: bool,
-    ) -> Option<Self> {
+    pub(super) fn of(step: &LinearMap, conserves: bool) -> Option<Self> {
         let blocks = step.decoupled()?;
         let form = QuadraticForm::carried_by(&blocks[0]);
         let scaled = |x: Wide| (x / form.vv).ratio(1, 2).to_f64();
@@ -210,21 +206,15 @@ impl From<DriftForecast> for Drift {
 }
 
 impl Drift {
-    pub(super) fn simulated<Sys>(
-        drift: &EnergyDrift<Sys>,
-        stopped: Option<SimulationError>,
-    ) -> Self {
-        let value = drift.largest();
-        let shown = if value.is_finite() { format!("{value:?}") } else { "null".into() };
+    /// The largest drift of a simulation, which may have left the range of `f64` at a step.
+    pub(super) fn simulated(largest: f64, at_step: u64, stopped: Option<u64>) -> Self {
+        let shown = if largest.is_finite() { format!("{largest:?}") } else { "null".into() };
         Drift {
             max_energy_drift: raw(shown),
-            log10_max_energy_drift: Some(value.log10()).filter(|x| x.is_finite()),
-            max_energy_drift_step: drift.at_step(),
+            log10_max_energy_drift: Some(largest.log10()).filter(|x| x.is_finite()),
+            max_energy_drift_step: at_step,
             max_energy_drift_method: "simulated",
-            stopped_at_step: match stopped {
-                Some(SimulationError::NotFinite { step, .. }) => Some(step),
-                _ => None,
-            },
+            stopped_at_step: stopped,
         }
     }
 }

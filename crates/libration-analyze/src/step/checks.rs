@@ -1,9 +1,23 @@
 //! Checks of a request before any work.
 
-use libration::AnySystem;
+use libration::simulation::SimulationError;
+use libration::{AnySystem, Float};
 use libration_settings::limits::{MOST_TURN, find_out_of_range};
 
 use super::{AnalyzeError, Request, Stepping};
+
+/// Fails if the time step or a number of the start is none that a simulation has.
+pub(super) fn check_start(request: &Request) -> Result<(), SimulationError> {
+    let (dt, float) = (request.dt, f64::NAME);
+    if !(dt.is_finite() && dt > 0.0) {
+        return Err(SimulationError::TimeStep { dt, float });
+    }
+    let mut coordinates = request.q.iter().chain(&request.v).copied().enumerate();
+    match coordinates.find(|(_, x)| !x.is_finite()) {
+        None => Ok(()),
+        Some((coordinate, value)) => Err(SimulationError::Start { coordinate, value, float }),
+    }
+}
 
 /// Fails if the motion turns by more than [`MOST_TURN`] in an exact step.
 pub(super) fn check_turn(request: &Request) -> Result<(), AnalyzeError> {

@@ -6,7 +6,7 @@ use libration::analysis::{
 };
 use libration::number::Wide;
 use libration::system::DampedOscillator;
-use libration::{AnyMethod, AnySystem, Elementary, Method, Scalar, State};
+use libration::{AnyMethod, AnySystem, Elementary, Method, Scalar};
 use serde::Serialize;
 
 use super::Request;
@@ -126,12 +126,8 @@ fn period(omega2: f64) -> Wide {
     Wide::from_f64(omega2).sqrt().recip()
 }
 
-/// The largest steps of an oscillator in `D` dimensions from its polynomials.
-pub(super) fn largest_dt<const D: usize>(
-    step: Option<&SymbolicStep>,
-    start: &State<f64, D>,
-    request: &Request,
-) -> Option<LargestDt> {
+/// The largest steps of an oscillator from its polynomials.
+pub(super) fn largest_dt(step: Option<&SymbolicStep>, request: &Request) -> Option<LargestDt> {
     let AnySystem::Oscillator(model) = request.system else { return None };
     let (step, unit) = (step?, period(model.omega2));
     let in_seconds = |z: LargestStep| match z {
@@ -141,7 +137,8 @@ pub(super) fn largest_dt<const D: usize>(
     let (criteria, steps) = (&request.criteria, request.steps);
     let largest = |criterion: &Criterion| step.largest_step(criterion).map(in_seconds);
     let omega = model.omega2.sqrt();
-    let start = OrbitStart::new(&State { q: start.q, v: start.v.map(|v| v / omega) });
+    let turning: Vec<f64> = request.v.iter().map(|v| v / omega).collect();
+    let start = OrbitStart::new(&request.q, &turning);
     let drift = |start| {
         criteria
             .max_drift

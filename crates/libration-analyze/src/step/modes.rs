@@ -28,25 +28,26 @@ pub(super) struct Modes {
 
 impl Modes {
     /// The modes of a step; `exact` is the spectrum of each, if it is known without cancellation.
-    pub(super) fn new<const D: usize>(linear: &Linearisation<D>, exact: Option<Spectrum>) -> Self {
-        let spectrum =
-            |block: UpdateMatrix<Wide, 1>| exact.unwrap_or_else(|| Spectrum::new(&block));
+    pub(super) fn new(linear: &Linearisation, exact: Option<Spectrum>) -> Self {
+        let spectrum = |block: UpdateMatrix<Wide>| exact.unwrap_or_else(|| Spectrum::new(&block));
         match linear.step.decoupled() {
-            Some(blocks) => Modes::decoupled(linear, &blocks.map(spectrum)),
+            Some(blocks) => {
+                let spectra: Vec<Spectrum> = blocks.into_iter().map(spectrum).collect();
+                Modes::decoupled(linear, &spectra)
+            }
             None => Modes::coupled(linear),
         }
     }
 
     /// The modes of decoupled degrees of freedom, in closed form.
-    fn decoupled<const D: usize>(linear: &Linearisation<D>, spectra: &[Spectrum; D]) -> Self {
+    fn decoupled(linear: &Linearisation, spectra: &[Spectrum]) -> Self {
         let excess = largest(spectra.iter().map(Spectrum::radius_minus_one));
-        let frequencies = linear.generator.decoupled().map(|blocks| {
-            blocks.map(|block| match Spectrum::new(&block).eigenvalues {
-                Eigenvalues::Complex { im, .. } => Some(im),
-                _ => None,
-            })
-        });
-        let errors = spectra.iter().zip(frequencies.into_iter().flatten());
+        let frequency = |block: &UpdateMatrix<Wide>| match Spectrum::new(block).eigenvalues {
+            Eigenvalues::Complex { im, .. } => Some(im),
+            _ => None,
+        };
+        let blocks = linear.generator.decoupled().unwrap_or_default();
+        let errors = spectra.iter().zip(blocks.iter().map(frequency));
         let excesses = || spectra.iter().map(Spectrum::determinant_minus_one);
         // (1 + a)(1 + b) − 1; and MᵀJM − J of a block is its excess times J.
         let difference = excesses().fold(Wide::ZERO, |a, b| a + b + a * b);
@@ -70,7 +71,7 @@ impl Modes {
     }
 
     /// The modes of coupled degrees of freedom.
-    fn coupled<const D: usize>(linear: &Linearisation<D>) -> Self {
+    fn coupled(linear: &Linearisation) -> Self {
         let values = eigenvalues(&linear.step);
         let radius = largest(values.iter().map(|z| z.abs()));
         let radius_minus_one = unless_rounding(radius - Wide::one());
@@ -118,7 +119,7 @@ impl Modes {
 }
 
 /// The spectral radius of an exact step minus one, `exp(max Re λ·Δt) − 1` of the generator's eigenvalues `λ`.
-pub(super) fn flow_radius_minus_one<const D: usize>(linear: &Linearisation<D>) -> f64 {
+pub(super) fn flow_radius_minus_one(linear: &Linearisation) -> f64 {
     let rates = largest(eigenvalues(&linear.generator).iter().map(|z| z.re));
     unless_rounding(rates * linear.dt).to_f64().exp_m1()
 }

@@ -1,8 +1,8 @@
 //! Causes of overflows by the stability of a step.
 
-use libration::analysis::{Linearisation, eigenvalues};
+use libration::analysis::{LinearMap, eigenvalues};
 use libration::system::{DampedOscillator, Oscillator};
-use libration::{AnyMethod, AnySystem, Float, Model, State, with_system};
+use libration::{AnyMethod, AnySystem, Float};
 
 use libration::equations::StepProgram;
 use libration_settings::equations::Twin;
@@ -61,7 +61,7 @@ fn step_cause<S: Float>(request: &Request, system: AnySystem) -> Option<String> 
     match linear {
         Some(system) => linear_cause(method, system, dt, S::UNIT_ROUNDOFF, request.float),
         None => {
-            let omega = start_frequency(request, system)?;
+            let omega = start_frequency(request)?;
             let near = AnySystem::Oscillator(Oscillator { omega2: omega * omega });
             let why = instability_cause(method, near, [dt, 1.0])?;
             Some(format!("linearised at the start, {why}"))
@@ -216,19 +216,9 @@ fn instability_cause(
 }
 
 /// The largest angular frequency of the linearisation at the start, in rad/s; none if it does not oscillate, or grows.
-fn start_frequency(request: &Request, system: AnySystem) -> Option<f64> {
-    let dimension = request.system.q.len();
-    with_system!(system, dimension, |model, D| fastest::<D>(&model, request), None)
-}
-
-/// The same for a model. It is not inlined because matrices of 1024 bits are large on the stack.
-#[inline(never)]
-fn fastest<const D: usize>(model: &impl Model<D>, request: &Request) -> Option<f64> {
-    let start = State {
-        q: std::array::from_fn::<_, D, _>(|i| request.system.q[i]),
-        v: std::array::from_fn(|i| request.system.v[i]),
-    };
-    let values = eigenvalues(&Linearisation::generator_of(*model, &start));
+fn start_frequency(request: &Request) -> Option<f64> {
+    let rates = LinearMap::of_rates(request.system.equations.dynamics(), &request.system.start());
+    let values = eigenvalues(&rates);
     let fastest = values.iter().map(|z| [z.re.to_f64(), z.im.to_f64()]);
     let [re, im] = fastest.max_by(|a, b| a[1].total_cmp(&b[1]))?;
     (im > 0.0 && im.is_finite() && re.abs() <= 1e-9 * im).then_some(im)

@@ -71,7 +71,7 @@ impl JointSteps {
     }
 
     /// The matrix of a step of `parts` substeps.
-    fn matrix(&self, joint: &JointNumbers, parts: u32) -> UpdateMatrix<Wide, 1> {
+    fn matrix(&self, joint: &JointNumbers, parts: u32) -> UpdateMatrix<Wide> {
         let [kp, kv, stiffness, damping] = joint.all();
         let [a, b] = match joint.torque {
             Torque::EachSubstep => {

@@ -1,7 +1,7 @@
 //! Energy with clocks of different rates: a separate band for each trajectory.
 
 use libration::State;
-use libration::analysis::{EnergyBand, Linearisation};
+use libration::analysis::{EnergyBand, UpdateMatrix};
 use libration::control::Jitter;
 use libration::integrator::VelocityVerlet;
 use libration_report::notation::count;
@@ -36,7 +36,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         .collect();
     // No rate is beyond √3 deviations; bands widen with the step.
     let fastest = dt * (1.0 + 3.0_f64.sqrt() * RMS);
-    let step = Linearisation::new(VelocityVerlet, model, &State::origin(), fastest).step;
+    let step = UpdateMatrix::of_step(VelocityVerlet, model, &State::origin(), fastest);
     let Some(band) = EnergyBand::new(model, &step) else { return Ok(()) };
     let (low, high) = band.drift_after(&begin, steps);
     let bound = low.abs().max(high.abs());

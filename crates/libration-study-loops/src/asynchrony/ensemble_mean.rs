@@ -3,7 +3,7 @@
 use std::f64::consts::{E, SQRT_2};
 
 use libration::State;
-use libration::analysis::{Linearisation, QuadraticForm};
+use libration::analysis::{QuadraticForm, UpdateMatrix};
 use libration::control::Jitter;
 use libration::integrator::VelocityVerlet;
 use libration::number::Wide;
@@ -179,7 +179,7 @@ fn means(lab: &Lab<'_>, ensemble: &Ensemble, seen: &[Snapshot], record: &mut Rec
 /// Steps, and the amplitude of the mean as a part of the first.
 fn amplitudes(lab: &Lab<'_>, ensemble: &Ensemble, seen: &[Snapshot]) -> Vec<(f64, f64)> {
     let model = lab.config.oscillator.system();
-    let step = Linearisation::new(VelocityVerlet, model, &State::origin(), ensemble.dt).step;
+    let step = UpdateMatrix::of_step(VelocityVerlet, model, &State::origin(), ensemble.dt);
     let form = QuadraticForm::carried_by(&step).map(Wide::to_f64);
     let first = form.at(&start(lab));
     let amplitude = |seen: &Snapshot| {

@@ -1,6 +1,6 @@
 //! Disturbed trajectories compared with undisturbed ones.
 
-use libration::analysis::{Linearisation, QuadraticForm};
+use libration::analysis::{QuadraticForm, UpdateMatrix};
 use libration::control::clock::{Fixed, Gaussian, Jittered, Skewed};
 use libration::control::controller::Force;
 use libration::control::{Clock, Jitter, Latency, Schedule};
@@ -59,7 +59,7 @@ pub(super) fn run(
         let size: f64 = pairs().map(|(_, b)| square(b.q[0], b.v[0])).sum();
         (off / size).sqrt()
     };
-    let step = Linearisation::new(SymplecticEuler, SPRING, &State::origin(), DT).step;
+    let step = UpdateMatrix::of_step(SymplecticEuler, SPRING, &State::origin(), DT);
     let form = QuadraticForm::carried_by(&step).map(Wide::to_f64);
     let pumped = |(a, b): (&Vec<State<f64, 1>>, &Vec<State<f64, 1>>)| {
         let squares = a.iter().zip(b).map(|(a, b)| (form.at(a) / form.at(b)).ln().powi(2));

@@ -1,6 +1,6 @@
 //! A method on the configured oscillator, with a time step and its jitter.
 
-use libration::analysis::{Linearisation, Plant, QuadraticForm, Resonance, StepNoise};
+use libration::analysis::{Plant, QuadraticForm, Resonance, StepNoise, UpdateMatrix};
 use libration::control::{Feedback, Jitter};
 use libration::number::Wide;
 use libration::system::Oscillator;
@@ -87,14 +87,14 @@ impl Setting {
         let off = 1.0 / 1024.0;
         let at = |part: f64| {
             let dt = self.dt * (1.0 + part);
-            Linearisation::new(self.method, self.model, &State::origin(), dt).step.determinant()
+            UpdateMatrix::of_step(self.method, self.model, &State::origin(), dt).determinant()
         };
         (at(off) / at(-off)).ln().to_f64() / (2.0 * off)
     }
 
     /// The ellipse that a steady step carries along, if it does.
     pub(super) fn form(&self) -> Option<QuadraticForm<f64>> {
-        let step = Linearisation::new(self.method, self.model, &State::origin(), self.dt).step;
+        let step = UpdateMatrix::of_step(self.method, self.model, &State::origin(), self.dt);
         let form = QuadraticForm::carried_by(&step);
         let form = form.map(|x: Wide| (x / form.vv).to_f64());
         (form.determinant() > 0.0).then_some(form)

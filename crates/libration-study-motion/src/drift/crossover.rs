@@ -1,6 +1,6 @@
 //! The number of steps after which the energy loss of RK4 exceeds the oscillation of velocity Verlet.
 
-use libration::analysis::{EnergyBand, Linearisation, Spectrum, forecast_drift};
+use libration::analysis::{EnergyBand, Spectrum, UpdateMatrix, forecast_drift};
 use libration::simulation::{EnergyDrift, Sample, Simulator};
 use libration::{Float, Method, Model, State, integrator};
 use libration_report::Record;
@@ -112,7 +112,7 @@ fn predict(lab: &Lab<'_>, dt: f64, reach: u64) -> Option<Prediction> {
     let config = lab.config;
     let oscillator = config.oscillator.system();
     let start = State { q: [config.start.q], v: [config.start.v] };
-    let step = |m: Method| Linearisation::new(m, oscillator, &start, dt).step;
+    let step = |m: Method| UpdateMatrix::of_step(m, oscillator, &start, dt);
     let (rk4, verlet) = (step(Method::Rk4), step(Method::VelocityVerlet));
     // E_n = det Mⁿ·E₀ for RK4.
     let loss = Spectrum::new(&rk4).determinant_minus_one().to_f64().ln_1p();

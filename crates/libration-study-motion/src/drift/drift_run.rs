@@ -1,7 +1,7 @@
 //! One integrator at one time step, for the whole horizon.
 
 use libration::State;
-use libration::analysis::{EnergyBand, Linearisation, Spectrum, forecast_drift};
+use libration::analysis::{EnergyBand, Spectrum, UpdateMatrix, forecast_drift};
 use libration_report::notation::{count, number, power_of_ten};
 use libration_report::record::{Cell, Series};
 use libration_study::StudyError;
@@ -51,9 +51,9 @@ pub(super) struct Worst {
 impl DriftRun {
     pub(super) fn run(setting: &Setting) -> Result<Self, StudyError> {
         let Setting { method, dt, steps, oscillator, start } = *setting;
-        let linear = Linearisation::new(method, oscillator, &start, dt);
-        let band = EnergyBand::new(oscillator, &linear.step);
-        let spectrum = Spectrum::new(&linear.step);
+        let step = UpdateMatrix::of_step(method, oscillator, &start, dt);
+        let band = EnergyBand::new(oscillator, &step);
+        let spectrum = Spectrum::new(&step);
         let angle = spectrum.angle().to_f64();
         let keeps_areas = spectrum.determinant_minus_one().is_zero();
         let bounds = |n: u64| match &band {
@@ -62,7 +62,7 @@ impl DriftRun {
         };
         let mut watch = DriftObserver::new(steps, bounds);
         let mut invariant =
-            band.filter(|_| keeps_areas).map(|_| Invariant::new(&linear.step, &start, steps));
+            band.filter(|_| keeps_areas).map(|_| Invariant::new(&step, &start, steps));
         setting.simulate(start, |sample, drift| {
             watch.see(sample, drift);
             invariant.iter_mut().for_each(|invariant| invariant.see(sample));
@@ -77,21 +77,20 @@ impl DriftRun {
         };
         let predicted_running =
             sampled.iter().map(|&n| if n < filled { f64::NAN } else { size(n) }).collect();
-        let forecast = forecast_drift(oscillator, &linear.step, &start, steps);
+        let forecast = forecast_drift(oscillator, &step, &start, steps);
         let predicted = forecast.map_or(0.0, |f| f.drift.to_f64());
         let predicted_log10 = forecast.map_or(f64::NEG_INFINITY, |f| f.drift.log10().to_f64());
         let worst = band.and_then(|band| {
             let start = band.worst_start()?;
-            let worst = forecast_drift(oscillator, &linear.step, &start, steps)?;
+            let worst = forecast_drift(oscillator, &step, &start, steps)?;
             let mut measured = 0.0_f64;
             setting.simulate(start, |_, drift| measured = measured.max(drift.abs())).ok()?;
             let predicted = worst.drift.to_f64();
             let band = phased.map(|band| band.drift_after(&start, 0));
             Some(Worst { start, predicted, measured, band })
         });
-        let overflow = watch
-            .overflow
-            .map(|measured| Overflow::new(measured, oscillator, &linear.step, &start));
+        let overflow =
+            watch.overflow.map(|measured| Overflow::new(measured, oscillator, &step, &start));
         Ok(DriftRun {
             setting: *setting,
             predicted_log10,

@@ -19,7 +19,7 @@ pub(super) struct Invariant {
 
 impl Invariant {
     /// The form that `step` carries along, for a run of `steps` steps from `start`.
-    pub(super) fn new(step: &UpdateMatrix<Wide, 1>, start: &State<f64, 1>, steps: u64) -> Self {
+    pub(super) fn new(step: &UpdateMatrix<Wide>, start: &State<f64, 1>, steps: u64) -> Self {
         let form = QuadraticForm::carried_by(step);
         let initial = form.at(&start.map(Wide::from_f64));
         Invariant {

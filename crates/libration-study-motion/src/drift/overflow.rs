@@ -21,7 +21,7 @@ impl Overflow {
     pub(super) fn new(
         measured: u64,
         oscillator: Oscillator<f64>,
-        step: &UpdateMatrix<Wide, 1>,
+        step: &UpdateMatrix<Wide>,
         start: &State<f64, 1>,
     ) -> Self {
         let growth = 2.0 * Spectrum::new(step).radius_minus_one().to_f64().ln_1p();
@@ -43,7 +43,7 @@ impl Overflow {
 /// by bisection, and the first that does, by walking on from it; `about` bounds the search.
 fn predict(
     oscillator: Oscillator<f64>,
-    step: &UpdateMatrix<Wide, 1>,
+    step: &UpdateMatrix<Wide>,
     start: &State<f64, 1>,
     about: u64,
 ) -> u64 {

@@ -1,6 +1,6 @@
 //! Orbits in phase space.
 
-use libration::analysis::{EnergyBand, Linearisation};
+use libration::analysis::{EnergyBand, UpdateMatrix};
 use libration::simulation::{Every, Sample, Simulator};
 use libration::{Model, State, with_method};
 use libration_report::Record;
@@ -31,8 +31,8 @@ pub(super) fn trace(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError
         with_method!(method, |m| {
             Simulator::new(system, m, start, dt)?.run(steps, &mut watch).ok();
         });
-        let linear = Linearisation::new(method, oscillator, &start, dt);
-        let curve = EnergyBand::new(oscillator, &linear.step)
+        let step = UpdateMatrix::of_step(method, oscillator, &start, dt);
+        let curve = EnergyBand::new(oscillator, &step)
             .map(|band| band.curve(&start, 180))
             .unwrap_or_default();
         Ok((method, [x, y], curve))

@@ -48,7 +48,8 @@ impl AccuracyTarget {
         match self.kind {
             Kind::Energy if step.is_symplectic() => {
                 // The band does not depend on the horizon.
-                let (tolerance, start) = (self.tolerance, Some(OrbitStart::new(&self.start)));
+                let (tolerance, start) =
+                    (self.tolerance, Some(OrbitStart::new(&self.start.q, &self.start.v)));
                 let criterion = Criterion::EnergyDrift { tolerance, steps: 1, start };
                 step.largest_step(&criterion).map(LargestStep::to_f64)
             }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use libration::analysis::{EnergyBand, Linearisation, OrbitError, SymbolicStep};
+use libration::analysis::{EnergyBand, OrbitError, SymbolicStep, UpdateMatrix};
 use libration::simulation::{EnergyDrift, Sample, Simulator};
 use libration::system::Oscillator;
 use libration::{Elementary, Float, Method, Model, State, with_method};
@@ -112,7 +112,7 @@ fn series(
 /// Returns bounds of the errors over all phases of the orbit.
 fn bounds(method: Method, start: &State<f64, 1>, z: f64, steps: u64) -> Option<Errors> {
     let unit = Oscillator { omega2: 1.0 };
-    let step = Linearisation::new(method, unit, start, z).step;
+    let step = UpdateMatrix::of_step(method, unit, start, z);
     let slip = OrbitError::new(&SymbolicStep::new(method)?, z)?;
     let (low, high) = EnergyBand::new(unit, &step)?.drift_after(start, steps);
     // Along an ellipse of axes κ : 1 the angle runs ahead of the phase by up to asin(tanh ln κ), and

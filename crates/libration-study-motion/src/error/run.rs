@@ -1,6 +1,6 @@
 //! One integrator compared with the exact solution.
 
-use libration::analysis::{ErrorForecast, Linearisation, UpdateMatrix};
+use libration::analysis::{ErrorForecast, UpdateMatrix};
 use libration::number::{TwoFloat, Wide};
 use libration::simulation::{Sample, Simulator};
 use libration::system::Oscillator;
@@ -53,7 +53,7 @@ impl Setting {
     /// The forecast of the shipped step.
     pub(super) fn forecast(&self) -> Option<ErrorForecast> {
         let Setting { method, oscillator, start, dt, .. } = *self;
-        let step = Linearisation::new(method, oscillator, &start, dt).step;
+        let step = UpdateMatrix::of_step(method, oscillator, &start, dt);
         ErrorForecast::new(oscillator, &step, dt, &start)
     }
 
@@ -88,7 +88,7 @@ impl Setting {
 /// Follows a run beside the exact solution.
 struct ErrorObserver<'a> {
     /// The exact flow of one step.
-    rotation: UpdateMatrix<TwoFloat, 1>,
+    rotation: UpdateMatrix<TwoFloat>,
     exact: State<TwoFloat, 1>,
     sampled: &'a [u64],
     aligned: SumOfSquares,
@@ -131,13 +131,13 @@ impl<'a> ErrorObserver<'a> {
 }
 
 /// The exact flow over `dt` as a matrix.
-fn rotation(oscillator: Oscillator<f64>, dt: f64) -> UpdateMatrix<TwoFloat, 1> {
+fn rotation(oscillator: Oscillator<f64>, dt: f64) -> UpdateMatrix<TwoFloat> {
     let omega = Wide::from_f64(oscillator.omega2).sqrt();
     let (sin, cos) = (omega * Wide::from_f64(dt)).sin_cos();
     let two = TwoFloat::from;
     UpdateMatrix {
-        dq: [State { q: [two(cos)], v: [two(-omega * sin)] }],
-        dv: [State { q: [two(sin / omega)], v: [two(cos)] }],
+        dq: State { q: [two(cos)], v: [two(-omega * sin)] },
+        dv: State { q: [two(sin / omega)], v: [two(cos)] },
     }
 }
 

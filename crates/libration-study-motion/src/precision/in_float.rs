@@ -2,9 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use libration::analysis::{
-    EnergyBand, Linearisation, LocalRounding, QuadraticForm, Spectrum, UpdateMatrix,
-};
+use libration::analysis::{EnergyBand, LocalRounding, QuadraticForm, Spectrum, UpdateMatrix};
 use libration::number::{TwoFloat, Wide};
 use libration::system::Oscillator;
 use libration::{Float, Integrator, Model, Scalar, State};
@@ -26,7 +24,7 @@ pub(super) struct InFloat<I, F> {
     /// The oscillator with the parameters that the float has.
     pub(super) model: Oscillator<f64>,
     /// The step without rounding.
-    pub(super) matrix: UpdateMatrix<Wide, 1>,
+    pub(super) matrix: UpdateMatrix<Wide>,
     /// The quadratic form of that step; conserved if the determinant is one.
     form: QuadraticForm<TwoFloat>,
     band: EnergyBand,
@@ -51,7 +49,7 @@ impl<I: Integrator, F: Float> InFloat<I, F> {
         if ![model.omega2, rounded(dt), energy].into_iter().all(sound) {
             return None;
         }
-        let matrix = Linearisation::new(method, model, &at, rounded(dt)).step;
+        let matrix = UpdateMatrix::of_step(method, model, &at, rounded(dt));
         Some(InFloat {
             method,
             system: Model::<1>::on::<F>(&model),

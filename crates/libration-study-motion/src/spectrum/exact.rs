@@ -1,24 +1,16 @@
 //! The oscillator itself, before any step.
 
-use libration::analysis::{Eigenvalues, Linearisation, Spectrum};
-use libration::{Float, State, integrator};
+use libration::analysis::{Eigenvalues, Spectrum, UpdateMatrix};
+use libration::{Float, State};
 use libration_report::record::{Finding, Record, Tolerance};
 use libration_study::Config;
-
-use crate::spectrum::SpectrumSettings;
 
 /// The eigenvalues of the rate of change, which duals read off the shipped force.
 pub(super) fn eigenvalues(config: &Config, record: &mut Record) {
     let start = State { q: [config.start.q], v: [config.start.v] };
     let oscillator = config.oscillator.system();
-    // The generator does not depend on the integrator or the step.
-    let any = Linearisation::new(
-        integrator::Leapfrog,
-        oscillator,
-        &start,
-        config.get::<SpectrumSettings>().dt,
-    );
-    let (re, im) = match Spectrum::new(&any.generator).eigenvalues {
+    let rates = UpdateMatrix::of_rates(oscillator, &start);
+    let (re, im) = match Spectrum::new(&rates).eigenvalues {
         Eigenvalues::Complex { re, im } => (re.to_f64(), im.to_f64()),
         Eigenvalues::Real(larger, _) => (larger.to_f64(), 0.0),
         Eigenvalues::Double { value, .. } => (value.to_f64(), 0.0),

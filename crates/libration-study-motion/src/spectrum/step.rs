@@ -1,6 +1,7 @@
 //! One integrator at one step: theory and simulation.
 
 use libration::analysis::{Eigenvalues, Linearisation, Spectrum, UpdateMatrix};
+use libration::equations::{Dynamics, StepProgram};
 use libration::number::Wide;
 use libration::simulation::Simulator;
 use libration::system::Oscillator;
@@ -30,9 +31,12 @@ impl Theory {
     pub(super) fn of(method: Method, oscillator: Oscillator<f64>, dt: f64) -> Self {
         // The step of a linear system is the same about every state.
         let anywhere = State { q: [1.0], v: [0.0] };
-        let linear = Linearisation::new(method, oscillator, &anywhere, dt);
-        let spectrum = Spectrum::new(&linear.step);
-        let exact = match Spectrum::new(&linear.generator).eigenvalues {
+        let dynamics = Dynamics::of::<1>(&oscillator, None);
+        let linear =
+            Linearisation::new(&StepProgram::of(method, &dynamics), &dynamics, &[1.0, 0.0], dt);
+        let spectrum = Spectrum::new(&UpdateMatrix::of_step(method, oscillator, &anywhere, dt));
+        let rates = UpdateMatrix::of_rates(oscillator, &anywhere);
+        let exact = match Spectrum::new(&rates).eigenvalues {
             Eigenvalues::Complex { im, .. } => im * linear.dt,
             _ => Wide::ZERO,
         };
@@ -120,7 +124,7 @@ impl Run {
         dt: f64,
         steps: u64,
         theory: &Theory,
-        after: &UpdateMatrix<f64, 1>,
+        after: &UpdateMatrix<f64>,
     ) -> Self {
         let exact = oscillator.omega2.sqrt() * dt;
         let condition = condition(method, exact, steps);
@@ -195,7 +199,7 @@ fn fundamental(
     oscillator: Oscillator<f64>,
     dt: f64,
     steps: u64,
-) -> Result<Option<UpdateMatrix<f64, 1>>, StudyError> {
+) -> Result<Option<UpdateMatrix<f64>>, StudyError> {
     let run = |q: f64, v: f64| -> Result<Option<State<f64, 1>>, StudyError> {
         let start = State { q: [q], v: [v] };
         let mut simulator =
@@ -205,8 +209,8 @@ fn fundamental(
         Ok(Some(simulator.sample().state).filter(|_| finished))
     };
     let columns = run(1.0, 0.0)?.zip(run(0.0, 1.0)?);
-    let matrix = columns.map(|(dq, dv)| UpdateMatrix { dq: [dq], dv: [dv] });
-    let measurable = |m: &UpdateMatrix<f64, 1>| {
+    let matrix = columns.map(|(dq, dv)| UpdateMatrix { dq, dv });
+    let measurable = |m: &UpdateMatrix<f64>| {
         let products = [m.entry(0, 0) * m.entry(1, 1), m.entry(0, 1) * m.entry(1, 0)];
         let squares = [m.trace() * m.trace(), (m.entry(0, 0) - m.entry(1, 1)).powi(2)];
         products.iter().chain(&squares).all(|x| x.is_finite())
@@ -221,7 +225,7 @@ pub(super) fn defects(
     dt: f64,
 ) -> (Measured, Measured) {
     with_method!(method, |m| {
-        let step = UpdateMatrix::<f64, 1>::from_map(|e| m.step(&oscillator, e, dt));
+        let step = UpdateMatrix::<f64>::from_map(|e| m.step(&oscillator, e, dt));
         let back = UpdateMatrix::from_map(|e| m.step(&oscillator, e, -dt));
         let largest = step.rows().concat().iter().fold(1.0_f64, |a, x| a.max(x.abs()));
         // An entry carries a few roundings of its own size in each substep, and a defect sums products
@@ -236,7 +240,7 @@ pub(super) fn defects(
 }
 
 /// The largest absolute value of an eigenvalue of a `2 × 2` matrix of floats.
-pub(super) fn radius(matrix: &UpdateMatrix<f64, 1>) -> f64 {
+pub(super) fn radius(matrix: &UpdateMatrix<f64>) -> f64 {
     let (half, determinant) = (matrix.trace() / 2.0, matrix.determinant());
     let discriminant = half * half - determinant;
     if discriminant < 0.0 { determinant.sqrt() } else { half.abs() + discriminant.sqrt() }
@@ -245,7 +249,7 @@ pub(super) fn radius(matrix: &UpdateMatrix<f64, 1>) -> f64 {
 /// One step of `method` on a mode `q̈ = −ω²q − γq̇` with eigenvalues `λ, λ̄`, at `Δt = 1`.
 pub(super) fn radius_at(method: Method, re: f64, im: f64) -> f64 {
     let mode = libration::system::DampedOscillator { omega2: re * re + im * im, gamma: -2.0 * re };
-    with_method!(method, |m| radius(&UpdateMatrix::<f64, 1>::from_map(|e| {
+    with_method!(method, |m| radius(&UpdateMatrix::<f64>::from_map(|e| {
         m.step(&mode, e, f64::one())
     })))
 }

@@ -1,6 +1,6 @@
 //! The largest step against the horizon, and the crossovers of Verlet and RK4.
 
-use libration::analysis::{LargestStep, Linearisation, Spectrum};
+use libration::analysis::{LargestStep, Spectrum, UpdateMatrix};
 use libration::simulation::{EnergyDrift, Sample, Simulator};
 use libration::system::Oscillator;
 use libration::{Method, Model, State, integrator};
@@ -55,8 +55,8 @@ pub(super) fn crossovers(lab: &Lab<'_>, record: &mut Record) -> Result<(), Study
         let case = Case { method: Method::VelocityVerlet, limit, steps: 1 };
         let Some(z) = root(config, &case).map(LargestStep::to_f64) else { return Ok(None) };
         let unit = Oscillator { omega2: 1.0 };
-        let rk4 = Linearisation::new(integrator::Rk4, unit, &start(config), z);
-        let loss = Spectrum::new(&rk4.step).determinant_minus_one().to_f64().ln_1p();
+        let rk4 = UpdateMatrix::of_step(integrator::Rk4, unit, &start(config), z);
+        let loss = Spectrum::new(&rk4).determinant_minus_one().to_f64().ln_1p();
         // Beyond 2√2 RK4 gains energy, and at a tolerance of one it can never lose it all.
         if !(loss < 0.0 && tolerance < 1.0) {
             return Ok(None);

@@ -83,7 +83,8 @@ pub(super) fn start(config: &Config) -> State<f64, 1> {
 /// The largest step for a case as a root, in units in which `ω = 1`; none where it has no such form.
 pub(super) fn root(config: &Config, case: &Case) -> Option<LargestStep> {
     let step = SymbolicStep::new(case.method)?;
-    let (steps, start) = (case.steps, OrbitStart::new(&start(config)));
+    let State { q, v } = start(config);
+    let (steps, start) = (case.steps, OrbitStart::new(&q, &v));
     step.largest_step(&match case.limit {
         Limit::Amplitude(limit) => Criterion::Amplitude { limit, steps, start },
         Limit::Drift(tolerance) => Criterion::EnergyDrift { tolerance, steps, start: Some(start) },

@@ -147,7 +147,7 @@ fn resolution(step: &SymbolicStep, edge: f64, outside: f64) -> f64 {
 
 fn spectrum(step: &SymbolicStep, z: f64) -> Spectrum {
     let z = Wide::from_f64(z);
-    let matrix: UpdateMatrix<Wide, 1> = step.matrix.map(|p| p.eval_wide(z));
+    let matrix: UpdateMatrix<Wide> = step.matrix.map(|p| p.eval_wide(z));
     Spectrum::new(&matrix)
 }
 
