@@ -11,6 +11,9 @@ DT, DAMPING = 0.01, 0.1
 ROD = '<geom type="capsule" fromto="0 0 0 .5 0 0" size=".03" mass="1" contype="0" conaffinity="0"/>'
 
 
+SITES = '<worldbody><site name="world"/><body pos="0 0 1"><joint name="k" axis="1 0 0" stiffness="9"/>' + ROD + "<site name='foot'/></body></worldbody>"
+
+
 def model_of(servo, joint="", option="", inside="", more=""):
     return mujoco.MjModel.from_xml_string(
         f'<mujoco><option gravity="0 0 0" timestep="{DT}" {option}>{inside}</option><worldbody><body><joint name="j" axis="0 1 0" '
@@ -100,6 +103,11 @@ def test_a_motor_at_its_force_limit_beside_a_servo_changes_no_limit_of_it():
         model_of(servo(1e5, 'group="1"'), option='actuatorgroupdisable="1"'),
         model_of(servo(1e5, 'group="30"'), 'stiffness="1"', option='actuatorgroupdisable="0 30"'),
         model_of(servo(1e5, 'gear="0"')),
+        model_of('<position name="s" joint="j" kp="10" gear="0"/>'),
+        model_of('<position name="s" joint="j" kp="1e5"/>', inside='<flag actuation="disable"/>'),
+        model_of('<position name="s" tendon="t" kp="10"/>', more='<tendon><fixed name="t"><joint joint="j" coef="0"/></fixed></tendon>'),
+        # The site is on the axis.
+        model_of('<position name="s" site="foot" refsite="world" kp="100" gear="0 1 0 0 0 0"/>', more=SITES),
     ],
 )
 def test_servos_that_do_not_act_have_no_verdict(model):

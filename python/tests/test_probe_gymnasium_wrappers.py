@@ -301,6 +301,61 @@ def test_a_memory_of_the_environment_itself_is_found():
     assert kinds(probe.gymnasium(Slider(stale=True))) == ["stale-observation"]
 
 
+class Filtered(Slider):
+    """The same mass, whose action goes through a filter with a gain of 1; its memory is a number or an array."""
+
+    def __init__(self, part, as_array=False):
+        super().__init__()
+        self.part, self.filtered = part, np.zeros(1) if as_array else 0.0
+
+    def step(self, action):
+        self.filtered = self.filtered + self.part * ((action if isinstance(self.filtered, np.ndarray) else float(action[0])) - self.filtered)
+        return super().step(np.atleast_1d(self.filtered))
+
+
+@pytest.mark.parametrize("as_array", [False, True])
+@pytest.mark.parametrize("part", [0.02, 0.1, 0.5, 0.9])
+@pytest.mark.parametrize("action", [None, [0.3]])
+def test_a_filter_of_the_environment_itself_is_found_though_it_forgets_slowly(part, as_array, action):
+    # It takes 36/part calls until a filter has forgotten an action to all digits.
+    report = probe.gymnasium(Filtered(part, as_array), action)
+    assert report.verdict["outcome"] == "fault"
+    if "late-command" in kinds(report):
+        # The mean age of the actions in the filter.
+        assert report.hidden_latency[0]["late_steps"] == pytest.approx((1 - part) / part, rel=1e-6)
+    else:
+        assert "hidden-state" in kinds(report)
+
+
+class Queued(Slider):
+    """The same mass with a queue of late actions, which a reset fills."""
+
+    def __init__(self, steps):
+        super().__init__()
+        self.steps, self.state, self.queue = steps, np.zeros(2), []
+
+    def reset(self, *, seed=None, options=None):
+        self.queue = [np.zeros(1)] * self.steps
+        return super().reset(seed=seed)
+
+    def step(self, action):
+        self.queue.append(action)
+        return super().step(self.queue.pop(0))
+
+
+@pytest.mark.parametrize("steps", [1, 3])
+@pytest.mark.parametrize("is_reset", [False, True])
+def test_a_queue_that_a_reset_fills_is_found_before_a_reset_too(steps, is_reset):
+    env = Queued(steps)
+    env.state = np.array([0.01, 0.0])
+    if is_reset:
+        env.reset(seed=0)
+    report = probe.gymnasium(env)
+    assert "late-command" in kinds(report) and report.hidden_latency[0]["late_steps"] == steps
+    # The point is that of the environment, and the environment stays as it is.
+    assert report.results["state"] == list(env.state) and len(env.queue) == (steps if is_reset else 0)
+
+
 def test_an_attribute_in_place_of_a_discrete_action_is_as_late_as_the_action():
     report = probe.gymnasium(Late(made("CartPole-v1"), 1), 0.0, action_attribute="force_mag", state=[0.0] * 4)
     force, action = report.hidden_latency

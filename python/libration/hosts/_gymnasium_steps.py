@@ -127,11 +127,8 @@ class Steps:
 
     def _one(self, state: Array, action: Array, dt: float) -> Array:
         inner, (state_name, clock, action_name) = self.inner, self.names
-        attributes = vars(inner)
         if not self.keeps_attributes:
-            attributes.update(self.plain)
-            if self.containers:
-                attributes.update(copy.deepcopy(self.containers))
+            self._restore()
         holds_generator = self.holds_generator and self.bits is not None
         if holds_generator:
             inner.np_random.bit_generator.state = self.bits
@@ -158,6 +155,13 @@ class Steps:
         if self.angles:
             after[self.angles] -= 2 * np.pi * np.round((after[self.angles] - state[self.angles]) / (2 * np.pi))
         return after
+
+    def _restore(self) -> None:
+        """Set all plain attributes to what they were."""
+        attributes = vars(self.inner)
+        attributes.update(self.plain)
+        if self.containers:
+            attributes.update(copy.deepcopy(self.containers))
 
     def settle(self) -> None:
         """Leave the generator alone from now on if no step has drawn from it."""
@@ -197,6 +201,29 @@ class Steps:
                 responses.add(base, [first, *repeated(CALLS)])
             responses.drop_strays(base, repeated(CONTROLS))
         return responses
+
+    def remembers(self, state: Array, action: Array, changes: Sequence[tuple[Array, Array, Any]], dt: float) -> bool:
+        """Whether attributes that live on change calls after a changed one: each sequence of calls begins with the attributes as they were.
+
+        A memory that only fades, such as a filter of actions, is found by this too: it never is what it was before.
+        """
+        base_fixed = self.fixed
+
+        def sequence(x: Array, u: Array, fixed: Any) -> list[tuple[bytes, bytes]]:
+            self._restore()
+            found = []
+            for call in range(1 + CALLS):
+                first = call == 0
+                self.fixed = fixed if first else base_fixed
+                after = self._one(x if first else state, u if first else action, dt)
+                found.append((after.tobytes(), b"" if self.observation is None else self.observation.tobytes()))
+            self.fixed = base_fixed
+            return found[1:]
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            base, again = (sequence(state, action, base_fixed) for _ in range(2))
+            return base == again and any(sequence(*changed) != base for changed in changes)
 
     def other_actions(self) -> list[int]:
         """Return the discrete actions besides the one that is fixed."""

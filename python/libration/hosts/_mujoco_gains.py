@@ -34,6 +34,10 @@ _INTEGRATORS = {
 }
 
 
+NO_ARM = 1e-12
+"""Largest moment arm, in m or as a ratio, that is none."""
+
+
 class ServoGains:
     """The gains of the servos of a model, which are changed in place without a change of their forces at the point."""
 
@@ -55,7 +59,7 @@ class ServoGains:
         names = state_names(self.model)
         found = []
         for place, k in enumerate(self.servos):
-            acts = np.flatnonzero(np.abs(self.moments[place]) > 1e-12)
+            acts = np.flatnonzero(self.moments[place])
             answer = np.zeros((1, self.model.nv))
             mujoco.mj_solveM(self.model, self.forward, answer, self.moments[place : place + 1])
             mobility = float(answer[0] @ self.moments[place])
@@ -88,7 +92,8 @@ def _moments(model: Any, point: Any, outputs: list[int]) -> Array:
         data.qvel[number] = 1.0
         mujoco.mj_fwdVelocity(model, data)
         found[:, number] = np.asarray(data.actuator_velocity)[outputs]
-    return found
+    # A straight leg has a moment arm of roundings.
+    return np.where(np.abs(found) > NO_ARM, found, 0.0)
 
 
 @check_keywords

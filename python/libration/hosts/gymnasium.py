@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import numbers
+import warnings
 from typing import Any, Sequence
 
 import gymnasium
@@ -47,7 +49,7 @@ def gymnasium_host(
 ) -> Host:
     """Return a Gymnasium environment as a step of its internal state.
 
-    The state is that of the environment without wrappers, in the precision that it has inside, not its observation. Actions go through the
+    An environment that was never reset is reset first, and keeps its state. The state is that of the environment without wrappers, in the precision that it has inside, not its observation. Actions go through the
     wrappers, and observations are those that ``step`` returns. Wrappers of rewards, records and time limits are left out; those whose
     observations are no function of a state, too, and the audit names these. Each call sets all plain attributes of the environment to what
     they were, unless they are a memory of earlier calls. The environment itself is never changed: the host has a copy.
@@ -81,6 +83,7 @@ def gymnasium_host(
     inner = outer.unwrapped
     kind = next((name for name in _KNOWN if type(inner).__name__.startswith(name)), None)
     named, input_name, positions, angles = _KNOWN[kind] if kind else ((), "action (command)", (), ())
+    _reset_once(outer, state_attribute)
     title = inner.spec.id if getattr(inner, "spec", None) is not None else type(inner).__name__
     clock = _clock(inner, dt_attribute, title, dt is not None)
     start = _start(inner, state, state_attribute, np.zeros(len(named)) if kind else None, title)
@@ -154,10 +157,23 @@ def _memory(simulation: Steps, start: Array, vector: Array, dt: float, is_wrappe
     if found is False:
         # The memory may be in attributes, which were the same before each call.
         simulation.keeps_attributes = True
-        if simulation.has_memory(start, vector, changes, dt) is True:
+        if simulation.has_memory(start, vector, changes, dt) is True or simulation.remembers(start, vector, changes, dt):
             return True
         simulation.keeps_attributes = False
     return found is True or (found is None and is_wrapped)
+
+
+def _reset_once(outer: Any, name: str) -> None:
+    """Reset an environment that never was, with its state as it is: a queue of late actions may be filled by then only."""
+    inner = outer.unwrapped
+    if getattr(inner, "_np_random", None) is not None:
+        return
+    before = copy.deepcopy(getattr(inner, name, None))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        outer.reset(seed=0)
+    if before is not None:
+        setattr(inner, name, before)
 
 
 def _unexamined(simulation: Steps, kept: Sequence[str], left_out: Sequence[str]) -> list[str]:

@@ -14,6 +14,7 @@ impl GainReport {
         self.growth_in_continuous_time = measured.growth_of_system;
         self.unstable_without_servos = measured.unstable_without_servos.is_some();
         self.largest_factor = measured.largest_factor;
+        self.has_kp = measured.servos.iter().any(|servo| servo.kp != 0.0);
         self.least_factor = measured.least_factor;
         self.fewest_substeps = measured.fewest_substeps;
         // Limits of the servo model are not those of the simulator.

@@ -58,7 +58,8 @@ fn end<E>(
     holds: &mut dyn FnMut(f64) -> Result<bool, E>,
 ) -> Result<Option<f64>, E> {
     let first = if from > 0.0 { from * ratio } else { unit };
-    if ratio < 1.0 && from <= 0.0 {
+    // Without a unit there is nothing to try.
+    if ratio < 1.0 && from <= 0.0 || first <= 0.0 {
         return Ok(None);
     }
     let (mut inside, mut outside) = (from, first);
@@ -103,5 +104,7 @@ mod tests {
         assert!(near(window.least, 3.0) && near(window.most, 9.0));
         assert_eq!(limits(2.0, |_| true), GainLimits { least: 0.0, most: f64::INFINITY });
         assert_eq!(limits(2.0, |_| false), GainLimits::NONE);
+        let without_unit = GainLimits::search(0.0, 0.0, 1e-9, &mut |_| Ok::<_, ()>(true));
+        assert_eq!(without_unit, Ok(GainLimits { least: 0.0, most: f64::INFINITY }));
     }
 }

@@ -32,12 +32,26 @@ pub struct ServoRow {
     pub kp: f64,
     /// Its gain of velocity.
     pub kv: f64,
-    /// Its largest gain of position; 0 if none is stable.
+    /// Its largest gain of position; 0 if none is stable, and not a number if the servo moves nothing at the point.
     #[serde(serialize_with = "limit")]
     pub largest_kp: f64,
     /// Its largest gain of velocity; 0 if none is stable.
     #[serde(serialize_with = "limit")]
     pub largest_kv: f64,
+}
+
+impl ServoRow {
+    /// A servo that moves nothing at the point, where no gain of it changes the step.
+    fn without_limits(servo: &ServoGain) -> Self {
+        ServoRow {
+            name: servo.name.clone(),
+            joint: servo.joint.clone(),
+            kp: servo.kp,
+            kv: servo.kv,
+            largest_kp: f64::NAN,
+            largest_kv: f64::NAN,
+        }
+    }
 }
 
 /// What the step of the simulator does with the gains.
@@ -207,6 +221,11 @@ impl MeasuredGains {
                 values[k] = value;
                 values
             };
+            if servo.inertia <= 0.0 {
+                self.servos.push(ServoRow::without_limits(servo));
+                self.not_searched.remove(0);
+                continue;
+            }
             // Gains at which the step of the servo alone is about unstable.
             let [stiff, thick] = [2, 1].map(|power| servo.inertia / search.dt.powi(power));
             let of_kp = |value: f64| -> Gains { (with(&kp, value), kv.clone()) };

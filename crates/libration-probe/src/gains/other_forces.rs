@@ -26,7 +26,9 @@ pub struct OtherForces {
 impl OtherForces {
     /// Why a step that does not grow leaves it unknown whether the gains hold.
     pub(super) fn reasons(&self) -> Vec<String> {
-        let none = self.without_gains.then(|| "no actuator is a servo with gains".to_owned());
+        let none = self
+            .without_gains
+            .then(|| "there are no gains: no actuator is a servo with gains".to_owned());
         let commanded = (!self.commanded.is_empty()).then(|| {
             format!(
                 "the effect of {} on the motion changes with the command, and only that of the point was examined",

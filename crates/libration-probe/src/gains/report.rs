@@ -65,6 +65,9 @@ pub struct GainReport {
     /// Servos that do not act, in words.
     #[serde(skip)]
     pub(super) idle: Vec<String>,
+    /// Whether a gain of position is not 0, so that they have a common factor.
+    #[serde(skip)]
+    pub(super) has_kp: bool,
     /// What acts besides the servos.
     #[serde(skip)]
     pub(super) others: OtherForces,
@@ -176,7 +179,11 @@ pub fn gains(
         is_known: own.is_known,
         saturated: Vec::new(),
         idle: Vec::new(),
-        others: OtherForces::default(),
+        has_kp: servos.kp.largest() > 0.0,
+        others: OtherForces {
+            without_gains: servos.kp.largest() == 0.0 && servos.kv.largest() == 0.0,
+            ..OtherForces::default()
+        },
         is_withheld: false,
         largest_factor: own.largest_factor,
         least_factor: own.least_factor,

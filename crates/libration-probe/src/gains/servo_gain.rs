@@ -12,7 +12,7 @@ pub struct ServoGain {
     pub kp: f64,
     /// Its gain of velocity.
     pub kv: f64,
-    /// The inertia that it moves with all others free.
+    /// The inertia that it moves with all others free; 0 of a servo that moves nothing at the point.
     pub inertia: f64,
     /// The joint on which it acts; none if there are several.
     pub joint: Option<String>,

@@ -74,7 +74,7 @@ impl GainReport {
         match self.largest_factor {
             _ if self.is_at_limit && self.measured.is_none() => ".".to_owned(),
             x if x.is_nan() => ".".to_owned(),
-            f64::INFINITY if self.holds => {
+            f64::INFINITY if self.holds && self.has_kp => {
                 "; no larger gain of position was found that does not hold.".to_owned()
             }
             f64::INFINITY => ".".to_owned(),

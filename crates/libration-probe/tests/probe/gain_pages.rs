@@ -1,5 +1,7 @@
 //! Words and pages of gains beside closed forms.
 
+use libration_report::verdict::Outcome;
+
 use crate::gains::report;
 
 #[test]
@@ -28,4 +30,18 @@ fn factors_without_a_stable_one_are_said_not_to_hold() {
     assert!(found.answer.contains(part), "{}", found.answer);
     let found = report(r#"{"mass": [1], "kp": [100]}"#, 0.01, 1, "backward-euler");
     assert!(found.answer.contains("no larger gain of position was found that does not hold."));
+}
+
+#[test]
+fn without_gains_of_position_nothing_is_said_of_larger_ones_and_without_any_gain_nothing_holds() {
+    let found =
+        report(r#"{"mass": [1, 1], "kp": [0, 0], "kv": [1, 1]}"#, 0.01, 1, "symplectic-euler");
+    assert!(found.holds && !found.answer.contains("larger gain of position"), "{}", found.answer);
+    // 4/h² − 2 kv/h.
+    assert!((found.joints[0].largest_kp / 39_800.0 - 1.0).abs() < 1e-6);
+    let none = report(r#"{"mass": [1], "kp": [0]}"#, 0.01, 1, "symplectic-euler");
+    assert!(!none.holds && none.answer.contains("there are no gains"), "{}", none.answer);
+    // A spring of 5·10⁴ N/m is beyond 4/h² without any gain.
+    let text = r#"{"mass": [1], "kp": [0], "stiffness": [5e4]}"#;
+    assert_eq!(report(text, 0.01, 1, "symplectic-euler").verdict.outcome, Outcome::Unstable);
 }
