@@ -5,6 +5,8 @@ use libration::random::{Address, Purpose};
 use libration::{AnySystem, catalog};
 
 use libration_analyze::{LatencyOption, Stepping, Timing};
+use libration_settings::equations::EquationSystem;
+use libration_settings::initial_value_problem::InitialValueProblem;
 
 use super::advised_system::AdvisedSystem;
 use super::control::{Control, Law};
@@ -122,13 +124,11 @@ fn read(command: &str) -> libration_analyze::Request {
         }
     }
     let (system, actuation) = catalog::build(name, &parameters).unwrap();
+    let problem = InitialValueProblem { system, actuation, q: vec![0.0], v: vec![0.0] };
     libration_analyze::Request {
-        system,
-        actuation,
+        system: EquationSystem::of_catalogue(problem).unwrap(),
         stepping: Stepping::Exact,
         dt,
-        q: vec![0.0],
-        v: vec![0.0],
         steps: 1,
         criteria: libration_analyze::Criteria::default(),
         timing,

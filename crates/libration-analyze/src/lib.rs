@@ -28,5 +28,5 @@ pub use stable_steps::{is_at_limit, is_within};
 pub use step::{
     Analysis, AnalyzeError, Criteria, Drift, LargestDt, LatencyOption, LoopAnalysis, LoopCost,
     LoopGrowth, ModifiedHamiltonian, OrderOfWord, Request, RequestSummary, StableLatencies,
-    StepVerdicts, Stepping, Timing, analyze, analyze_until, loop_growth,
+    StepMatrix, StepVerdicts, Stepping, Timing, analyze, analyze_until, loop_growth,
 };

@@ -198,12 +198,10 @@ pub(crate) fn _analyze(
         }
     };
     let request = libration_analyze::Request {
-        system: setting.system,
-        actuation: setting.actuation,
+        system: EquationSystem::of_catalogue(setting)
+            .map_err(|error| value_error(error.to_string()))?,
         stepping: step.stepping()?,
         dt: step.dt()?,
-        q: setting.q,
-        v: setting.v,
         steps: steps.map_err(value_error)?,
         criteria: Criteria { max_drift, max_amplitude, max_error },
         timing: looped.timing()?,

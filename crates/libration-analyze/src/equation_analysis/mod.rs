@@ -17,10 +17,11 @@ use serde::Serialize;
 
 use crate::AnalyzeError;
 use crate::linear_analysis::{self, LinearAnalysis, LinearAnalysisError, LinearRequest};
-use crate::step::Stepping;
+use crate::step::{StepMatrix, Stepping};
 
 pub use crate::motion::{EnergyChange, MotionExamination, StateExamination};
 use crate::newton_residual::{self, NewtonResidual};
+pub(crate) use motion::motion_states;
 pub use motion::{EquationMotion, StateError};
 pub use motion_steps::MotionSteps;
 pub use step::{spectral_radius, step_order};
@@ -39,6 +40,10 @@ pub struct EquationAnalysis {
     pub system: EquationSummary,
     /// The motion from its start.
     pub motion: EquationMotion,
+    /// A step from the start as a matrix; none of systems with states of first order, or of more than eight degrees of freedom, and where the
+    /// step has no derivative.
+    #[serde(flatten)]
+    pub matrix: Option<StepMatrix>,
     /// What the Newton steps of an implicit integrator leave in the motion; none without an iteration.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub newton_residual: Option<NewtonResidual>,
@@ -120,6 +125,7 @@ pub fn analyze(
         schema: SCHEMA,
         system: EquationSummary::new(system),
         motion,
+        matrix: StepMatrix::at_start(system, &StepProgram::of(method, dynamics), dt),
         newton_residual,
         operating_point,
         linear,

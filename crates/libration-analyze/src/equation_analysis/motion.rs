@@ -145,7 +145,8 @@ pub(super) fn is_affine(system: &EquationSystem) -> bool {
     system.equations.polynomial_degree().is_some_and(|degree| degree <= 1)
 }
 
-fn motion_states(system: &EquationSystem) -> Vec<MotionState> {
+/// The states of an examination.
+pub(crate) fn motion_states(system: &EquationSystem) -> Vec<MotionState> {
     let degrees = system.equations.degrees();
     let state = |state: &NamedState| MotionState {
         place: state.place,

@@ -8,7 +8,7 @@ use libration::number::Wide;
 use serde::{Serialize, Serializer};
 use serde_json::value::RawValue;
 
-use super::{LargestDt, LoopAnalysis, OrderOfWord, Request, StepVerdicts};
+use super::{LargestDt, LoopAnalysis, OrderOfWord, Request, StepMatrix, StepVerdicts};
 use crate::motion::MotionExamination;
 use crate::newton_residual::NewtonResidual;
 
@@ -18,25 +18,12 @@ pub struct Analysis {
     /// The request.
     #[serde(flatten)]
     pub request: RequestSummary,
-    /// The update matrix, row by row; rows and columns in the order `q₀ … v₀ …`.
-    pub update_matrix: Vec<Vec<f64>>,
+    /// The step as a matrix.
+    #[serde(flatten)]
+    pub matrix: StepMatrix,
     /// The update matrix of the oscillator with ω = 1 as exact polynomials in `z = ωΔt`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub update_matrix_in_z: Option<Vec<Vec<String>>>,
-    /// The determinant: the factor by which volumes of phase space grow.
-    pub determinant: f64,
-    /// The determinant minus one, without cancellation.
-    pub determinant_minus_one: f64,
-    /// The trace.
-    pub trace: f64,
-    /// The eigenvalues as pairs `[re, im]`.
-    pub eigenvalues: Vec<[f64; 2]>,
-    /// The largest absolute value of an eigenvalue. Like the other fields, it belongs to the step without feedback.
-    pub spectral_radius: f64,
-    /// The spectral radius minus one, without cancellation.
-    pub spectral_radius_minus_one: f64,
-    /// The spectral radius of an exact step minus one: how much the motion itself grows, linearised likewise.
-    pub flow_spectral_radius_minus_one: f64,
     /// Whether every orbit stays bounded; unknown for nonlinear systems and for marginal coupled modes.
     pub bounded: Option<bool>,
     /// The intervals `[from, to]` of Δt in s within which every orbit of an uncoupled linear system stays
@@ -53,17 +40,6 @@ pub struct Analysis {
     /// The order of a splitting method by the expansion of its word of kicks and drifts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order_of_word: Option<OrderOfWord>,
-    /// The Frobenius norm of `MᵀJM − J`.
-    pub symplecticity_defect: f64,
-    /// The Frobenius norm of `M(−Δt)·M(Δt) − 1`.
-    pub reversibility_defect: f64,
-    /// Angle of the step minus that of the exact solution, in rad: the largest over the modes.
-    pub phase_error_per_step: Option<f64>,
-    /// Whether the phase error would be more than half a turn, so that steps do not follow the oscillation.
-    #[serde(skip)]
-    pub loses_oscillation: bool,
-    /// Counted force evaluations per step.
-    pub force_evaluations_per_step: u64,
     /// The energy drift; none if the initial energy is zero.
     #[serde(flatten, serialize_with = "drift_or_nulls")]
     pub drift: Option<Drift>,
@@ -93,9 +69,9 @@ fn drift_or_nulls<S: Serializer>(drift: &Option<Drift>, serializer: S) -> Result
 #[derive(Debug, Serialize)]
 pub struct RequestSummary {
     /// The system.
-    pub system: &'static str,
+    pub system: String,
     /// Its parameters.
-    pub parameters: BTreeMap<&'static str, f64>,
+    pub parameters: BTreeMap<String, f64>,
     /// The integrator.
     pub integrator: &'static str,
     /// The time step, in s.
@@ -117,12 +93,12 @@ impl RequestSummary {
     pub(super) fn new(request: &Request) -> Self {
         let linear = request.system.is_linear();
         RequestSummary {
-            system: request.system.name(),
-            parameters: request.actuation.parameters(request.system).into_iter().collect(),
+            system: request.system.name.clone(),
+            parameters: parameters(request),
             integrator: request.stepping.name(),
             dt: request.dt,
-            q: request.q.clone(),
-            v: request.v.clone(),
+            q: request.system.q.clone(),
+            v: request.system.v.clone(),
             steps: request.steps,
             linear,
             note: note(request),
@@ -130,10 +106,23 @@ impl RequestSummary {
     }
 }
 
+/// Those of a compiled system have its mass and stiffness where they are given.
+fn parameters(request: &Request) -> BTreeMap<String, f64> {
+    let owned = |(name, value): (&'static str, f64)| (name.to_owned(), value);
+    match request.compiled() {
+        Some(system) => request.actuation().parameters(system).into_iter().map(owned).collect(),
+        None => request.system.definitions.parameters.iter().cloned().collect(),
+    }
+}
+
 fn note(request: &Request) -> Option<String> {
     let linearised = "the system is not linear: matrix, eigenvalues and defects are those of the linearisation of one step at \
                       the given state; the energy drift is simulated in f64";
-    let caveat = request.stepping.method().and_then(|method| request.system.caveat(method));
+    let caveat = request
+        .stepping
+        .method()
+        .zip(request.compiled())
+        .and_then(|(method, system)| system.caveat(method));
     let linearised = (!request.system.is_linear()).then(|| linearised.to_owned());
     let notes: Vec<String> = linearised.into_iter().chain(caveat).collect();
     (!notes.is_empty()).then(|| notes.join("; "))

@@ -12,7 +12,7 @@ pub(super) fn check_start(request: &Request) -> Result<(), SimulationError> {
     if !(dt.is_finite() && dt > 0.0) {
         return Err(SimulationError::TimeStep { dt, float });
     }
-    let mut coordinates = request.q.iter().chain(&request.v).copied().enumerate();
+    let mut coordinates = request.system.start().into_iter().enumerate();
     match coordinates.find(|(_, x)| !x.is_finite()) {
         None => Ok(()),
         Some((coordinate, value)) => Err(SimulationError::Start { coordinate, value, float }),
@@ -21,10 +21,10 @@ pub(super) fn check_start(request: &Request) -> Result<(), SimulationError> {
 
 /// Fails if the motion turns by more than [`MOST_TURN`] in an exact step.
 pub(super) fn check_turn(request: &Request) -> Result<(), AnalyzeError> {
-    let rate = match request.system {
+    let rate = match request.compiled() {
         _ if request.stepping != Stepping::Exact => return Ok(()),
-        AnySystem::Oscillator(model) => model.omega2.sqrt(),
-        AnySystem::DampedOscillator(model) => model.omega2.sqrt().max(model.gamma),
+        Some(AnySystem::Oscillator(model)) => model.omega2.sqrt(),
+        Some(AnySystem::DampedOscillator(model)) => model.omega2.sqrt().max(model.gamma),
         _ => return Ok(()),
     };
     let (dt, turn) = (request.dt, rate * request.dt);
@@ -37,7 +37,7 @@ pub(super) fn check_sizes(request: &Request) -> Result<(), AnalyzeError> {
         return Ok(());
     }
     let dt = find_out_of_range([("dt", request.dt)]).map(|(name, value)| (name, value, ""));
-    let parameter = find_out_of_range(request.system.parameters());
+    let parameter = request.compiled().and_then(|system| find_out_of_range(system.parameters()));
     match dt.or(parameter.map(|(name, value)| (name, value, "0, or "))) {
         Some((name, value, zero)) => Err(AnalyzeError::Size { name, value, zero }),
         None => Ok(()),
@@ -49,7 +49,7 @@ pub(super) fn check_exact(request: &Request) -> Result<(), AnalyzeError> {
     match request.criteria.first() {
         Some(flag) => Err(AnalyzeError::NoLargest { flag }),
         None if !request.system.is_linear() => {
-            Err(AnalyzeError::NotLinear { system: request.system.name() })
+            Err(AnalyzeError::NotLinear { system: request.system.name.clone() })
         }
         None => Ok(()),
     }

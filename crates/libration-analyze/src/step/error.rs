@@ -1,6 +1,5 @@
 //! Errors of an analysis.
 
-use libration::CatalogError;
 use libration::control::Latency;
 use libration::simulation::SimulationError;
 use libration_settings::limits;
@@ -9,17 +8,6 @@ use thiserror::Error;
 /// Error of an analysis.
 #[derive(Debug, Error)]
 pub enum AnalyzeError {
-    /// The system does not exist in this dimension.
-    #[error(transparent)]
-    Dimension(#[from] CatalogError),
-    /// Positions and velocities differ in number.
-    #[error("{q} positions but {v} velocities; expected equal numbers")]
-    Coordinates {
-        /// Number of positions.
-        q: usize,
-        /// Number of velocities.
-        v: usize,
-    },
     /// The time step or the start is invalid.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
@@ -31,7 +19,7 @@ pub enum AnalyzeError {
         /// The flag.
         flag: &'static str,
         /// The system.
-        system: &'static str,
+        system: String,
     },
     /// A criterion for exact steps.
     #[error("--{flag} limits the time step, and `exact` steps (--integrator) have no limit")]
@@ -65,7 +53,7 @@ pub enum AnalyzeError {
     #[error("`exact` steps (--integrator) require a linear system, not `{system}`")]
     NotLinear {
         /// The system.
-        system: &'static str,
+        system: String,
     },
     /// Timing options for a system with several degrees of freedom.
     #[error("--{flag} requires one degree of freedom, and `{system}` has {dimension}")]
@@ -73,7 +61,7 @@ pub enum AnalyzeError {
         /// The flag.
         flag: &'static str,
         /// The system.
-        system: &'static str,
+        system: String,
         /// Its degrees of freedom.
         dimension: usize,
     },

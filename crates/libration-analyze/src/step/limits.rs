@@ -128,7 +128,7 @@ fn period(omega2: f64) -> Wide {
 
 /// The largest steps of an oscillator from its polynomials.
 pub(super) fn largest_dt(step: Option<&SymbolicStep>, request: &Request) -> Option<LargestDt> {
-    let AnySystem::Oscillator(model) = request.system else { return None };
+    let Some(AnySystem::Oscillator(model)) = request.compiled() else { return None };
     let (step, unit) = (step?, period(model.omega2));
     let in_seconds = |z: LargestStep| match z {
         LargestStep::Limit(z) => Some((z * unit).to_f64()),
@@ -137,8 +137,8 @@ pub(super) fn largest_dt(step: Option<&SymbolicStep>, request: &Request) -> Opti
     let (criteria, steps) = (&request.criteria, request.steps);
     let largest = |criterion: &Criterion| step.largest_step(criterion).map(in_seconds);
     let omega = model.omega2.sqrt();
-    let turning: Vec<f64> = request.v.iter().map(|v| v / omega).collect();
-    let start = OrbitStart::new(&request.q, &turning);
+    let turning: Vec<f64> = request.system.v.iter().map(|v| v / omega).collect();
+    let start = OrbitStart::new(&request.system.q, &turning);
     let drift = |start| {
         criteria
             .max_drift

@@ -7,6 +7,7 @@ use libration::equations::{Dynamics, StepProgram};
 use libration::number::Wide;
 use libration::{AnyMethod, State, Trajectory};
 
+use super::step_matrix::is_undefined;
 use super::{AnalyzeError, Drift, Request, Stepping, regular_starts};
 use crate::newton_residual::{self, NewtonResidual};
 
@@ -20,12 +21,9 @@ pub(super) struct LinearStep {
 
 impl LinearStep {
     /// The step of the request, by its program.
-    pub(super) fn new(
-        dynamics: &Dynamics,
-        request: &Request,
-        stop: &AtomicBool,
-    ) -> Result<Self, AnalyzeError> {
-        let start: Vec<f64> = request.q.iter().chain(&request.v).copied().collect();
+    pub(super) fn new(request: &Request, stop: &AtomicBool) -> Result<Self, AnalyzeError> {
+        let dynamics = request.system.equations.dynamics();
+        let start = request.system.start();
         let Some(method) = request.stepping.any_method() else {
             let linear = Linearisation::exact(dynamics, &start, request.dt);
             let drift = exact_drift(dynamics, &linear, request);
@@ -33,9 +31,13 @@ impl LinearStep {
         };
         let program = StepProgram::of(method, dynamics);
         let linear = Linearisation::new(&program, dynamics, &start, request.dt);
-        if linear.step.rows().iter().flatten().any(|x| x.is_nan()) {
-            let (q, v) = (request.q.clone(), request.v.clone());
-            return Err(AnalyzeError::Singular { allowed: regular_starts(request.system), q, v });
+        if is_undefined(&linear.step) {
+            let (q, v) = (request.system.q.clone(), request.system.v.clone());
+            return Err(AnalyzeError::Singular {
+                allowed: regular_starts(request.compiled()),
+                q,
+                v,
+            });
         }
         let drift = match request.system.is_linear() {
             true => exact_drift(dynamics, &linear, request),
@@ -46,18 +48,16 @@ impl LinearStep {
 }
 
 /// What the Newton steps leave in the motion of a nonlinear system; none without an iteration.
-pub(super) fn newton_residual(
-    request: &Request,
-    dynamics: &Dynamics,
-    stop: &AtomicBool,
-) -> Option<NewtonResidual> {
+pub(super) fn newton_residual(request: &Request, stop: &AtomicBool) -> Option<NewtonResidual> {
     let Stepping::Implicit(method) = request.stepping else { return None };
     if request.system.is_linear() {
         return None;
     }
-    let start: Vec<f64> = request.q.iter().chain(&request.v).copied().collect();
+    let start = request.system.start();
     let run = (request.dt, request.steps);
-    newton_residual::of_run(method.into(), dynamics, &start, (0..start.len()).collect(), run, stop)
+    let dynamics = request.system.equations.dynamics();
+    let places = request.system.states.iter().map(|state| state.place).collect();
+    newton_residual::of_run(method.into(), dynamics, &start, places, run, stop)
 }
 
 /// The drift of a linear system, whose degrees of freedom all move alike.
@@ -69,7 +69,8 @@ fn exact_drift(dynamics: &Dynamics, linear: &Linearisation, request: &Request) -
         (all[0], all[degrees]) = (state.q[0], state.v[0]);
         program.on().run(&all).next().unwrap_or(Wide::ZERO)
     });
-    let starts = request.q.iter().zip(&request.v).map(|(&q, &v)| State { q: [q], v: [v] });
+    let starts =
+        request.system.q.iter().zip(&request.system.v).map(|(&q, &v)| State { q: [q], v: [v] });
     let starts: Vec<State<f64, 1>> = starts.collect();
     let step = linear.step.decoupled()?.into_iter().next()?;
     DriftForecast::of_orbits(&energy, &step, &starts, request.steps).map(Drift::from)

@@ -102,17 +102,19 @@ impl ClosedLoop {
                 Some(text) => AnalyzeError::ExcessiveLatency(text),
                 None => AnalyzeError::Latency { steps },
             })?;
-        let plant = match request.system {
-            AnySystem::Oscillator(model) if request.q.len() == 1 => plant(model, request),
-            AnySystem::DampedOscillator(model) => plant(model, request),
-            AnySystem::Pendulum(model) => plant(model, request),
-            AnySystem::Duffing(model) => plant(model, request),
+        let plant = match request.compiled() {
+            Some(AnySystem::Oscillator(model)) if request.system.q.len() == 1 => {
+                plant(model, request)
+            }
+            Some(AnySystem::DampedOscillator(model)) => plant(model, request),
+            Some(AnySystem::Pendulum(model)) => plant(model, request),
+            Some(AnySystem::Duffing(model)) => plant(model, request),
             _ => {
-                let (system, dimension) = (request.system.name(), request.q.len());
+                let (system, dimension) = (request.system.name.clone(), request.system.q.len());
                 return Err(AnalyzeError::Loop { flag, system, dimension });
             }
         };
-        let timing = request.timing.per_mass(request.actuation.mass());
+        let timing = request.timing.per_mass(request.actuation().mass());
         let feedback = timing.feedback.unwrap_or_default();
         Ok(Some(ClosedLoop { plant, feedback, latency, timing }))
     }
@@ -138,12 +140,14 @@ impl ClosedLoop {
     fn answer(&self, request: &Request) -> LoopAnalysis {
         let ClosedLoop { plant, feedback, latency, timing } = self;
         let closed = timing.feedback.is_some();
-        let [of_position, of_velocity, _] = units::of(request.system, request.actuation).gains;
+        let gains = request.compiled().map(|system| units::of(system, request.actuation()).gains);
         let radius = closed.then(|| plant.spectral_radius(*feedback, *latency));
         LoopAnalysis {
-            command: closed.then(|| request.actuation.name()),
+            command: closed.then(|| request.actuation().name()),
             feedback: request.timing.feedback.map(|f| [f.position, f.velocity]),
-            feedback_units: closed.then_some([of_position, of_velocity]),
+            feedback_units: gains
+                .filter(|_| closed)
+                .map(|[position, velocity, _]| [position, velocity]),
             latency_steps: closed.then(|| latency.steps()),
             closed_loop_spectral_radius: radius.map(Wide::to_f64),
             closed_loop_spectral_radius_minus_one: radius
@@ -162,7 +166,7 @@ impl ClosedLoop {
 
 /// The plant of `request` in steps of its integrator, which is not implicit.
 fn plant(model: impl Model<1> + 'static, request: &Request) -> Plant<'static> {
-    let at = State { q: [request.q[0]], v: [request.v[0]] };
+    let at = State { q: [request.system.q[0]], v: [request.system.v[0]] };
     match request.stepping {
         Stepping::Method(method) => Plant::new(method, model, at, request.dt),
         // Implicit steps have been refused.

@@ -11,6 +11,7 @@ mod linear_step;
 mod loop_analysis;
 mod modes;
 mod request;
+mod step_matrix;
 mod timing;
 mod verdicts;
 
@@ -23,16 +24,15 @@ pub use criteria::Criteria;
 pub use error::AnalyzeError;
 pub use growth::LoopGrowth;
 use libration::analysis::{RationalStep, Spectrum, SymbolicStep};
-use libration::ensemble::dynamics_of;
-use libration::equations::Dynamics;
 use libration::number::Wide;
 use libration::{AnySystem, Elementary, Scalar};
 pub(crate) use limits::stability_windows;
 pub use limits::{LargestDt, OrderOfWord};
 use linear_step::LinearStep;
 pub use loop_analysis::{LoopAnalysis, StableLatencies, loop_growth};
-use modes::{Modes, flow_radius_minus_one};
+use modes::Modes;
 pub use request::{Request, Stepping};
+pub use step_matrix::StepMatrix;
 pub use timing::{LatencyOption, Timing};
 pub use verdicts::StepVerdicts;
 pub(crate) use verdicts::of_rest;
@@ -50,52 +50,42 @@ pub fn analyze(request: &Request) -> Result<Analysis, AnalyzeError> {
 /// # Errors
 /// As [`analyze`], and [`AnalyzeError::Interrupted`].
 pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, AnalyzeError> {
-    if request.q.len() != request.v.len() {
-        return Err(AnalyzeError::Coordinates { q: request.q.len(), v: request.v.len() });
-    }
-    if let (Some(flag), None) = (request.criteria.first(), omega(request.system)) {
-        return Err(AnalyzeError::Criterion { flag, system: request.system.name() });
+    if let (Some(flag), None) = (request.criteria.first(), omega(request)) {
+        return Err(AnalyzeError::Criterion { flag, system: request.system.name.clone() });
     }
     if request.stepping == Stepping::Exact {
         check_exact(request)?;
     }
     check_implicit(request)?;
-    let dimension = request.q.len();
     check_turn(request)?;
     check_sizes(request)?;
     let timing = loop_analysis::answer(request)?;
-    let wrong = || request.system.entry().wrong_dimension(dimension);
-    let dynamics = dynamics_of(request.system, dimension).ok_or_else(wrong)?;
     check_start(request)?;
-    let step = LinearStep::new(&dynamics, request, stop)?;
-    let mut analysis = answer(&dynamics, step, timing, request);
+    let step = LinearStep::new(request, stop)?;
+    let mut analysis = answer(step, timing, request);
     analysis.motion = verdicts::motion(request, stop)?;
     analysis.verdicts = StepVerdicts::new(&analysis, request).of_clocks(request, stop)?;
-    analysis.newton_residual = linear_step::newton_residual(request, &dynamics, stop);
+    analysis.newton_residual = linear_step::newton_residual(request, stop);
     Ok(analysis)
 }
 
-fn answer(
-    dynamics: &Dynamics,
-    step: LinearStep,
-    timing: Option<LoopAnalysis>,
-    request: &Request,
-) -> Analysis {
+fn answer(step: LinearStep, timing: Option<LoopAnalysis>, request: &Request) -> Analysis {
     let LinearStep { linear, evaluations, drift } = step;
     let method = request.stepping.method();
     // A free mass has no frequency, so `z` is undefined.
-    let polynomials =
-        method.filter(|_| omega(request.system).is_some()).and_then(SymbolicStep::new);
-    let exact = polynomials.as_ref().zip(omega(request.system));
+    let polynomials = method.filter(|_| omega(request).is_some()).and_then(SymbolicStep::new);
+    let exact = polynomials.as_ref().zip(omega(request));
     let modes = Modes::new(
         &linear,
         exact.and_then(|(step, omega)| Spectrum::of_polynomials(step, omega * linear.dt)),
     );
     let reversibility = exact
-        .and_then(|(step, omega)| reversibility_defect(step, omega, linear.dt, request.q.len()))
+        .and_then(|(step, omega)| {
+            reversibility_defect(step, omega, linear.dt, request.system.q.len())
+        })
         .unwrap_or_else(|| linear.reversibility_defect());
     let update_matrix_in_z = match request.stepping {
-        Stepping::Implicit(method) => omega(request.system)
+        Stepping::Implicit(method) => omega(request)
             .and_then(|_| RationalStep::new(method))
             .map(|step| texts(&step.matrix.rows())),
         _ => polynomials.as_ref().map(|step| texts(&step.matrix.rows())),
@@ -103,30 +93,21 @@ fn answer(
     let linear_system = request.system.is_linear();
     Analysis {
         request: RequestSummary::new(request),
-        update_matrix: to_f64(&linear.step.rows()),
+        matrix: StepMatrix::new(&linear, &modes, reversibility, evaluations, exact.is_some()),
         update_matrix_in_z,
-        determinant: modes.determinant.to_f64(),
-        determinant_minus_one: modes.determinant_minus_one.to_f64(),
-        trace: linear.step.trace().to_f64(),
-        eigenvalues: modes.eigenvalues(),
-        spectral_radius: modes.radius.to_f64(),
-        spectral_radius_minus_one: modes.radius_minus_one.to_f64(),
-        flow_spectral_radius_minus_one: flow_radius_minus_one(&linear),
         bounded: modes.bounded.filter(|_| linear_system),
         stability_windows: request
             .stepping
             .any_method()
-            .and_then(|method| stability_windows(method, request.system)),
+            .zip(request.compiled())
+            .and_then(|(method, system)| stability_windows(method, system)),
         largest_dt: method.and_then(|_| limits::largest_dt(polynomials.as_ref(), request)),
         modified_hamiltonian: linear_system
             .then(|| ModifiedHamiltonian::of(&linear.step, modes.determinant_minus_one.is_zero()))
             .flatten(),
-        order_of_word: method.filter(|_| dynamics.is_positional()).and_then(OrderOfWord::of),
-        symplecticity_defect: defect(modes.symplecticity_defect, exact.is_some()),
-        reversibility_defect: defect(reversibility, exact.is_some()),
-        phase_error_per_step: modes.followed_phase_error(),
-        loses_oscillation: modes.loses_oscillation(),
-        force_evaluations_per_step: evaluations,
+        order_of_word: method
+            .filter(|_| request.system.equations.dynamics().is_positional())
+            .and_then(OrderOfWord::of),
         drift,
         motion: None,
         verdicts: StepVerdicts::default(),
@@ -136,26 +117,22 @@ fn answer(
 }
 
 /// The starts at which the force of a system has a derivative, in words.
-fn regular_starts(system: AnySystem) -> &'static str {
+fn regular_starts(system: Option<AnySystem>) -> &'static str {
     match system {
-        AnySystem::Kepler(_) => "--q must not be the origin, where the attraction has no bound",
-        AnySystem::Pendulum(_) | AnySystem::DrivenOscillator(_) => {
+        Some(AnySystem::Kepler(_)) => {
+            "--q must not be the origin, where the attraction has no bound"
+        }
+        Some(AnySystem::Pendulum(_) | AnySystem::DrivenOscillator(_)) => {
             "coordinates must stay so small that angles are below 10¹⁵⁴ rad"
         }
         _ => "coordinates must stay within the range of floats",
     }
 }
 
-/// A defect in `f64`. An inexact defect below the rounding of 1024 bits is zero.
-fn defect(norm: Wide, exact: bool) -> f64 {
-    let value = norm.to_f64();
-    if value < 1e-270 && !exact { 0.0 } else { value }
-}
-
 /// The angular frequency of an oscillator, in rad/s; none of a free mass.
-fn omega(system: AnySystem) -> Option<Wide> {
-    match system {
-        AnySystem::Oscillator(model) if model.omega2 > 0.0 => {
+fn omega(request: &Request) -> Option<Wide> {
+    match request.compiled() {
+        Some(AnySystem::Oscillator(model)) if model.omega2 > 0.0 => {
             Some(Wide::from_f64(model.omega2).sqrt())
         }
         _ => None,
@@ -180,8 +157,4 @@ fn reversibility_defect(
 
 fn texts<T: ToString>(rows: &[Vec<T>]) -> Vec<Vec<String>> {
     rows.iter().map(|row| row.iter().map(ToString::to_string).collect()).collect()
-}
-
-fn to_f64(rows: &[Vec<Wide>]) -> Vec<Vec<f64>> {
-    rows.iter().map(|row| row.iter().map(|x| x.to_f64()).collect()).collect()
 }

@@ -2,30 +2,37 @@
 
 use libration::catalog::Actuation;
 use libration::{AnyMethod, AnySystem, ImplicitMethod, Method};
+use libration_settings::equations::EquationSystem;
 
 use super::{Criteria, Timing};
 
 /// A step of an integrator to analyse, with criteria and timing options.
 #[derive(Clone, Debug)]
 pub struct Request {
-    /// The system.
-    pub system: AnySystem,
-    /// The quantity of its commands.
-    pub actuation: Actuation,
+    /// The system, at its start.
+    pub system: EquationSystem,
     /// The integrator, or exact steps.
     pub stepping: Stepping,
     /// The time step, in s.
     pub dt: f64,
-    /// Initial positions.
-    pub q: Vec<f64>,
-    /// Initial velocities.
-    pub v: Vec<f64>,
     /// Number of steps of the energy drift.
     pub steps: u64,
     /// Criteria for the largest time step.
     pub criteria: Criteria,
     /// Timing options of the control loop.
     pub timing: Timing,
+}
+
+impl Request {
+    /// The compiled system with the same bits; none of equations in a file.
+    pub(super) fn compiled(&self) -> Option<AnySystem> {
+        self.system.twin.map(|twin| twin.system)
+    }
+
+    /// The quantity of its commands.
+    pub(super) fn actuation(&self) -> Actuation {
+        self.system.twin.map_or(Actuation::Acceleration, |twin| twin.actuation)
+    }
 }
 
 /// The kind of steps.

@@ -4,17 +4,16 @@ use std::sync::atomic::AtomicBool;
 
 use libration::AnySystem;
 use libration::control::Jitter;
-use libration::ensemble::dynamics_of;
 use libration::equations::StepProgram;
 use libration::linear::GROWTH_ROUNDING;
 use libration_report::verdict::{FOLLOWED, Outcome, Verdict};
-use libration_settings::units;
 use serde::Serialize;
 
 use super::limits::is_free;
 use super::{Analysis, AnalyzeError, LoopAnalysis, Request, analyze_until};
 use crate::digits::{change_per_step, significant};
-use crate::motion::{MotionExamination, MotionState, MotionSubject, examine};
+use crate::equation_analysis::motion_states;
+use crate::motion::{MotionExamination, MotionSubject, examine};
 use crate::step_verdict::StepGrowth;
 
 /// The verdicts on a step of a system of the catalogue. Of a loop there is that of the loop alone.
@@ -132,16 +131,14 @@ const REST: f64 = 1e-9;
 fn at_start(own: Verdict, request: &Request) -> Verdict {
     let feedback = request.timing.feedback.filter(|_| !request.system.is_linear());
     let (Some(gains), true) = (feedback, own.is_good()) else { return own };
-    let dynamics = dynamics_of(request.system, request.q.len());
-    let command = gains.position * request.q[0] + gains.velocity * request.v[0];
-    let left = dynamics.and_then(|dynamics| {
-        let state = [request.q[0], request.v[0]];
-        dynamics.accelerations().on::<f64>().run(&state).next()
-    });
-    let left = left.map(|a| (a - command / request.actuation.mass()).abs());
-    let size = REST * (command.abs() + request.q[0].abs());
+    let (q, v) = (request.system.q[0], request.system.v[0]);
+    let command = gains.position * q + gains.velocity * v;
+    let program = request.system.equations.dynamics().accelerations();
+    let left = program.on::<f64>().run(&request.system.start()).next();
+    let left = left.map(|a| (a - command / request.actuation().mass()).abs());
+    let size = REST * (command.abs() + q.abs());
     match left {
-        Some(left) if left <= size && request.v[0] == 0.0 => own,
+        Some(left) if left <= size && v == 0.0 => own,
         _ => Verdict::unknown(format!(
             "the start is no equilibrium of the loop, and the loop is not simulated from it; linearised there, {}",
             own.evidence
@@ -154,8 +151,8 @@ fn at_rest(analysis: &Analysis) -> Verdict {
     let dt = analysis.request.dt;
     let growth = StepGrowth {
         dt,
-        radius: Some(1.0 + analysis.spectral_radius_minus_one),
-        exact_rate: analysis.flow_spectral_radius_minus_one.ln_1p() / dt,
+        radius: Some(1.0 + analysis.matrix.spectral_radius_minus_one),
+        exact_rate: analysis.matrix.flow_spectral_radius_minus_one.ln_1p() / dt,
         has_parted: false,
         stable_dt: None,
         has_stability_function: false,
@@ -177,8 +174,8 @@ fn growing_moments(analysis: &Analysis) -> Option<Verdict> {
 }
 
 fn of_step(analysis: &Analysis, request: &Request) -> Verdict {
-    let excess = analysis.spectral_radius_minus_one;
-    let exact = analysis.flow_spectral_radius_minus_one;
+    let excess = analysis.matrix.spectral_radius_minus_one;
+    let exact = analysis.matrix.flow_spectral_radius_minus_one;
     // What rounded parameters change in the growth of exact steps.
     let rounding = 0.5 * f64::EPSILON * exact.abs();
     let motions = format!("motions {}", change_per_step(excess));
@@ -190,8 +187,8 @@ fn of_step(analysis: &Analysis, request: &Request) -> Verdict {
             "at the limit of stability, motions neither grow nor decay beyond the rounding of its parameters",
         );
     }
-    let turn = match request.system {
-        AnySystem::Oscillator(model) => model.omega2 * request.dt * request.dt,
+    let turn = match request.compiled() {
+        Some(AnySystem::Oscillator(model)) => model.omega2 * request.dt * request.dt,
         _ => 0.0,
     };
     if excess > 0.0 && excess <= COEFFICIENTS * turn {
@@ -208,7 +205,7 @@ fn of_step(analysis: &Analysis, request: &Request) -> Verdict {
     match analysis.bounded {
         Some(true) if excess < 0.0 => Verdict::new(Outcome::Stable, motions),
         Some(true) => Verdict::new(Outcome::Stable, "every motion stays bounded"),
-        Some(false) if excess == 0.0 && is_free(request.system) => Verdict::new(
+        Some(false) if excess == 0.0 && request.compiled().is_some_and(is_free) => Verdict::new(
             Outcome::Stable,
             "motions grow in proportion to time, as those of exact steps do",
         ),
@@ -261,35 +258,21 @@ pub(super) fn motion(
     request: &Request,
     stop: &AtomicBool,
 ) -> Result<Option<MotionExamination>, AnalyzeError> {
-    let dimension = request.q.len();
     let (Some(method), false) = (request.stepping.any_method(), request.system.is_linear()) else {
         return Ok(None);
     };
-    let dynamics = dynamics_of(request.system, dimension);
-    let Some(dynamics) = dynamics.filter(|_| request.timing.feedback.is_none()) else {
+    if request.timing.feedback.is_some() {
         return Ok(None);
-    };
-    let step = StepProgram::of(method, &dynamics);
-    let units = units::of(request.system, request.actuation);
-    // Its second coordinate is time.
-    let is_driven = matches!(request.system, AnySystem::DrivenOscillator(_));
-    let state = |place: usize| {
-        let (i, is_velocity) = (place % dimension, place >= dimension);
-        let (letter, unit) =
-            if is_velocity { ("v", units.velocity) } else { ("q", units.position) };
-        let unit = if unit == "1" { "" } else { unit };
-        MotionState { place, name: format!("{letter}{i}"), unit: unit.to_owned(), is_velocity }
-    };
-    let places = (0..2 * dimension).filter(|place| !(is_driven && place % dimension == 1));
-    let states: Vec<MotionState> = places.map(state).collect();
-    let mut start: Vec<f64> = request.q.iter().chain(&request.v).copied().collect();
-    start.resize(2 * dimension + dynamics.inputs(), 0.0);
+    }
+    let system = &request.system;
+    let (start, states) = (system.start(), motion_states(system));
     let subject = MotionSubject {
-        dynamics: &dynamics,
+        dynamics: system.equations.dynamics(),
         start: &start,
         states: &states,
         is_affine: false,
-        energy_unit: units.energy,
+        energy_unit: &system.energy_unit,
     };
+    let step = StepProgram::of(method, subject.dynamics);
     Ok(Some(examine(&subject, &step, request.dt, request.steps, stop)?))
 }

@@ -5,7 +5,6 @@ use libration::system::{DampedOscillator, Oscillator};
 use libration::{AnyMethod, AnySystem, Float};
 
 use libration::equations::StepProgram;
-use libration_settings::equations::Twin;
 
 use super::three_digits::{short, short_above, short_below};
 use super::{FloatType, Request};
@@ -31,7 +30,7 @@ pub(super) fn cause<S: Float>(request: &Request, last: Option<&[f64]>) -> Option
     };
     let Some(twin) = request.system.twin else { return undefined() };
     match request.loop_option() {
-        Some(_) => loop_cause(request, twin),
+        Some(_) => loop_cause(request, twin.system),
         None => step_cause::<S>(request, twin.system).or_else(undefined),
     }
 }
@@ -70,7 +69,7 @@ fn step_cause<S: Float>(request: &Request, system: AnySystem) -> Option<String> 
 }
 
 /// The cause of an overflow of a loop or an uneven clock: it is unstable, or unstable in the mean square.
-fn loop_cause(request: &Request, Twin { system, actuation }: Twin) -> Option<String> {
+fn loop_cause(request: &Request, system: AnySystem) -> Option<String> {
     let Request { stepping, dt, timing, .. } = *request;
     if let (None, Some(method)) = (timing.feedback, stepping.any_method()) {
         let why = instability_cause(method, system, [dt, 1.0])
@@ -79,9 +78,8 @@ fn loop_cause(request: &Request, Twin { system, actuation }: Twin) -> Option<Str
             return why;
         }
     }
-    let (q, v, criteria) =
-        (request.system.q.clone(), request.system.v.clone(), Criteria::default());
-    let step = crate::Request { system, actuation, stepping, dt, q, v, steps: 1, criteria, timing };
+    let (whole, criteria) = (request.system.clone(), Criteria::default());
+    let step = crate::Request { system: whole, stepping, dt, steps: 1, criteria, timing };
     let analysis = analyze(&step).ok()?;
     let about = if system.is_linear() { "" } else { "linearised at the start, " };
     let answer = analysis.timing?;

@@ -3,6 +3,8 @@
 use libration::catalog;
 use libration::control::{Feedback, Jitter};
 use libration_analyze::{Criteria, LatencyOption, LoopGrowth, Request, Stepping, Timing, analyze};
+use libration_settings::equations::EquationSystem;
+use libration_settings::initial_value_problem::InitialValueProblem;
 use serde_json::Value;
 
 /// A case of `../reference/loops.json`, which `tools/loop_reference.py` made.
@@ -13,6 +15,7 @@ fn request(case: &Value) -> Request {
         parameters.map(|(name, value)| (name.as_str(), number(value))).collect();
     let (system, actuation) =
         catalog::build(case["system"].as_str().unwrap(), &parameters).unwrap();
+    let problem = InitialValueProblem { system, actuation, q: vec![0.0], v: vec![0.0] };
     let jitter = case["jitter"].as_array().map(|law| {
         let rms = number(&law[1]);
         match law[0].as_str().unwrap() {
@@ -29,12 +32,9 @@ fn request(case: &Value) -> Request {
         ..Timing::default()
     };
     Request {
-        system,
-        actuation,
+        system: EquationSystem::of_catalogue(problem).unwrap(),
         stepping: Stepping::from_name(case["integrator"].as_str().unwrap()).unwrap(),
         dt: number(&case["dt"]),
-        q: vec![0.0],
-        v: vec![0.0],
         steps: 1,
         criteria: Criteria::default(),
         timing,
@@ -96,6 +96,9 @@ fn growth_is_told_wherever_steps_or_losses_are_drawn_and_a_typical_run_only_wher
     assert!((even.mean_square_radius.unwrap() / radius.powi(2) - 1.0).abs() < 1e-15);
     assert!((even.lyapunov_exponent.unwrap() - radius.ln()).abs() < 1e-15);
     // The step of the plant is what it is without feedback.
-    let [re, im] = analysis.eigenvalues[0];
-    assert!((analysis.spectral_radius - re.hypot(im)).abs() < 1e-15 && radius < 0.97, "{radius}");
+    let [re, im] = analysis.matrix.eigenvalues[0];
+    assert!(
+        (analysis.matrix.spectral_radius - re.hypot(im)).abs() < 1e-15 && radius < 0.97,
+        "{radius}"
+    );
 }

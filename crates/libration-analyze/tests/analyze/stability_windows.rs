@@ -7,7 +7,7 @@ use libration_analyze::{Request, Stepping, analyze};
 use libration_report::verdict::Outcome;
 use serde_json::Value;
 
-use super::analyze::request;
+use super::analyze::{at, request};
 
 #[test]
 fn windows_of_damped_oscillators_are_those_that_numpy_finds() {
@@ -19,6 +19,7 @@ fn windows_of_damped_oscillators_are_those_that_numpy_finds() {
         let system =
             AnySystem::build("damped-oscillator", &[("omega2", omega2), ("gamma", gamma)]).unwrap();
         let method = Method::from_name(case["integrator"].as_str().unwrap()).unwrap();
+        let system = at(system, &[1.0], &[0.0]);
         let asked =
             Request { system, ..request("damped-oscillator", method, 0.01, &[1.0], &[0.0]) };
         let found = analyze(&asked).unwrap().stability_windows.unwrap();
@@ -55,10 +56,11 @@ fn each_step_of_a_free_mass_is_stable_at_any_length() {
                     AnyMethod::Explicit(method) => Stepping::Method(method),
                     AnyMethod::Implicit(method) => Stepping::Implicit(method),
                 };
+                let system = at(system, &[1.0], &[1.0]);
                 let asked =
                     Request { system, stepping, ..request(name, Method::Rk4, dt, &[1.0], &[1.0]) };
                 let found = analyze(&asked).unwrap();
-                assert_eq!(found.update_matrix, [[1.0, dt], [0.0, 1.0]], "{method:?}");
+                assert_eq!(found.matrix.update_matrix, [[1.0, dt], [0.0, 1.0]], "{method:?}");
                 assert_eq!(found.stability_windows, Some(vec![[Some(0.0), None]]), "{method:?}");
                 let verdict = found.verdicts.step.unwrap();
                 assert_eq!(verdict.outcome, Outcome::Stable, "{method:?}");
@@ -70,7 +72,7 @@ fn each_step_of_a_free_mass_is_stable_at_any_length() {
     let system = AnySystem::build("damped-oscillator", &[("omega2", 0.0), ("gamma", 2.0)]).unwrap();
     for (dt, wanted) in [(0.999, Outcome::Stable), (1.001, Outcome::Unstable)] {
         let step = request("damped-oscillator", Method::SymplecticEuler, dt, &[1.0], &[1.0]);
-        let found = analyze(&Request { system, ..step }).unwrap();
+        let found = analyze(&Request { system: at(system, &[1.0], &[1.0]), ..step }).unwrap();
         assert_eq!(found.verdicts.step.unwrap().outcome, wanted, "{dt}");
         assert_eq!(found.stability_windows, Some(vec![[Some(0.0), Some(1.0)]]));
     }
@@ -84,7 +86,7 @@ fn windows_are_known_for_any_damping_that_is_not_extreme() {
         let system =
             AnySystem::build("damped-oscillator", &[("omega2", omega2), ("gamma", gamma)]).unwrap();
         let asked = Request {
-            system,
+            system: at(system, &[1.0], &[0.0]),
             ..request("damped-oscillator", Method::Suzuki4, 1e-7, &[1.0], &[0.0])
         };
         assert!(analyze(&asked).unwrap().stability_windows.is_some(), "{omega2} {gamma}");
@@ -100,7 +102,8 @@ fn textbook_verlet_is_said_to_be_another_method_where_forces_depend_on_velocitie
         } else {
             (&[1.0][..], &[0.0][..])
         };
-        analyze(&Request { system, ..request(system.name(), method, 0.01, q, v) })
+        let whole = at(system, q, v);
+        analyze(&Request { system: whole, ..request(system.name(), method, 0.01, q, v) })
             .unwrap()
             .request
             .note

@@ -8,14 +8,15 @@ use libration_analyze::{
 };
 use libration_report::notation::plural;
 use libration_report::verdict::{self, exit_code};
-use libration_settings::initial_value_problem::InitialValueProblem;
+use libration_settings::equations::EquationSystem;
 use libration_settings::limits;
 
 use super::closed_loop::{dephasing, describe_loop};
-use super::digits::{UNKNOWN, beside_one, exact, short, sum};
+use super::digits::{UNKNOWN, exact, short, sum};
 use super::simulate::linear_file;
 use super::{
-    analyze_equations, analyze_linear, compare_integrators, equation_file, summary, temperature,
+    analyze_equations, analyze_linear, compare_integrators, equation_file, step_matrix, summary,
+    temperature,
 };
 use crate::args::{AnalyzeArgs, CostArgs};
 use crate::error::Failure;
@@ -49,7 +50,7 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     let (Some(system), Some(stepping), Some(dt)) = (&args.system, args.integrator, args.dt) else {
         return Err(Failure::usage("--system is required without --plant and --config"));
     };
-    let InitialValueProblem { system, actuation, q, v } = system.resolve()?;
+    let system = EquationSystem::of_catalogue(system.resolve()?).map_err(Failure::run)?;
     let CostArgs { loss, cost_weights: weights } = args.cost;
     let timing = Timing { loss, weights, ..args.timing.timing() };
     let steps = args.steps.unwrap_or(match system.is_linear() {
@@ -65,7 +66,7 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
         max_amplitude: args.max_amplitude,
         max_error: args.max_error,
     };
-    let request = Request { system, actuation, stepping, dt, q, v, steps, criteria, timing };
+    let request = Request { system, stepping, dt, steps, criteria, timing };
     let analysis = analyze(&request).map_err(Failure::usage)?;
     let text = match (args.json, args.verbose) {
         (true, _) => serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n",
@@ -134,31 +135,7 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "  {name:<22} {value}");
     };
-    let rows = |rows: &[Vec<f64>]| -> Vec<String> {
-        rows.iter().map(|r| r.iter().map(|x| format!("{:>24}", short(*x))).collect()).collect()
-    };
-    for (i, row) in rows(&analysis.update_matrix).into_iter().enumerate() {
-        line(if i == 0 { "update matrix" } else { "" }, row.trim_end().to_owned());
-    }
-    if let Some(symbolic) = &analysis.update_matrix_in_z {
-        for (i, row) in symbolic.iter().enumerate() {
-            let name = if i == 0 { "at omega = 1, z = dt" } else { "" };
-            line(name, row.iter().map(|entry| format!(" {entry:>23}")).collect());
-        }
-    }
-    line("determinant", beside_one(analysis.determinant, analysis.determinant_minus_one));
-    line("trace", short(analysis.trace));
-    for (i, [re, im]) in analysis.eigenvalues.iter().enumerate() {
-        let sign = if im.is_sign_negative() { '-' } else { '+' };
-        let name = if i == 0 { "eigenvalues" } else { "" };
-        line(name, format!("{} {sign} {} i", short(*re), short(im.abs())));
-    }
-    line(
-        "spectral radius",
-        beside_one(analysis.spectral_radius, analysis.spectral_radius_minus_one),
-    );
-    let of_flow = analysis.flow_spectral_radius_minus_one;
-    line("of an exact step", beside_one(1.0 + of_flow, of_flow));
+    step_matrix::describe(&analysis.matrix, analysis.update_matrix_in_z.as_deref(), &mut line);
     if let Some(bounded) = analysis.bounded {
         line("orbits", if bounded { "bounded" } else { "unbounded" }.into());
     }
@@ -169,7 +146,7 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
         let shown = if shown.is_empty() { "none".into() } else { shown.join(", ") };
         line("stable for dt in s", shown);
     }
-    let one_mode = matches!(about.system, "oscillator" | "damped-oscillator");
+    let one_mode = matches!(&*about.system, "oscillator" | "damped-oscillator");
     let derived = about.integrator != Stepping::EXACT;
     if analysis.stability_windows.is_none() && one_mode && derived {
         line("stable for dt in s", UNKNOWN.into());
@@ -193,16 +170,7 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
         line("splitting", format!("order {}: {}", word.order, word.word.join(", ")));
         line("", certified(word));
     }
-    line("symplecticity defect", short(analysis.symplecticity_defect));
-    line("reversibility defect", short(analysis.reversibility_defect));
-    line(
-        "phase error per step",
-        match analysis.phase_error_per_step {
-            Some(error) => format!("{} rad", short(error)),
-            None => summary::no_phase_error(analysis).into(),
-        },
-    );
-    line("force evaluations", format!("{} a step", analysis.force_evaluations_per_step));
+    step_matrix::describe_defects(&analysis.matrix, &mut line);
     let energy = analysis.motion.as_ref().and_then(|motion| motion.energy.as_ref());
     line(
         "largest energy drift",

@@ -7,7 +7,7 @@ use libration_analyze::{AnalyzeError, DEFAULT_STEPS};
 use libration_report::verdict::exit_code;
 use libration_settings::equations::EquationSystem;
 
-use super::{analyze_linear, summary};
+use super::{analyze_linear, step_matrix, summary};
 use crate::args::AnalyzeArgs;
 use crate::error::Failure;
 use crate::interrupt;
@@ -58,6 +58,14 @@ fn describe(analysis: &EquationAnalysis) -> String {
         text += &format!("  of the motion        {motion}\n");
     }
     describe_motion(motion, system.smooth, &mut text);
+    if let Some(matrix) = &analysis.matrix {
+        text += "\none step from the start, as a matrix\n";
+        let mut line = |name: &str, value: String| {
+            let _ = writeln!(text, "  {name:<20} {value}");
+        };
+        step_matrix::describe(matrix, None, &mut line);
+        step_matrix::describe_defects(matrix, &mut line);
+    }
     let steps = summary::along_motion(&analysis.steps_along_motion, motion);
     text += &format!("\nalong the motion: {steps}\n");
     text += "\n";

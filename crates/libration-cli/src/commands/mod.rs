@@ -46,6 +46,7 @@ mod result_file;
 mod rollout;
 mod serve;
 mod simulate;
+mod step_matrix;
 mod summary;
 mod temperature;
 mod time_stamps;

@@ -1,6 +1,6 @@
 //! One step of a system of the catalogue.
 
-use libration_analyze::{Analysis, Request, Stepping, change_per_step};
+use libration_analyze::{Analysis, Request, StepMatrix, Stepping, change_per_step};
 use libration_report::verdict::{Outcome, Verdict};
 
 use super::super::digits::{UNKNOWN, limit, short, significant};
@@ -89,7 +89,7 @@ fn first_sentence(analysis: &Analysis) -> String {
 /// How motions grow in steps without feedback.
 fn growth(analysis: &Analysis, is_loop: bool) -> String {
     let [own, exact] =
-        [analysis.spectral_radius_minus_one, analysis.flow_spectral_radius_minus_one]
+        [analysis.matrix.spectral_radius_minus_one, analysis.matrix.flow_spectral_radius_minus_one]
             .map(change_per_step);
     let at = if analysis.request.linear { "" } else { "Linearised at the start, " };
     let without = if is_loop { "Without feedback: " } else { "" };
@@ -100,7 +100,7 @@ fn growth(analysis: &Analysis, is_loop: bool) -> String {
 
 fn append_step(analysis: &Analysis, request: &Request, summary: &mut Summary) {
     let about = &analysis.request;
-    let one_mode = matches!(about.system, "oscillator" | "damped-oscillator");
+    let one_mode = matches!(&*about.system, "oscillator" | "damped-oscillator");
     match &analysis.stability_windows {
         Some(windows) => {
             let end = |x: Option<f64>| x.map_or("∞".into(), |x| limit(x, 6));
@@ -137,12 +137,15 @@ fn append_step(analysis: &Analysis, request: &Request, summary: &mut Summary) {
     if let Some(word) = &analysis.order_of_word {
         summary.row("order", &word.order.to_string());
     }
-    let phase = match analysis.phase_error_per_step {
+    let phase = match analysis.matrix.phase_error_per_step {
         Some(error) => format!("{} rad per step", significant(error, 4)),
-        None => no_phase_error(analysis).to_owned(),
+        None => no_phase_error(&analysis.matrix).to_owned(),
     };
     summary.row("phase error", &phase);
-    summary.row("force evaluations", &format!("{} per step", analysis.force_evaluations_per_step));
+    summary.row(
+        "force evaluations",
+        &format!("{} per step", analysis.matrix.force_evaluations_per_step),
+    );
     let of_motion = analysis.motion.as_ref().and_then(|motion| motion.energy.as_ref());
     if let Some(energy) = of_motion {
         return summary.row("energy", &energy_change(energy));
@@ -166,8 +169,8 @@ fn append_step(analysis: &Analysis, request: &Request, summary: &mut Summary) {
 }
 
 /// Why there is no phase error.
-pub(crate) fn no_phase_error(analysis: &Analysis) -> &'static str {
-    match analysis.loses_oscillation {
+pub(crate) fn no_phase_error(matrix: &StepMatrix) -> &'static str {
+    match matrix.loses_oscillation {
         true => "none: a step is too long to follow the oscillation",
         false => "none: nothing oscillates",
     }
