@@ -10,7 +10,7 @@ use libration_settings::equations::EquationSystem;
 use super::read;
 
 /// A system by the lines of its table.
-fn system(lines: &str) -> EquationSystem {
+pub(crate) fn system(lines: &str) -> EquationSystem {
     let text = format!("[system]\nname = \"case\"\n{lines}");
     EquationSystem::parse(&text, "case", &[]).unwrap_or_else(|error| panic!("{error}"))
 }
