@@ -105,7 +105,7 @@ def test_the_verdict_names_friction_loss_and_says_what_it_does():
     assert report.verdict["evidence"].endswith("without friction loss")
     assert report.verdict["not_examined"] == ["friction loss of joint `j`"]
     assert "This is without friction loss: it holds small deviations only" in report.answer
-    assert any("1 joints with friction loss act at the point; gains are those of motion without them" in note for note in report.results["notes"])
+    assert any("1 joint with friction loss acts at the point; gains are those of motion without them" in note for note in report.results["notes"])
     assert gains.mujoco(HELD["tendon"][0]).verdict["not_examined"] == ["friction loss of tendon `t`"]
 
 

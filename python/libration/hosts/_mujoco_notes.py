@@ -51,7 +51,9 @@ def _constraints(model: Any, data: Any) -> list[str]:
     kinds = np.asarray(data.efc_type)[: data.nefc]
     for key, what in _CONSTRAINTS.items():
         if count := int(np.sum(kinds == int(getattr(mujoco.mjtConstraint, key)))):
-            notes.append(f"{count} {what} act at the point; the result is valid only while this stays so")
+            first, _, rest = what.partition(" ")
+            active = f"1 {first.removesuffix('s')} {rest} acts" if count == 1 else f"{count} {what} act"
+            notes.append(f"{active} at the point; the result is valid only while this stays so")
     return notes
 
 

@@ -44,7 +44,10 @@ impl GainReport {
     /// The same of a simulator in which more acts than the servos whose gains are changed.
     #[must_use]
     pub fn with_other_forces(mut self, others: OtherForces) -> Self {
+        // A simulator in which an actuator has gains that are not changed is not without gains.
+        let is_without = self.others.without_gains && others.actuators.is_empty();
         self.others = others;
+        self.others.without_gains |= is_without;
         self.conclude();
         self
     }

@@ -147,6 +147,11 @@ pub(super) fn actions(report: &GainReport) -> Vec<String> {
         all.push("Add damping or take another integrator: rounding decides with this one.".into());
         return all;
     }
+    let is_unknown = report.verdict.outcome == Outcome::Unknown;
+    if is_unknown && report.measured.as_ref().is_some_and(MeasuredGains::is_at_rest) {
+        all.push("Choose positive gains of position, or add stiffness or damping: what moves so slowly is not measured.".into());
+        return all;
+    }
     if report.verdict.outcome == Outcome::Unknown {
         let settled = with_flag(command, "--settle");
         all.push(format!("Examine an equilibrium near the point{}", then(settled.as_deref())));

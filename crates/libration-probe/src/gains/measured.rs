@@ -184,6 +184,14 @@ impl MeasuredGains {
         self.modes.iter().filter(growing).max_by(most).filter(|_| !self.grows)
     }
 
+    /// Whether the requested point is an equilibrium.
+    pub(super) fn is_at_rest(&self) -> bool {
+        let is_near = |point: &OperatingPoint| point.run.stands && !point.is_far();
+        self.is_differentiable
+            && self.equilibrium.holds
+            && self.operating_point.as_ref().is_none_or(is_near)
+    }
+
     /// Whether there are servos whose gains are changed.
     pub(super) fn has_servos(&self) -> bool {
         !(self.servos.is_empty() && self.not_searched.is_empty())

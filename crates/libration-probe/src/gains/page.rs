@@ -148,7 +148,9 @@ fn measured_tables(page: &mut Page, measured: &MeasuredGains, limit: impl Fn(f64
             limit(servo.largest_kv, 5),
         ]);
     }
-    page.table(&table, 5);
+    if !measured.servos.is_empty() {
+        page.table(&table, 5);
+    }
     let columns = ["mode in", "|z|", "growth rate (1/s)", "of the system (1/s)", "frequency (Hz)"];
     let mut table = Table::new("measured modes", &columns);
     // Of a step without a derivative an error hides each rate.

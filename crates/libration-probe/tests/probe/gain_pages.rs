@@ -1,5 +1,6 @@
 //! Words and pages of gains beside closed forms.
 
+use libration_probe::OtherForces;
 use libration_report::verdict::Outcome;
 
 use crate::gains::report;
@@ -40,6 +41,7 @@ fn without_gains_of_position_nothing_is_said_of_larger_ones_and_without_any_gain
     // 4/h² − 2 kv/h.
     assert!((found.joints[0].largest_kp / 39_800.0 - 1.0).abs() < 1e-6);
     let none = report(r#"{"mass": [1], "kp": [0]}"#, 0.01, 1, "symplectic-euler");
+    let none = none.with_other_forces(OtherForces::default());
     assert!(!none.holds && none.answer.contains("there are no gains"), "{}", none.answer);
     // A spring of 5·10⁴ N/m is beyond 4/h² without any gain.
     let text = r#"{"mass": [1], "kp": [0], "stiffness": [5e4]}"#;
