@@ -61,6 +61,7 @@ _Numbers = NDArray[Any]
 _System = tuple[str, Sequence[tuple[str, float]]]
 _Columns = dict[str, _Numbers]
 _Equations = tuple[str, str, Sequence[tuple[str, float]]]
+_SystemAtStart = tuple[_Equations | _System, Sequence[float] | None, Sequence[float] | None]
 
 __version__: str
 _MOST_STEPS: int
@@ -101,8 +102,7 @@ def _analyze(
 ) -> str: ...
 def _analyze_linear(config: str, dt: float | None, integrator: str | None) -> str: ...
 def _analyze_temperature(
-    system: _Equations | None,
-    step: Mapping[str, Any] | None,
+    system: _SystemAtStart,
     numbers: tuple[float, float, float | None],
     thermostats: Sequence[str] | None,
     draws: tuple[int, int],
@@ -114,9 +114,7 @@ def _audit_energy(
     scale: float | None,
     invocation: str,
 ) -> tuple[str, bool, str]: ...
-def _compare_integrators(
-    system: _Equations | None, step: Mapping[str, Any] | None, tolerance: float, horizon: float
-) -> str: ...
+def _compare_integrators(system: _SystemAtStart, tolerance: float, horizon: float) -> str: ...
 def _check_bodies(system: Mapping[str, Any]) -> None: ...
 def _named_bodies(name: str, count: int, seed: int) -> dict[str, Any]: ...
 def _read_bodies(path: str) -> dict[str, Any]: ...

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from ._settings import count, number
 from .perturbations import gains, law, numbers
 from .perturbations import latency as _latency
-from .systems import IMPLICIT_INTEGRATORS, INTEGRATORS, RUNGE_KUTTA_METHODS, SPLITTING_METHODS, System
+from .equations import EquationSystem
+from .systems import IMPLICIT_INTEGRATORS, INTEGRATORS, RUNGE_KUTTA_METHODS, SPLITTING_METHODS, CustomSystem, System, known
 
 
 def step_request(system: System, integrator: Any, dt: Any, q: Any, v: Any) -> dict[str, Any]:
@@ -30,6 +31,15 @@ def step_request(system: System, integrator: Any, dt: Any, q: Any, v: Any) -> di
         "integrator": integrator,
         "dt": number("dt", dt, "finite and greater than 0"),
     }
+
+
+def system_request(system: Any, q: Any, v: Any) -> tuple[Any, list[float] | None, list[float] | None]:
+    """Return a system of the catalogue or by equations and its start in the format of the engine."""
+    system = known(system)
+    if isinstance(system, CustomSystem):
+        raise TypeError(f"system is {type(system).__name__}; expected a system of the catalogue or an EquationSystem")
+    description = system._text if isinstance(system, EquationSystem) else system._request()
+    return description, coordinates("q", q), coordinates("v", v)
 
 
 def loop_request(

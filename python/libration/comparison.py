@@ -10,10 +10,8 @@ from typing import Any
 from . import _native
 from ._html import table
 from ._json import json_text
-from ._requests import step_request
+from ._requests import system_request
 from ._settings import positive
-from .equations import EquationSystem
-from .systems import System, known
 
 __all__ = ["IntegratorComparison", "compare_integrators"]
 
@@ -63,26 +61,18 @@ def compare_integrators(system: Any, *, tolerance: float, horizon: float, q: Any
     Parameters
     ----------
     system
-        A name or :class:`System` of the catalogue, or an :class:`EquationSystem`, whose motion begins at its own start. Inputs are zero.
+        A name or :class:`System` of the catalogue, or an :class:`EquationSystem`. Inputs are zero.
     tolerance
         The largest error of a state after any step, relative to the largest size of that state in the motion: 1e-13 to 0.1.
     horizon
         The time of the motion in s.
     q, v
-        Initial positions and velocities of a system of the catalogue.
+        Initial positions and velocities (default: those of the system).
 
     Raises
     ------
     ValueError
         For a tolerance or horizon out of range, a system at rest, and a motion that ends or that the reference cannot follow.
     """
-    system = known(system)
     limits = positive("tolerance", tolerance), positive("horizon", horizon)
-    if isinstance(system, EquationSystem):
-        if q is not None or v is not None:
-            raise TypeError(f"{'v' if q is None else 'q'} cannot be combined with a system by equations, which has its own start")
-        return IntegratorComparison(json.loads(_native._compare_integrators(system._text, None, *limits)))
-    if not isinstance(system, System):
-        raise TypeError(f"system is {type(system).__name__}; expected a system of the catalogue or an EquationSystem")
-    step = step_request(system, "rk4", 1.0, q, v)
-    return IntegratorComparison(json.loads(_native._compare_integrators(None, step, *limits)))
+    return IntegratorComparison(json.loads(_native._compare_integrators(system_request(system, q, v), *limits)))

@@ -10,10 +10,8 @@ from typing import Any, Iterable
 from . import _native
 from ._html import table
 from ._json import json_text
-from ._requests import step_request, text
+from ._requests import system_request, text
 from ._settings import count, positive
-from .equations import EquationSystem
-from .systems import System, known
 
 __all__ = ["TemperatureAnalysis", "analyze_temperature"]
 
@@ -96,7 +94,7 @@ def analyze_temperature(
     seed
         The seed of the noise.
     q, v
-        Positions and velocities of a system of the catalogue, from which it descends to an equilibrium.
+        Initial positions and velocities (default: those of the system), from which it descends to an equilibrium.
 
     Raises
     ------
@@ -104,18 +102,10 @@ def analyze_temperature(
         For a wrong word, a number that is not allowed, and a system without a stable equilibrium, with forces of velocities or without a
         potential.
     """
-    system = known(system)
     step = None if dt is None else positive("dt", dt)
     numbers = positive("temperature", temperature), positive("friction", friction), step
     draws = count("steps", steps, 32, 10_000_000_000), count("seed", seed, 0, 2**64 - 1)
     if isinstance(thermostats, str):
         raise TypeError(f"thermostats is {thermostats!r}; expected a list of words, such as [{thermostats!r}]")
     words = None if thermostats is None else [text("a thermostat", word) for word in thermostats]
-    if isinstance(system, EquationSystem):
-        if q is not None or v is not None:
-            raise TypeError(f"{'v' if q is None else 'q'} cannot be combined with a system by equations, which has its own start")
-        return TemperatureAnalysis(json.loads(_native._analyze_temperature(system._text, None, numbers, words, draws)))
-    if not isinstance(system, System):
-        raise TypeError(f"system is {type(system).__name__}; expected a system of the catalogue or an EquationSystem")
-    request = step_request(system, "rk4", 1.0, q, v)
-    return TemperatureAnalysis(json.loads(_native._analyze_temperature(None, request, numbers, words, draws)))
+    return TemperatureAnalysis(json.loads(_native._analyze_temperature(system_request(system, q, v), numbers, words, draws)))

@@ -22,13 +22,18 @@ def test_the_best_integrator_returns_to_the_start_of_a_closed_orbit() -> None:
     assert best["integrator"] in repr(comparison) and best["integrator"] in comparison._repr_html_()
 
 
-def test_systems_by_equations_are_compared_from_their_own_start() -> None:
-    own = libration.EquationSystem(acceleration={"x": "-sin(x)"}, start={"x": 1.0})
-    by_name = libration.compare_integrators("pendulum", tolerance=1e-6, horizon=5.0, q=1.0, v=0.0)
-    own_rows = libration.compare_integrators(own, tolerance=1e-6, horizon=5.0).integrators
-    assert {row["integrator"] for row in own_rows} == {row["integrator"] for row in by_name.integrators}
-    with pytest.raises(TypeError, match="q cannot be combined with a system by equations"):
-        libration.compare_integrators(own, tolerance=1e-6, horizon=5.0, q=1.0)
+def test_a_system_by_equations_is_compared_from_its_own_start_or_from_another() -> None:
+    energy = "q'^2/2 + omega2*(1 - cos(q))"
+    own = libration.System("pendulum", omega2=2.0).equations(energy=energy, start={"q": 0.3})
+    by_name = libration.compare_integrators(libration.System("pendulum", omega2=2.0), tolerance=1e-6, horizon=5.0, q=1.0, v=0.5)
+    begun = libration.compare_integrators(own, tolerance=1e-6, horizon=5.0, q=1.0, v=0.5)
+    # The same numbers to the last bit.
+    assert begun.results == by_name.results
+    assert libration.compare_integrators(own, tolerance=1e-6, horizon=5.0).results != begun.results
+    with pytest.raises(ValueError, match="^q has 2 numbers; `pendulum` has 1 coordinates$"):
+        libration.compare_integrators(own, tolerance=1e-6, horizon=5.0, q=[1.0, 2.0])
+    with pytest.raises(TypeError, match="CustomSystem; expected a system of the catalogue or an EquationSystem"):
+        libration.compare_integrators(lambda q, v: -q, tolerance=1e-6, horizon=5.0)
 
 
 @pytest.mark.parametrize(("tolerance", "horizon", "what"), [(0.5, 1.0, "from 1e-13 to 0.1"), (1e-3, -1.0, "horizon")])

@@ -49,6 +49,15 @@ def test_a_system_by_equations_has_the_masses_of_its_energy() -> None:
     assert found.dt == pytest.approx(1 / found.frequencies[-1])
 
 
+def test_a_start_in_another_valley_is_a_start_of_each_system() -> None:
+    # Without a velocity the start is only the valley.
+    options = {"temperature": 0.01, "friction": 0.5, "thermostats": ["BAOAB"], "steps": 3200}
+    for system in (libration.System("duffing"), libration.System("duffing").equations()):
+        found = [libration.analyze_temperature(system, q=q, **options).results["equilibrium"] for q in (0.3, -0.3)]
+        # The bottoms of the potential −q²/2 + q⁴/4.
+        assert found == pytest.approx(np.array([[1.0], [-1.0]]), abs=1e-8)
+
+
 @pytest.mark.parametrize(
     ("system", "changes", "what"),
     [

@@ -11,9 +11,9 @@ use pyo3::prelude::*;
 use serde_json::json;
 
 use crate::background::run_in_background;
-use crate::error::{Raised, value_error};
+use crate::error::{Raised, keywords, value_error};
 use crate::linear_plant::{Names, Rows as MatrixRows, names, rows as rows_of};
-use crate::request::{any_method, stepping};
+use crate::request::{SystemRequest, any_method, problem, stepping};
 use crate::simulate::{Rows, Simulated, simulated};
 
 /// The text of a file of equations, its name in messages, and other values of parameters.
@@ -21,6 +21,30 @@ pub(crate) type EquationText = (String, String, Vec<(String, f64)>);
 
 pub(crate) fn equations((text, file, set): &EquationText) -> PyResult<EquationSystem> {
     EquationSystem::parse(text, file, set).map_err(located)
+}
+
+/// What describes a system: its equations, or its name in the catalogue.
+#[derive(FromPyObject)]
+pub(crate) enum Description {
+    Equations(EquationText),
+    Name(SystemRequest),
+}
+
+/// A description of a system, and initial positions and velocities in place of its own.
+pub(crate) type AnySystem = (Description, Option<Vec<f64>>, Option<Vec<f64>>);
+
+/// The system with its start, whatever describes it.
+pub(crate) fn any_system((description, q, v): &AnySystem) -> PyResult<EquationSystem> {
+    let (q, v) = (q.as_deref(), v.as_deref());
+    match description {
+        Description::Equations(text) => {
+            let mut system = equations(text)?;
+            system.begin_at(q, v, &[]).map_err(|error| value_error(keywords(&error)))?;
+            Ok(system)
+        }
+        Description::Name(name) => EquationSystem::of_catalogue(problem(name, q, v)?)
+            .map_err(|error| value_error(error.to_string())),
+    }
 }
 
 /// The system with parameters that vary.

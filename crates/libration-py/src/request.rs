@@ -98,18 +98,28 @@ pub(crate) fn warn_of(py: Python<'_>, system: AnySystem, method: Method) -> PyRe
     PyErr::warn(py, &category, &CString::new(caveat)?, 3)
 }
 
+/// A system of the catalogue and its start; the catalogue supplies missing coordinates.
+pub(crate) fn problem(
+    request: &SystemRequest,
+    q: Option<&[f64]>,
+    v: Option<&[f64]>,
+) -> PyResult<InitialValueProblem> {
+    let system = system(request)?;
+    if let (Some(q), Some(v)) = (q, v)
+        && q.len() != v.len()
+    {
+        let (q, v) = (q.len(), v.len());
+        return Err(value_error(format!(
+            "q has {q} coordinates and v has {v}, but they must have equally many"
+        )));
+    }
+    let [q, v] = [q, v].map(|given| given.map(<[f64]>::to_vec));
+    InitialValueProblem::new(system, q, v).map_err(Raised::raised)
+}
+
 impl Step {
     pub(crate) fn setting(&self) -> PyResult<InitialValueProblem> {
-        let system = system(&self.system)?;
-        if let (Some(q), Some(v)) = (&self.q, &self.v)
-            && q.len() != v.len()
-        {
-            let (q, v) = (q.len(), v.len());
-            return Err(value_error(format!(
-                "q has {q} coordinates and v has {v}, but they must have equally many"
-            )));
-        }
-        InitialValueProblem::new(system, self.q.clone(), self.v.clone()).map_err(Raised::raised)
+        problem(&self.system, self.q.as_deref(), self.v.as_deref())
     }
 
     pub(crate) fn stepping(&self) -> PyResult<Stepping> {

@@ -1,17 +1,14 @@
 //! Temperatures of thermostats.
 
 use libration::thermostat::LangevinMethod;
-use libration_analyze::temperature::{
-    TemperatureError, TemperatureRequest, ThermalSystem, analyze_temperature,
-};
+use libration_analyze::temperature::{TemperatureError, TemperatureRequest, analyze_temperature};
 use libration_work::{Silent, Work};
 use pyo3::prelude::*;
 use serde_json::json;
 
 use crate::background::run_in_background;
-use crate::equations::{EquationText, equations};
+use crate::equations::{AnySystem, any_system};
 use crate::error::{Raised, interrupted, value_error};
-use crate::request::Step;
 
 impl Raised for TemperatureError {
     fn raised(self) -> PyErr {
@@ -26,19 +23,13 @@ impl Raised for TemperatureError {
 #[pyfunction]
 pub(crate) fn _analyze_temperature(
     py: Python<'_>,
-    system: Option<EquationText>,
-    step: Option<Step>,
+    system: AnySystem,
     numbers: (f64, f64, Option<f64>),
     thermostats: Option<Vec<String>>,
     draws: (u64, u64),
 ) -> PyResult<String> {
     let ((temperature, friction, dt), (steps, seed)) = (numbers, draws);
-    let found = match (system, step) {
-        (Some(text), _) => ThermalSystem::of_equations(&equations(&text)?),
-        (None, Some(step)) => ThermalSystem::of_problem(&step.setting()?),
-        (None, None) => return Err(value_error("system is None".to_owned())),
-    };
-    let system = found.map_err(Raised::raised)?;
+    let system = any_system(&system)?;
     let thermostats = match thermostats {
         None => LangevinMethod::common(),
         Some(names) => names

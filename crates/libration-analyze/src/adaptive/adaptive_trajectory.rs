@@ -5,7 +5,7 @@
 use std::io::Write;
 
 use libration::Method;
-use libration::equations::Dynamics;
+use libration_settings::equations::EquationSystem;
 use libration_settings::limits;
 use serde_json::{Value, json};
 
@@ -14,6 +14,7 @@ use crate::export::Rows;
 use crate::recording::{self, Recording};
 use crate::trajectory::{
     Divergence, Format, Monitor, Outcome, Trajectory, TrajectoryError, rows as rows_of,
+    time_columns, value_columns,
 };
 
 /// Version of the JSON format.
@@ -25,16 +26,8 @@ const CHUNK: u64 = 1 << 12;
 /// A motion with adaptive steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AdaptiveRequest {
-    /// The name of the system.
-    pub system: String,
-    /// The system; its inputs are zero.
-    pub dynamics: Dynamics,
-    /// Positions, then velocities.
-    pub start: Vec<f64>,
-    /// The states that become columns.
-    pub states: Vec<AdaptiveState>,
-    /// The unit of the energy; empty without one.
-    pub energy_unit: String,
+    /// The system with its start; its inputs are zero.
+    pub system: EquationSystem,
     /// The integrator.
     pub method: Method,
     /// How the length of a step is chosen.
@@ -45,17 +38,6 @@ pub struct AdaptiveRequest {
     pub steps: u64,
     /// The interval of kept steps. The start and the last step are always kept.
     pub every: u64,
-}
-
-/// A state that becomes a column.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AdaptiveState {
-    /// The place among positions and velocities.
-    pub place: usize,
-    /// The name.
-    pub name: String,
-    /// The unit; empty without one.
-    pub unit: String,
 }
 
 /// Simulates the request, until the end or until `monitor` stops it, and keeps all rows.
@@ -100,18 +82,22 @@ impl AdaptiveRequest {
         if self.every == 0 {
             return wrong("every", "0".to_owned(), "at least 1");
         }
-        if let Some(x) = self.start.iter().find(|x| !x.is_finite()) {
+        let start = self.system.initial_state();
+        if let Some(x) = start.iter().find(|x| !x.is_finite()) {
             return wrong("start", format!("{x:?}"), "finite");
         }
-        let programs = AdaptivePrograms::new(&self.dynamics, self.method);
-        match AdaptiveStepper::new(&programs, self.control, &self.start, self.dt) {
+        match AdaptiveStepper::new(&self.programs(), self.control, &start, self.dt) {
             Some(_) => Ok(()),
             None => wrong(
                 "adaptive",
-                format!("{} for {}", self.control.name(), self.system),
+                format!("{} for {}", self.control.name(), self.system.name),
                 "forces that change in space at the start: their derivatives set the length of a step",
             ),
         }
+    }
+
+    fn programs(&self) -> AdaptivePrograms {
+        AdaptivePrograms::new(self.system.equations.dynamics(), self.method)
     }
 
     /// Why a step back does not undo a step, if it does not.
@@ -119,9 +105,9 @@ impl AdaptiveRequest {
         let method = self.method.name();
         if self.control == StepControl::Naive {
             None
-        } else if !self.dynamics.is_positional() {
+        } else if !self.system.equations.dynamics().is_positional() {
             Some("a force depends on a velocity".to_owned())
-        } else if !AdaptivePrograms::new(&self.dynamics, self.method).is_symmetric() {
+        } else if !self.programs().is_symmetric() {
             Some(format!("{method} is not symmetric"))
         } else {
             None
@@ -146,10 +132,9 @@ impl AdaptiveRequest {
 
 impl Recording<f64> for AdaptiveRequest {
     fn columns(&self) -> Vec<(String, String)> {
-        let named = |name: &str, unit: &str| (name.to_owned(), unit.to_owned());
-        let mut names = vec![named("step", "1"), named("t", "s"), named("dt", "s")];
-        names.extend(self.states.iter().map(|state| named(&state.name, &state.unit)));
-        names.extend(self.dynamics.energy().map(|_| named("energy", &self.energy_unit)));
+        let mut names = time_columns(&self.system);
+        names.push(("dt".to_owned(), self.system.time_unit.clone()));
+        names.extend(value_columns(&self.system));
         names
     }
 
@@ -165,7 +150,7 @@ impl Recording<f64> for AdaptiveRequest {
         let (names, units): (Vec<String>, Vec<String>) = self.columns().into_iter().unzip();
         vec![
             ("schema", SCHEMA.into()),
-            ("system", self.system.clone().into()),
+            ("system", self.system.name.clone().into()),
             ("integrator", self.method.name().into()),
             ("adaptive", self.control.name().into()),
             ("dt", self.dt.into()),
@@ -181,20 +166,21 @@ impl Recording<f64> for AdaptiveRequest {
         rows: &mut dyn Rows<f64>,
         monitor: &dyn Monitor,
     ) -> Result<Outcome, TrajectoryError> {
-        let programs = AdaptivePrograms::new(&self.dynamics, self.method);
-        let stepper = AdaptiveStepper::new(&programs, self.control, &self.start, self.dt);
+        let EquationSystem { equations, states, .. } = &self.system;
+        let programs = self.programs();
+        let start = self.system.initial_state();
+        let stepper = AdaptiveStepper::new(&programs, self.control, &start, self.dt);
         // A checked request has a stepper.
         let Some(mut stepper) = stepper else { return Ok(Outcome::Complete) };
-        let mut energy_of = self.dynamics.energy().map(|energy| energy.on::<f64>());
-        let mut inputs = self.start.clone();
-        inputs.resize(self.start.len() + self.dynamics.inputs(), 0.0);
+        let mut energy_of = equations.dynamics().energy().map(|energy| energy.on::<f64>());
+        let mut inputs = self.system.start();
         let mut values = Vec::new();
         for step in 0..=self.steps {
             if step % self.every == 0 || step == self.steps {
                 values.clear();
                 values.push(stepper.last_length());
-                values.extend(self.states.iter().map(|state| stepper.state()[state.place]));
-                inputs[..self.start.len()].copy_from_slice(stepper.state());
+                values.extend(states.iter().map(|state| stepper.state()[state.place]));
+                inputs[..start.len()].copy_from_slice(stepper.state());
                 values.extend(energy_of.iter_mut().flat_map(|energy| energy.run(&inputs)));
                 rows.row(&[step], stepper.time(), &values)?;
             }

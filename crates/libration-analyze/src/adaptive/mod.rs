@@ -7,5 +7,5 @@ mod step_control;
 
 pub use adaptive_programs::AdaptivePrograms;
 pub use adaptive_stepper::{AdaptiveFailure, AdaptiveStepper};
-pub use adaptive_trajectory::{AdaptiveRequest, AdaptiveState, simulate_until, write};
+pub use adaptive_trajectory::{AdaptiveRequest, simulate_until, write};
 pub use step_control::StepControl;

@@ -9,9 +9,9 @@ mod search;
 use std::sync::atomic::AtomicBool;
 
 use libration::Method;
-use libration::equations::Dynamics;
 use libration_report::notation::cut_off;
 use libration_report::verdict::{Outcome, Verdict};
+use libration_settings::equations::EquationSystem;
 use libration_work::Work;
 use serde::Serialize;
 
@@ -29,12 +29,8 @@ pub const SCHEMA: &str = "libration.integrator-comparison/1";
 /// A motion, and the error that is allowed.
 #[derive(Clone, Debug)]
 pub struct ComparisonRequest {
-    /// The name of the system.
-    pub system: String,
-    /// The system; its inputs are zero.
-    pub dynamics: Dynamics,
-    /// Positions, then velocities.
-    pub start: Vec<f64>,
+    /// The system with its start; its inputs are zero.
+    pub system: EquationSystem,
     /// The time of the motion in s.
     pub horizon: f64,
     /// The largest error of a state after any step (of more than 4096, after as many and where the motion is fast), relative to the largest size of that state in the motion.
@@ -126,7 +122,8 @@ pub fn compare(
     request: &ComparisonRequest,
 ) -> Result<Comparison, ComparisonError> {
     error::check(request)?;
-    let is_positional = request.dynamics.is_positional();
+    let dynamics = request.system.equations.dynamics();
+    let is_positional = dynamics.is_positional();
     let motion = work.part("reference", || Motion::new(work, request))?;
     let is_compared = |method: &Method| is_positional || !method.supposes_positional_forces();
     let methods: Vec<Method> = Method::all().filter(is_compared).collect();
@@ -137,7 +134,7 @@ pub fn compare(
     integrators.sort_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.order.cmp(&b.order)));
     let verdict = judge(&integrators, request.tolerance, search.most_evaluations());
     let never = AtomicBool::new(false);
-    let missed = narrow_force(&request.dynamics, &request.start, request.horizon, &never);
+    let missed = narrow_force(dynamics, &request.system.initial_state(), request.horizon, &never);
     let verdict = match missed.ok().flatten() {
         Some(time) if verdict.is_good() => missed_force(time),
         _ => verdict,
@@ -146,12 +143,12 @@ pub fn compare(
         verdict,
         most_evaluations: search.most_evaluations(),
         schema: SCHEMA,
-        system: request.system.clone(),
+        system: request.system.name.clone(),
         horizon: request.horizon,
         tolerance: request.tolerance,
         reference_error: motion.reference_error(),
         is_positional,
-        is_smooth: request.dynamics.accelerations().is_smooth(),
+        is_smooth: dynamics.accelerations().is_smooth(),
         integrators,
     })
 }

@@ -1,14 +1,13 @@
 //! A motion with its reference.
 
-use libration::Method;
-use libration::equations::StepProgram;
+use libration::equations::{Dynamics, StepProgram};
 use libration::number::TwoFloat;
+use libration::{Method, Trajectory};
 use libration_work::Work;
 
 use super::dense_reference::DenseReference;
 use super::{ComparisonError, ComparisonRequest};
 use crate::equation_analysis::step_order;
-use crate::program_stepper::ProgramStepper;
 use crate::reference_flow::Rates;
 
 /// Steps up to which errors are taken after each of them; of more, after as many that are evenly spread, and after those at the nodes of the
@@ -19,16 +18,17 @@ const MOST_SAMPLES: u64 = 4096;
 pub(super) const PIECES: f64 = 2048.0;
 
 /// About the largest size of each state: RK4 in as many steps as there are samples.
-fn sizes(request: &ComparisonRequest) -> Vec<f64> {
-    let step = StepProgram::new(Method::Rk4, &request.dynamics);
-    let mut stepper = ProgramStepper::<f64>::new(&step, &request.dynamics, &request.start);
-    let mut sizes: Vec<f64> = request.start.iter().map(|x| x.abs()).collect();
+fn sizes(request: &ComparisonRequest, start: &[f64]) -> Vec<f64> {
+    let dt = request.horizon / MOST_SAMPLES as f64;
+    let dynamics = request.system.equations.dynamics();
+    let mut trajectory = Trajectory::new(Method::Rk4.into(), dynamics, start, dt);
+    let mut sizes: Vec<f64> = start.iter().map(|x| x.abs()).collect();
     for _ in 0..MOST_SAMPLES {
-        let state = stepper.step(request.horizon / MOST_SAMPLES as f64);
-        if !state.iter().all(|x| x.is_finite()) {
+        if !trajectory.advance(1) {
             // What is not known is no size.
-            return vec![0.0; request.start.len()];
+            return vec![0.0; start.len()];
         }
+        let state = trajectory.state();
         sizes.iter_mut().zip(state).for_each(|(size, x)| *size = size.max(x.abs()));
     }
     sizes
@@ -38,6 +38,8 @@ fn sizes(request: &ComparisonRequest) -> Vec<f64> {
 pub(super) struct Motion<'r> {
     work: Work<'r>,
     pub(super) request: &'r ComparisonRequest,
+    /// Positions, then velocities.
+    start: Vec<f64>,
     reference: DenseReference,
 }
 
@@ -46,12 +48,13 @@ impl<'r> Motion<'r> {
         work: &Work<'r>,
         request: &'r ComparisonRequest,
     ) -> Result<Self, ComparisonError> {
-        let ComparisonRequest { horizon, tolerance, ref start, .. } = *request;
-        let mut rates = Rates::<TwoFloat>::new(&request.dynamics);
-        let sizes = sizes(request);
-        let is_smooth = request.dynamics.accelerations().is_smooth();
+        let ComparisonRequest { horizon, tolerance, ref system } = *request;
+        let (dynamics, start) = (system.equations.dynamics(), system.initial_state());
+        let mut rates = Rates::<TwoFloat>::new(dynamics);
+        let sizes = sizes(request, &start);
+        let is_smooth = dynamics.accelerations().is_smooth();
         let mut follow = |longest: f64| {
-            DenseReference::new(work, &mut rates, start, &sizes, horizon, tolerance, longest)
+            DenseReference::new(work, &mut rates, &start, &sizes, horizon, tolerance, longest)
         };
         let mut reference = follow(if is_smooth { horizon / 8.0 } else { horizon / PIECES })?;
         if !is_smooth {
@@ -66,10 +69,10 @@ impl<'r> Motion<'r> {
         if reference_error.is_nan() || reference_error > tolerance / 10.0 {
             return Err(ComparisonError::Reference { reference_error, horizon, tolerance });
         }
-        if reference.rests_at(start) {
+        if reference.rests_at(&start) {
             return Err(ComparisonError::AtRest);
         }
-        Ok(Motion { work: *work, request, reference })
+        Ok(Motion { work: *work, request, start, reference })
     }
 
     pub(super) fn reference_error(&self) -> f64 {
@@ -78,22 +81,20 @@ impl<'r> Motion<'r> {
 
     /// The order of a step on this system; 0 if it has none.
     pub(super) fn order(&self, step: &StepProgram) -> u32 {
-        let ComparisonRequest { dynamics, start, horizon, .. } = self.request;
-        let mut at = start.clone();
-        at.resize(start.len() + dynamics.inputs(), 0.0);
-        let places: Vec<usize> = (0..start.len()).collect();
-        step_order(step, &at, &places, horizon / 64.0).unwrap_or(0)
+        let ComparisonRequest { system, horizon, .. } = self.request;
+        let places: Vec<usize> = (0..self.start.len()).collect();
+        step_order(step, &system.start(), &places, horizon / 64.0).unwrap_or(0)
     }
 
-    /// The program of a step.
-    pub(super) fn step_of(&self, method: Method) -> StepProgram {
-        StepProgram::new(method, &self.request.dynamics)
+    /// The system.
+    pub(super) fn dynamics(&self) -> &'r Dynamics {
+        self.request.system.equations.dynamics()
     }
 
     /// The largest error of a state in a motion in `steps` steps, relative to the largest size of that state; infinite if it ends.
-    pub(super) fn error(&self, step: &StepProgram, steps: u64) -> f64 {
+    pub(super) fn error(&self, method: Method, steps: u64) -> f64 {
         let mut worst = 0.0_f64;
-        let is_finite = self.compare(step, steps, |state, exact| {
+        let is_finite = self.compare(method, steps, |state, exact| {
             for ((x, exact), scale) in state.iter().zip(exact).zip(&self.reference.scales) {
                 let off = (x - exact).abs() / scale;
                 worst = if off > worst || off.is_nan() { off } else { worst };
@@ -104,23 +105,23 @@ impl<'r> Motion<'r> {
 
     /// The largest difference of the energy from that of the exact motion, relative to the mean kinetic energy of that motion, which does not
     /// depend on the constant of the potential. None without an energy or without such a size.
-    pub(super) fn energy_error(&self, step: &StepProgram, steps: u64) -> Option<f64> {
-        let mut energy = self.request.dynamics.energy()?.on::<f64>();
+    pub(super) fn energy_error(&self, method: Method, steps: u64) -> Option<f64> {
+        let mut energy = self.dynamics().energy()?.on::<f64>();
         let mut energy_of = |state: &[f64]| energy.run(state).next().unwrap_or(f64::NAN);
-        let (mut state, mut hint) = (self.request.start.clone(), 0);
+        let (mut state, mut hint) = (self.start.clone(), 0);
         let mut scale = 0.0_f64;
         for sample in 0..=MOST_SAMPLES {
             let time = self.request.horizon * (sample as f64 / MOST_SAMPLES as f64);
             self.reference.write(time, &mut hint, &mut state);
             let total = energy_of(&state);
-            state[self.request.start.len() / 2..].fill(0.0);
+            state[self.start.len() / 2..].fill(0.0);
             // The trapezoidal rule.
             let weight = if sample == 0 || sample == MOST_SAMPLES { 0.5 } else { 1.0 };
             scale += weight * (total - energy_of(&state));
         }
         let scale = (scale / MOST_SAMPLES as f64).abs();
         let mut worst = 0.0_f64;
-        self.compare(step, steps, |state, exact| {
+        self.compare(method, steps, |state, exact| {
             let off = (energy_of(state) - energy_of(exact)).abs() / scale;
             worst = if off > worst || off.is_nan() { off } else { worst };
         });
@@ -128,16 +129,11 @@ impl<'r> Motion<'r> {
     }
 
     /// Shows states after steps, and the exact ones. Returns whether all were finite.
-    fn compare(
-        &self,
-        step: &StepProgram,
-        steps: u64,
-        mut show: impl FnMut(&[f64], &[f64]),
-    ) -> bool {
+    fn compare(&self, method: Method, steps: u64, mut show: impl FnMut(&[f64], &[f64])) -> bool {
         let horizon = self.request.horizon;
-        let (mut hint, mut exact) = (0, vec![0.0; self.request.start.len()]);
+        let (mut hint, mut exact) = (0, vec![0.0; self.start.len()]);
         let mut interval = (0, 0);
-        self.follow(step, steps, |number, state| {
+        self.follow(method, steps, |number, state| {
             // The samples before this step and up to it, in whole numbers.
             let sample = |number: u64| u128::from(number) * u128::from(MOST_SAMPLES);
             let is_even = steps <= MOST_SAMPLES
@@ -154,19 +150,16 @@ impl<'r> Motion<'r> {
     }
 
     /// Shows the state after each step. Returns whether all were finite; false as well after an interrupt, for which the caller checks.
-    fn follow(&self, step: &StepProgram, steps: u64, mut show: impl FnMut(u64, &[f64])) -> bool {
-        let ComparisonRequest { dynamics, start, horizon, .. } = self.request;
-        let mut stepper = ProgramStepper::<f64>::new(step, dynamics, start);
-        let dt = horizon / steps as f64;
-        for number in 1..=steps {
-            let state = stepper.step(dt);
-            // A state that is not finite stays so.
-            let is_finite = || state.iter().all(|x| x.is_finite());
-            if number % 64 == 0 && !(is_finite() && self.work.check().is_ok()) {
-                return false;
+    fn follow(&self, method: Method, steps: u64, mut show: impl FnMut(u64, &[f64])) -> bool {
+        let dt = self.request.horizon / steps as f64;
+        let mut trajectory = Trajectory::new(method.into(), self.dynamics(), &self.start, dt);
+        (1..=steps).all(|number| {
+            let is_running =
+                trajectory.advance(1) && (number % 64 != 0 || self.work.check().is_ok());
+            if is_running {
+                show(number, trajectory.state());
             }
-            show(number, state);
-        }
-        stepper.state().iter().all(|x| x.is_finite())
+            is_running
+        })
     }
 }

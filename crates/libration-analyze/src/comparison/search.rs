@@ -56,7 +56,7 @@ impl<'m> Search<'m> {
         work: &Work<'_>,
         method: Method,
     ) -> Result<ComparedIntegrator, Interrupted> {
-        let step = self.motion.step_of(method);
+        let step = StepProgram::new(method, self.motion.dynamics());
         let stages = if self.is_positional { stages(method) } else { step.evaluations() };
         let certified = method.certified_order(false);
         let order = match certified.or(self.is_positional.then(|| method.order())) {
@@ -78,14 +78,14 @@ impl<'m> Search<'m> {
             error: None,
             energy_error: None,
         };
-        let (steps, error) = self.fewest_steps(work, &step, stages)?;
+        let (steps, error) = self.fewest_steps(work, method, stages)?;
         // An interrupted motion has an infinite error.
         work.check()?;
         found.error = error.is_finite().then_some(error);
         if let Some(steps) = steps {
             found.dt = Some(self.motion.request.horizon / steps as f64);
             found.evaluations = Some(steps as f64 * stages as f64);
-            found.energy_error = self.motion.energy_error(&step, steps);
+            found.energy_error = self.motion.energy_error(method, steps);
             work.check()?;
         }
         Ok(found)
@@ -95,7 +95,7 @@ impl<'m> Search<'m> {
     fn fewest_steps(
         &self,
         work: &Work<'_>,
-        step: &StepProgram,
+        method: Method,
         stages: usize,
     ) -> Result<(Option<u64>, f64), Interrupted> {
         let tolerance = self.motion.request.tolerance;
@@ -106,7 +106,7 @@ impl<'m> Search<'m> {
             if steps as f64 * stages as f64 > self.most {
                 return Ok((None, least));
             }
-            let error = self.motion.error(step, steps);
+            let error = self.motion.error(method, steps);
             least = least.min(error);
             candidate = match candidate {
                 Some(found) if error <= tolerance => break found,
@@ -124,7 +124,7 @@ impl<'m> Search<'m> {
             }
             let middle = (low as f64 * high as f64).sqrt().round() as u64;
             let middle = middle.clamp(high + 1, low - 1);
-            let here = self.motion.error(step, middle);
+            let here = self.motion.error(method, middle);
             if here <= tolerance { (low, error) = (middle, here) } else { high = middle }
         }
         Ok((Some(low), error))

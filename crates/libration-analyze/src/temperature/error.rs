@@ -35,14 +35,6 @@ pub enum TemperatureError {
     /// No thermostat is given.
     #[error("no thermostat; expected at least one")]
     NoThermostat,
-    /// The start has another number of coordinates than the system.
-    #[error("start has {found} positions and velocities; expected {expected}")]
-    Start {
-        /// The number given.
-        found: usize,
-        /// That of the system.
-        expected: usize,
-    },
     /// Forces depend on velocities.
     #[error(
         "{system} has a force that depends on a velocity, such as damping; expected forces of positions: friction is that of the thermostat"

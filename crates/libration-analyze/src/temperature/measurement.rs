@@ -5,21 +5,18 @@ use libration::random::{Address, Purpose};
 use libration::thermostat::{LangevinMethod, LangevinStep};
 use libration_work::{Interrupted, Work};
 
-use super::thermal_system::ThermalSystem;
+use super::TemperatureRequest;
+use super::normal_modes::NormalModes;
 
 /// Steps between checks for an interrupt and for a trajectory that left.
 const BLOCK: u64 = 1024;
 
 /// An ensemble of trajectories with a thermostat.
 pub(super) struct Ensemble<'a> {
-    pub(super) system: &'a ThermalSystem,
-    /// `kT` in units of the energy.
-    pub(super) temperature: f64,
-    /// Friction in 1/s.
-    pub(super) friction: f64,
+    pub(super) request: &'a TemperatureRequest,
+    pub(super) modes: &'a NormalModes,
     /// Time step in s.
     pub(super) dt: f64,
-    pub(super) seed: u64,
 }
 
 /// The lengths of a trajectory, in steps.
@@ -48,13 +45,15 @@ impl Ensemble<'_> {
         lengths: Lengths,
         trajectory: u64,
     ) -> Result<Option<Means>, Interrupted> {
-        let ThermalSystem { dynamics, equilibrium, mass, .. } = self.system;
+        let Ensemble { request, modes, dt } = *self;
+        let dynamics = request.system.equations.dynamics();
+        let NormalModes { equilibrium, mass, .. } = modes;
         let n = dynamics.degrees();
         let Some(step) = StepProgram::langevin(method, dynamics) else { return Ok(None) };
         let letters = libration::analysis::letters(method);
-        let numbers = LangevinStep::new(self.dt, self.friction, letters);
+        let numbers = LangevinStep::new(dt, request.friction, letters);
         let LangevinStep { dt, decay, damping, implicit_factor } = numbers;
-        let deviation = (self.temperature * method.noise_variance(numbers)).sqrt();
+        let deviation = (request.temperature * method.noise_variance(numbers)).sqrt();
         let noise = 3 * n + dynamics.inputs() + 4;
         let mut inputs = equilibrium.clone();
         inputs.resize(noise + method.noises() * n, 0.0);
@@ -87,12 +86,12 @@ impl Ensemble<'_> {
                 }
             }
         }
-        let scale = 1.0 / (lengths.measured as f64 * n as f64 * self.temperature);
+        let scale = 1.0 / (lengths.measured as f64 * n as f64 * request.temperature);
         let temperatures = sums.map(|sum| sum * scale);
         if !temperatures.iter().all(|x| x.is_finite()) {
             return Ok(None);
         }
-        Ok(Some(Means { temperatures, is_at_home: self.system.is_in_valley(&inputs[..n]) }))
+        Ok(Some(Means { temperatures, is_at_home: modes.is_in_valley(dynamics, &inputs[..n]) }))
     }
 
     /// Draws the vectors of noise of a step.
@@ -101,12 +100,12 @@ impl Ensemble<'_> {
         for (k, pair) in noise.chunks_mut(2).enumerate() {
             let step = step * pairs + k as u64;
             let address =
-                Address { seed: self.seed, trajectory, step, purpose: Purpose::Thermostat };
+                Address { seed: self.request.seed, trajectory, step, purpose: Purpose::Thermostat };
             for (x, draw) in pair.iter_mut().zip(address.gaussian()) {
                 *x = deviation * draw;
             }
         }
-        let root = &self.system.inverse_root;
+        let root = &self.modes.inverse_root;
         for vector in noise.chunks_mut(root.rows()) {
             // From below, since a row takes the draws above it.
             for i in (0..vector.len()).rev() {

@@ -2,23 +2,24 @@
 
 mod error;
 mod measurement;
+mod normal_modes;
 mod prediction;
 mod recommendation;
 mod significant_digits;
-mod thermal_system;
 
 use libration::analysis::covariance_formulas;
 use libration::thermostat::LangevinMethod;
 use libration_report::verdict::Verdict;
+use libration_settings::equations::EquationSystem;
 use libration_work::Work;
 use serde::Serialize;
 
 pub use error::TemperatureError;
 use measurement::{Ensemble, Lengths, Means};
+use normal_modes::NormalModes;
 use prediction::{ModeBiases, Prediction};
 use recommendation::recommended;
 pub use significant_digits::significant;
-pub use thermal_system::ThermalSystem;
 
 /// Version of the JSON format.
 pub const SCHEMA: &str = "libration.temperature/1";
@@ -42,8 +43,8 @@ const RESOLUTION: f64 = 1e-22;
 /// A system at a temperature.
 #[derive(Clone, Debug)]
 pub struct TemperatureRequest {
-    /// The system.
-    pub system: ThermalSystem,
+    /// The system; its inputs are zero. It starts in the valley of a stable equilibrium.
+    pub system: EquationSystem,
     /// `kT` in units of the energy of the system.
     pub temperature: f64,
     /// The friction `γ` in 1/s.
@@ -143,12 +144,13 @@ pub fn analyze_temperature(
     request: &TemperatureRequest,
 ) -> Result<TemperatureReport, TemperatureError> {
     let TemperatureRequest { system, temperature, friction, steps, seed, .. } = request;
-    let dt = request.dt.unwrap_or(1.0 / system.fastest());
-    check(request, dt)?;
+    let modes = NormalModes::new(system)?;
+    let dt = request.dt.unwrap_or(1.0 / modes.fastest());
+    check(request, &modes, dt)?;
     let predictions: Vec<Prediction<'_>> = request
         .thermostats
         .iter()
-        .map(|method| Prediction { method, frequencies: &system.frequencies, friction: *friction })
+        .map(|method| Prediction { method, frequencies: &modes.frequencies, friction: *friction })
         .collect();
     let mut thermostats = work.sweep("predictions", &predictions, |prediction| {
         Ok::<_, TemperatureError>(predicted(prediction, dt))
@@ -175,8 +177,7 @@ pub fn analyze_temperature(
         let lengths = Lengths { discarded: discarded as u64, measured };
         jobs.extend((0..TRAJECTORIES).map(|trajectory| (i, lengths, trajectory)));
     }
-    let ensemble =
-        Ensemble { system, temperature: *temperature, friction: *friction, dt, seed: *seed };
+    let ensemble = Ensemble { request, modes: &modes, dt };
     let means = work.sweep("trajectories", &jobs, |&(i, lengths, trajectory)| {
         let means = ensemble.means(work, predictions[i].method, lengths, trajectory)?;
         Ok::<_, TemperatureError>((i, means))
@@ -185,7 +186,7 @@ pub fn analyze_temperature(
         let own = means.iter().filter(|(method, _)| *method == i).map(|(_, means)| *means);
         write_measurement(report, &own.collect::<Vec<_>>());
     }
-    let rows = 0..system.mass.rows();
+    let NormalModes { equilibrium, mass, frequencies, .. } = &modes;
     Ok(TemperatureReport {
         schema: SCHEMA,
         system: system.name.clone(),
@@ -195,9 +196,9 @@ pub fn analyze_temperature(
         steps: measured * TRAJECTORIES,
         trajectories: TRAJECTORIES,
         seed: *seed,
-        equilibrium: system.equilibrium.clone(),
-        mass: rows.map(|i| system.mass.row(i).to_vec()).collect(),
-        frequencies: system.frequencies.clone(),
+        equilibrium: equilibrium.clone(),
+        mass: (0..mass.rows()).map(|i| mass.row(i).to_vec()).collect(),
+        frequencies: frequencies.clone(),
         bias_limit: BIAS_LIMIT,
         verdict: recommendation::judge(&thermostats, dt),
         recommended: recommended(&thermostats),
@@ -206,7 +207,11 @@ pub fn analyze_temperature(
 }
 
 /// Checks a request before any work.
-fn check(request: &TemperatureRequest, dt: f64) -> Result<(), TemperatureError> {
+fn check(
+    request: &TemperatureRequest,
+    modes: &NormalModes,
+    dt: f64,
+) -> Result<(), TemperatureError> {
     let no_stationary = ": without friction no temperature is stationary";
     for (name, value, reason) in [
         ("temperature", request.temperature, ""),
@@ -217,7 +222,7 @@ fn check(request: &TemperatureRequest, dt: f64) -> Result<(), TemperatureError> 
             return Err(TemperatureError::Number { name, value, reason });
         }
     }
-    let slowest = request.system.frequencies.first().copied().unwrap_or(f64::NAN);
+    let slowest = modes.frequencies.first().copied().unwrap_or(f64::NAN);
     let least = (RESOLUTION.sqrt() / slowest)
         .max((RESOLUTION / request.friction).cbrt() / slowest.cbrt().powi(2));
     if dt < least {

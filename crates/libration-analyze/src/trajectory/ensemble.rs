@@ -123,7 +123,7 @@ fn run<S: BatchFloat + Number>(
 ) -> Result<Outcome, TrajectoryError> {
     let Request { system, dt, steps, every, .. } = request;
     let dynamics = system.equations.dynamics();
-    let first: Vec<f64> = system.q.iter().chain(&system.v).copied().collect();
+    let first = system.initial_state();
     let kept: Vec<usize> = system.states.iter().map(|state| state.place).collect();
     // The velocity of time is 1 for all.
     let scale = |n, i| if kept.contains(&i) { ensemble.scale(n) } else { 1.0 };

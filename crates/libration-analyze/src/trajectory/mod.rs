@@ -39,6 +39,7 @@ pub use format::Format;
 pub use monitor::Monitor;
 pub use outcome::{Divergence, Outcome};
 pub use request::Request;
+pub(crate) use request::{time_columns, value_columns};
 
 /// Version of the JSON format.
 pub const SCHEMA: &str = "libration.trajectory/1";

@@ -70,14 +70,8 @@ impl Request {
 
     /// Names and units of the columns, from left to right.
     pub fn columns(&self) -> Vec<(String, String)> {
-        let system = &self.system;
-        let named = |name: &str, unit: &str| (name.to_owned(), unit.to_owned());
-        let mut names: Vec<_> = self.ensemble.iter().map(|_| named("trajectory", "1")).collect();
-        names.extend([named("step", "1"), named("t", &system.time_unit)]);
-        names.extend(system.states.iter().map(|state| named(&state.name, &state.unit)));
-        let energy = system.equations.dynamics().energy();
-        names.extend(energy.map(|_| named("energy", &system.energy_unit)));
-        names
+        let trajectory = self.ensemble.iter().map(|_| ("trajectory".to_owned(), "1".to_owned()));
+        trajectory.chain(time_columns(&self.system)).chain(value_columns(&self.system)).collect()
     }
 
     /// Number of rows if the state stays finite.
@@ -222,6 +216,18 @@ impl Request {
             None => self.system.definitions.parameters.clone(),
         }
     }
+}
+
+/// Names and units of the columns of the step and of the time.
+pub(crate) fn time_columns(system: &EquationSystem) -> Vec<(String, String)> {
+    vec![("step".to_owned(), "1".to_owned()), ("t".to_owned(), system.time_unit.clone())]
+}
+
+/// Names and units of the columns of the states, and of the energy where the system has one.
+pub(crate) fn value_columns(system: &EquationSystem) -> Vec<(String, String)> {
+    let states = system.states.iter().map(|state| (state.name.clone(), state.unit.clone()));
+    let energy = system.equations.dynamics().energy();
+    states.chain(energy.map(|_| ("energy".to_owned(), system.energy_unit.clone()))).collect()
 }
 
 fn list(values: &[f64]) -> String {

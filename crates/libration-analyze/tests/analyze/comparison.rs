@@ -2,17 +2,20 @@
 
 use std::sync::atomic::AtomicBool;
 
-use libration::ensemble::dynamics_of;
-use libration::{AnySystem, Integrator, Method, State};
+use libration::{Integrator, Method, State, catalog};
 use libration_analyze::comparison::{
     ComparedIntegrator, Comparison, ComparisonError, ComparisonRequest, compare,
 };
+use libration_settings::equations::EquationSystem;
+use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_work::{Silent, Work};
 
 fn request(name: &str, start: &[f64], horizon: f64, tolerance: f64) -> ComparisonRequest {
-    let system = AnySystem::build(name, &[] as &[(&str, f64)]).unwrap();
-    let dynamics = dynamics_of(system, start.len() / 2).unwrap();
-    ComparisonRequest { system: name.into(), dynamics, start: start.to_vec(), horizon, tolerance }
+    let system = catalog::build(name, &[] as &[(&str, f64)]).unwrap();
+    let (q, v) = start.split_at(start.len() / 2);
+    let problem = InitialValueProblem::new(system, Some(q.to_vec()), Some(v.to_vec())).unwrap();
+    let system = EquationSystem::of_catalogue(problem).unwrap();
+    ComparisonRequest { system, horizon, tolerance }
 }
 
 fn compared(request: &ComparisonRequest) -> Result<Comparison, ComparisonError> {
@@ -163,7 +166,8 @@ fn forces_of_velocities_cost_what_a_step_evaluates() {
 #[test]
 fn motions_that_end_are_named_with_the_time() {
     // Free fall to the centre takes π/√8 · √1 s.
-    let falling = ComparisonRequest { start: vec![1.0, 0.0, 0.0, 0.0], ..ellipse(1e-6) };
+    let ComparisonRequest { horizon, .. } = ellipse(1e-6);
+    let falling = request("kepler", &[1.0, 0.0, 0.0, 0.0], horizon, 1e-6);
     let end = std::f64::consts::PI / 8.0_f64.sqrt();
     match compared(&falling).unwrap_err() {
         ComparisonError::NotFinite { time, .. } | ComparisonError::NotSmooth { time, .. } => {
@@ -179,15 +183,28 @@ fn wrong_requests_are_refused_before_any_work() {
     assert_eq!(fails(ellipse(0.5)), ComparisonError::Tolerance { tolerance: 0.5 });
     let endless = ComparisonRequest { horizon: f64::INFINITY, ..ellipse(1e-6) };
     assert_eq!(fails(endless), ComparisonError::Horizon { horizon: f64::INFINITY });
-    let short = ComparisonRequest { start: vec![1.0], ..ellipse(1e-6) };
-    assert_eq!(fails(short), ComparisonError::Start { found: 1, expected: 4 });
 }
 
 fn of_forces(text: &str, start: &[f64], horizon: f64, tolerance: f64) -> ComparisonRequest {
-    let system =
-        libration_settings::equations::EquationSystem::parse(text, "own.toml", &[]).unwrap();
-    let dynamics = system.equations.dynamics().clone();
-    ComparisonRequest { system: "own".into(), dynamics, start: start.to_vec(), horizon, tolerance }
+    let mut system = EquationSystem::parse(text, "own.toml", &[]).unwrap();
+    let (q, v) = start.split_at(start.len() / 2);
+    system.begin_at(Some(q), Some(v), &[]).unwrap();
+    ComparisonRequest { system, horizon, tolerance }
+}
+
+#[test]
+fn a_system_by_name_and_by_its_equations_have_the_same_comparison() {
+    let named = compared(&request("damped-oscillator", &[1.0, 0.5], 2.0, 1e-4)).unwrap();
+    let text = r#"[system]
+        name = "damped"
+        coordinates = ["x"]
+        inputs = ["u"]
+        parameters = { omega2 = 10.0, gamma = 0.2 }
+        acceleration.x = "-omega2*x - gamma*x' + u"
+        energy = "x'^2/2 + omega2*x^2/2""#;
+    let own = compared(&of_forces(text, &[1.0, 0.5], 2.0, 1e-4)).unwrap();
+    assert_eq!(named.integrators, own.integrators);
+    assert_eq!(named.reference_error.to_bits(), own.reference_error.to_bits());
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! `libration simulate --adaptive`.
 
 use libration::{AnyMethod, Method};
-use libration_analyze::adaptive::{AdaptiveRequest, AdaptiveState, StepControl};
+use libration_analyze::adaptive::{AdaptiveRequest, StepControl};
 use libration_analyze::trajectory::FloatType;
 
 use super::equation_file;
@@ -36,21 +36,5 @@ pub(super) fn request(
     }
     let (dt, steps, every) = (step.dt, args.steps_of(step.dt)?, args.every);
     let system = equation_file::any_system(options)?;
-    let states = system.states.iter().map(|state| AdaptiveState {
-        place: state.place,
-        name: state.name.clone(),
-        unit: state.unit.clone(),
-    });
-    Ok(AdaptiveRequest {
-        dynamics: system.equations.dynamics().clone(),
-        start: system.q.iter().chain(&system.v).copied().collect(),
-        states: states.collect(),
-        energy_unit: system.energy_unit.clone(),
-        system: system.name,
-        method,
-        control,
-        dt,
-        steps,
-        every,
-    })
+    Ok(AdaptiveRequest { system, method, control, dt, steps, every })
 }

@@ -2,7 +2,6 @@
 
 use std::fmt::Write as _;
 
-use libration::ensemble::dynamics_of;
 use libration_analyze::comparison::{
     ComparedIntegrator, Comparison, ComparisonError, ComparisonRequest, MOST_OF_BEST, compare,
 };
@@ -27,23 +26,8 @@ pub(super) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     else {
         return Err(Failure::usage("--compare requires --system, --tolerance and --horizon"));
     };
-    let (system, dynamics, start) = match equation_file::system(system) {
-        Some(file) => {
-            let file = file?;
-            let start = file.q.iter().chain(&file.v).copied().collect();
-            (file.name.clone(), file.equations.dynamics().clone(), start)
-        }
-        None => {
-            let problem = system.resolve()?;
-            let dynamics = dynamics_of(problem.system, problem.q.len());
-            let dynamics = dynamics.ok_or_else(|| {
-                Failure::usage(problem.system.entry().wrong_dimension(problem.q.len()))
-            })?;
-            let start = problem.q.iter().chain(&problem.v).copied().collect();
-            (problem.system.name().to_owned(), dynamics, start)
-        }
-    };
-    let request = ComparisonRequest { system, dynamics, start, horizon, tolerance };
+    let system = equation_file::any_system(system)?;
+    let request = ComparisonRequest { system, horizon, tolerance };
     let reporter = Reporter::new(args.json);
     let found = interrupt::compute(|stop| compare(&Work::new(&reporter, stop), &request));
     reporter.clear();

@@ -4,14 +4,14 @@ use std::fmt::Write as _;
 
 use libration::thermostat::LangevinMethod;
 use libration_analyze::temperature::{
-    TemperatureBias, TemperatureError, TemperatureReport, TemperatureRequest, ThermalSystem,
-    ThermostatReport, analyze_temperature, significant,
+    TemperatureBias, TemperatureError, TemperatureReport, TemperatureRequest, ThermostatReport,
+    analyze_temperature, significant,
 };
 use libration_report::verdict::{Outcome, Verdict, exit_code};
 use libration_work::Work;
 
 use super::{equation_file, summary};
-use crate::args::{AnalyzeArgs, SystemArgs};
+use crate::args::AnalyzeArgs;
 use crate::error::Failure;
 use crate::interrupt;
 use crate::progress::Reporter;
@@ -26,7 +26,7 @@ pub(super) fn run(args: &AnalyzeArgs, temperature: f64) -> Result<(String, u8), 
         false => args.thermostat.clone(),
     };
     let request = TemperatureRequest {
-        system: thermal_system(system)?,
+        system: equation_file::any_system(system)?,
         temperature,
         friction,
         dt: args.dt,
@@ -38,28 +38,16 @@ pub(super) fn run(args: &AnalyzeArgs, temperature: f64) -> Result<(String, u8), 
     let found =
         interrupt::compute(|stop| analyze_temperature(&Work::new(&reporter, stop), &request));
     reporter.clear();
-    let found = found.map_err(failure)?;
+    let found = found.map_err(|error| match error {
+        TemperatureError::Interrupted => Failure::Interrupted(error.to_string()),
+        error => Failure::usage(error),
+    })?;
     let text = match (args.json, args.verbose) {
         (true, _) => serde_json::to_string_pretty(&found).map_err(Failure::run)? + "\n",
         (false, true) => describe(&found),
         (false, false) => summary::of_temperatures(&found, &verdict(&found), &setting(&found)),
     };
     Ok((text, exit_code([&found.verdict])))
-}
-
-fn failure(error: TemperatureError) -> Failure {
-    match error {
-        TemperatureError::Interrupted => Failure::Interrupted(error.to_string()),
-        error => Failure::usage(error),
-    }
-}
-
-fn thermal_system(system: &SystemArgs) -> Result<ThermalSystem, Failure> {
-    let found = match equation_file::system(system) {
-        Some(file) => ThermalSystem::of_equations(&file?),
-        None => ThermalSystem::of_problem(&system.resolve()?),
-    };
-    found.map_err(failure)
 }
 
 /// The first option that requires `--temperature`, without it.

@@ -52,6 +52,19 @@ fn systems_by_equations_have_adaptive_steps_and_notes_where_they_are_not_reversi
 }
 
 #[test]
+fn times_have_the_unit_of_the_equations() {
+    for (system, unit) in [("kepler", "s"), ("henon-heiles", "1")] {
+        let words = format!(
+            "simulate --system {system} --integrator leapfrog --dt 0.1 --steps 2 --adaptive naive --format json"
+        );
+        let output = libration(&words).success().get_output().stdout.clone();
+        let found: serde_json::Value = serde_json::from_slice(&output).unwrap();
+        assert_eq!(found["columns"].as_array().unwrap()[1..3], ["t", "dt"]);
+        assert_eq!(found["units"].as_array().unwrap()[1..3], [unit, unit], "{system}");
+    }
+}
+
+#[test]
 fn wrong_adaptive_steps_are_usage_errors() {
     let fails = |words: &str, what: &str| {
         libration(words).failure().code(2).stderr(contains(what));

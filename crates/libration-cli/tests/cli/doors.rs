@@ -21,15 +21,23 @@ const SYSTEMS: [&str; 7] = [
     "henon-heiles",
 ];
 
-/// Name of a command, and its words by name and by equations.
-const COMMANDS: [(&str, &str, &str); 3] = [
-    ("analyze", "--integrator velocity-verlet --dt 0.05 --steps 100 --json", ""),
-    ("simulate", "--integrator velocity-verlet --dt 0.05 --steps 3 --format json", ""),
+/// The name of a row, a command, and its words by name and by equations.
+const COMMANDS: [(&str, &str, &str, &str); 5] = [
+    ("analyze", "analyze", "--integrator velocity-verlet --dt 0.05 --steps 100 --json", ""),
+    ("simulate", "simulate", "--integrator velocity-verlet --dt 0.05 --steps 3 --format json", ""),
     (
+        "advise",
         "advise",
         "--period 0.01 --latency 0.015 --json --feedback 10,2",
         "--period 0.01 --latency 0.015 --json --gain 10,2",
     ),
+    (
+        "adaptive",
+        "simulate",
+        "--integrator velocity-verlet --dt 0.05 --steps 3 --adaptive integrating --format json",
+        "",
+    ),
+    ("langevin", "analyze", "--temperature 0.1 --friction 0.5 --steps 3200 --json", ""),
 ];
 
 /// The values of a document by their paths, such as `rows[0][1]`; none if the command refuses.
@@ -81,14 +89,14 @@ fn systems_by_name_and_by_equations_have_as_much_in_common_as_is_kept() {
     let mut table = format!("{:<10}{:<20}", "command", "system");
     columns.iter().for_each(|column| table += &format!("{column:>10}"));
     table.push('\n');
-    for (command, by_name, by_file) in COMMANDS {
+    for (label, command, by_name, by_file) in COMMANDS {
         for system in SYSTEMS {
             let by_file = if by_file.is_empty() { by_name } else { by_file };
             let doors = [
                 answer(command, system, by_name),
                 answer(command, &format!("{FOLDER}/{system}.toml"), by_file),
             ];
-            table += &row(command, system, doors);
+            table += &row(label, system, doors);
         }
     }
     let path = Path::new(FOLDER).join("table.txt");

@@ -172,10 +172,16 @@ impl EquationSystem {
 }
 
 impl EquationSystem {
+    /// Positions and velocities at the start.
+    pub fn initial_state(&self) -> Vec<f64> {
+        self.q.iter().chain(&self.v).copied().collect()
+    }
+
     /// Positions and velocities at the start, and the inputs, which are zero.
     pub fn start(&self) -> Vec<f64> {
-        let inputs = self.equations.inputs().iter().map(|_| 0.0);
-        self.q.iter().chain(&self.v).copied().chain(inputs).collect()
+        let mut start = self.initial_state();
+        start.resize(start.len() + self.equations.inputs().len(), 0.0);
+        start
     }
 
     /// The first acceleration or rate that is not finite at the start: its key and its value. Nothing can move from there.

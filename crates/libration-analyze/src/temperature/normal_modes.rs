@@ -1,13 +1,11 @@
-//! A system with its masses and its modes about an equilibrium.
+//! Masses and modes of a system about an equilibrium.
 
+use libration::Scalar;
 use libration::analysis::{Equilibrium, jacobian};
-use libration::ensemble::dynamics_of;
 use libration::equations::{Degree, Dynamics};
 use libration::linear::{Matrix, cholesky, eigenvalues, solve_matrix};
 use libration::number::Dual;
-use libration::{AnySystem, Scalar};
 use libration_settings::equations::EquationSystem;
-use libration_settings::initial_value_problem::InitialValueProblem;
 
 use super::TemperatureError;
 
@@ -17,96 +15,56 @@ const ROUNDING: f64 = 1e-9;
 /// A part of the square of the highest frequency, at the start or in the equilibrium, below which a square of a frequency counts as zero.
 const NOTHING: f64 = 1e-12;
 
-/// A system with a potential and constant masses, about a stable equilibrium.
-#[derive(Clone, Debug)]
-pub struct ThermalSystem {
-    /// The name.
-    pub name: String,
-    /// The system; its inputs are zero.
-    pub dynamics: Dynamics,
+/// The modes of a system with a potential and constant masses about a stable equilibrium.
+#[derive(Debug)]
+pub(super) struct NormalModes {
     /// The equilibrium: positions.
-    pub equilibrium: Vec<f64>,
+    pub(super) equilibrium: Vec<f64>,
     /// The mass matrix.
-    pub mass: Matrix,
+    pub(super) mass: Matrix,
     /// The lower triangular `L` with `L Lᵀ` the inverse of the mass matrix.
-    pub inverse_root: Matrix,
+    pub(super) inverse_root: Matrix,
     /// Angular frequencies of the modes in rad/s, the slowest first.
-    pub frequencies: Vec<f64>,
+    pub(super) frequencies: Vec<f64>,
 }
 
-impl ThermalSystem {
-    /// A system of the catalogue about the equilibrium in whose valley it starts, with the mass `m` if that is given.
+impl NormalModes {
+    /// The modes about the equilibrium in whose valley the system starts.
     ///
     /// # Errors
     /// [`TemperatureError`]: the reason for which no temperature is stationary.
-    pub fn of_problem(problem: &InitialValueProblem) -> Result<Self, TemperatureError> {
-        let InitialValueProblem { system, actuation, q, v } = problem;
-        let name = system.name();
-        if matches!(system, AnySystem::DrivenOscillator(_)) {
-            return Err(TemperatureError::Time { system: name.to_owned() });
-        }
-        let start: Vec<f64> = q.iter().chain(v).copied().collect();
-        let degrees = q.len();
-        let dynamics = dynamics_of(*system, degrees).ok_or(TemperatureError::Start {
-            found: start.len(),
-            expected: 2 * system.entry().dimensions.start(),
-        })?;
-        ThermalSystem::new(name, &dynamics, &start, actuation.mass())
-    }
-
-    /// A system by equations about the equilibrium in whose valley it starts.
-    ///
-    /// # Errors
-    /// [`TemperatureError`]: the reason for which no temperature is stationary.
-    pub fn of_equations(system: &EquationSystem) -> Result<Self, TemperatureError> {
-        let name = || system.name.clone();
+    pub(super) fn new(system: &EquationSystem) -> Result<Self, TemperatureError> {
+        let (name, dynamics) = (&*system.name, system.equations.dynamics());
+        let own_name = || name.to_owned();
         for degree in system.equations.degrees() {
             match degree {
                 Degree::Coordinate(_) => {}
-                Degree::Time => return Err(TemperatureError::Time { system: name() }),
+                Degree::Time => return Err(TemperatureError::Time { system: own_name() }),
                 Degree::State(state) => {
                     let state = state.clone();
-                    return Err(TemperatureError::FirstOrder { system: name(), state });
+                    return Err(TemperatureError::FirstOrder { system: own_name(), state });
                 }
             }
         }
-        let start: Vec<f64> = system.q.iter().chain(&system.v).copied().collect();
-        ThermalSystem::new(&system.name, system.equations.dynamics(), &start, 1.0)
-    }
-
-    /// The system about the equilibrium in whose valley `start` is: positions, then velocities.
-    ///
-    /// `unit_mass` is the mass over which the energy of the system is given. A system without an energy has the masses `unit_mass`.
-    ///
-    /// # Errors
-    /// [`TemperatureError`]: the reason for which no temperature is stationary.
-    pub fn new(
-        name: &str,
-        dynamics: &Dynamics,
-        start: &[f64],
-        unit_mass: f64,
-    ) -> Result<Self, TemperatureError> {
-        let n = dynamics.degrees();
-        let system = || name.to_owned();
-        if start.len() != 2 * n {
-            return Err(TemperatureError::Start { found: start.len(), expected: 2 * n });
-        }
         if !dynamics.is_positional() {
-            return Err(TemperatureError::Velocity { system: system() });
+            return Err(TemperatureError::Velocity { system: own_name() });
         }
-        let mut at = start[..n].to_vec();
-        at.resize(2 * n + dynamics.inputs(), 0.0);
+        let n = dynamics.degrees();
+        let mut at = system.start();
+        at[n..].fill(0.0);
         let at_start = largest_square(dynamics, &at);
         descend(dynamics, &mut at);
         let positions: Vec<usize> = (0..n).collect();
         let rest = Equilibrium::near(dynamics, &at, &positions)
-            .map_err(|_| TemperatureError::NoEquilibrium { system: system() })?;
+            .map_err(|_| TemperatureError::NoEquilibrium { system: own_name() })?;
         let equilibrium = rest.state[..n].to_vec();
+        // The energy of a system of the catalogue is that per unit mass.
+        let unit_mass = system.twin.map_or(1.0, |twin| twin.actuation.mass());
         let energy = Energy { dynamics, unit_mass };
         let mass = energy.mass(&rest.state);
         let inverse = solve_matrix(&mass, &Matrix::identity(n));
         let not_positive = || TemperatureError::Mass {
-            system: system(),
+            system: own_name(),
             problem: "a kinetic energy that is not positive",
         };
         let inverse = inverse.ok_or_else(not_positive)?;
@@ -126,34 +84,27 @@ impl ThermalSystem {
         let zero = NOTHING * most.max(at_start);
         if !(least > zero && most.is_finite()) {
             // Not the negative zero.
-            let (system, positions, square) = (system(), equilibrium, least + 0.0);
+            let (system, positions, square) = (own_name(), equilibrium, least + 0.0);
             return Err(match least.abs() <= zero {
                 true => TemperatureError::NoStiffness { system, positions, square },
                 false => TemperatureError::Unstable { system, positions, square },
             });
         }
         let frequencies = squares.into_iter().map(f64::sqrt).collect();
-        Ok(ThermalSystem {
-            name: system(),
-            dynamics: dynamics.clone(),
-            equilibrium,
-            mass,
-            inverse_root,
-            frequencies,
-        })
+        Ok(NormalModes { equilibrium, mass, inverse_root, frequencies })
     }
 
     /// Whether positions descend to the equilibrium, and to no other.
-    pub fn is_in_valley(&self, positions: &[f64]) -> bool {
+    pub(super) fn is_in_valley(&self, dynamics: &Dynamics, positions: &[f64]) -> bool {
         let mut at = positions.to_vec();
-        at.resize(2 * positions.len() + self.dynamics.inputs(), 0.0);
-        descend(&self.dynamics, &mut at);
+        at.resize(2 * positions.len() + dynamics.inputs(), 0.0);
+        descend(dynamics, &mut at);
         let far = |(x, own): (&f64, &f64)| (x - own).abs() > 1e-3 * own.abs().max(1.0);
         !at.iter().zip(&self.equilibrium).any(far)
     }
 
     /// The angular frequency of the fastest mode in rad/s.
-    pub fn fastest(&self) -> f64 {
+    pub(super) fn fastest(&self) -> f64 {
         self.frequencies.last().copied().unwrap_or(f64::NAN)
     }
 }
