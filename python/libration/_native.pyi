@@ -48,7 +48,6 @@ __all__ = [
     "_seconds_of_rollouts",
     "_seconds_of_steps",
     "_simulate",
-    "_simulate_equations",
     "_splitting_methods",
     "_studies",
     "_systems",
@@ -87,12 +86,9 @@ def _program(
     integrator: str,
 ) -> tuple[list[tuple[str, int, int, int]], list[float], list[int]]: ...
 def _simulate(
-    step: Mapping[str, Any], looped: Mapping[str, Any], rows: Mapping[str, Any]
+    system: _SystemAtStart, step: tuple[str, float], looped: Mapping[str, Any], rows: Mapping[str, Any]
 ) -> tuple[_Columns, dict[str, str], dict[str, Any]]: ...
 def _equation_summary(system: _Equations) -> str: ...
-def _simulate_equations(
-    system: _Equations, integrator: str, dt: float, rows: Mapping[str, Any]
-) -> tuple[_Columns, dict[str, str], dict[str, Any]]: ...
 def _analyze_equations(system: _Equations, integrator: str, dt: float, steps: int) -> str: ...
 def _equation_plant(
     system: _Equations,

@@ -15,8 +15,8 @@ from .equations import EquationSystem
 from .systems import IMPLICIT_INTEGRATORS, INTEGRATORS, RUNGE_KUTTA_METHODS, SPLITTING_METHODS, CustomSystem, System, known
 
 
-def step_request(system: System, integrator: Any, dt: Any, q: Any, v: Any) -> dict[str, Any]:
-    """Return a system, its start and its step in the format of the engine."""
+def integrator_name(integrator: Any) -> str:
+    """Return the name of an integrator that exists."""
     text("integrator", integrator)
     known = [*INTEGRATORS, *IMPLICIT_INTEGRATORS, *SPLITTING_METHODS, *RUNGE_KUTTA_METHODS]
     if integrator not in known:
@@ -24,11 +24,16 @@ def step_request(system: System, integrator: Any, dt: Any, q: Any, v: Any) -> di
         listed = ", ".join(known[: len(INTEGRATORS) + len(IMPLICIT_INTEGRATORS)])
         tables = "libration.SPLITTING_METHODS and libration.RUNGE_KUTTA_METHODS"
         raise ValueError(f"unknown integrator {integrator!r}: {near}known are {listed}, and those of {tables}")
+    return str(integrator)
+
+
+def step_request(system: System, integrator: Any, dt: Any, q: Any, v: Any) -> dict[str, Any]:
+    """Return a system, its start and its step in the format of the engine."""
     return {
         "system": system._request(),
         "q": coordinates("q", q),
         "v": coordinates("v", v),
-        "integrator": integrator,
+        "integrator": integrator_name(integrator),
         "dt": number("dt", dt, "finite and greater than 0"),
     }
 

@@ -11,13 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from ._requests import coordinates, text, loop_request, step_request, whole
+from ._requests import coordinates, integrator_name, loop_request, system_request, whole
 from ._html import table
 from ._plots import Panels, plot_trajectory
 from ._keywords import check_keywords
 from ._settings import count as _whole_between, nearest, number
 from .ensemble import Ensemble
-from .equations import EquationSystem
 from .systems import CustomSystem, known
 
 __all__ = ["Trajectory", "simulate"]
@@ -167,7 +166,7 @@ def simulate(
     steps:
         Number of steps, 1 to 2⁵³; ``save_every`` limits the number of rows.
     q, v:
-        Initial positions and velocities, a number or ``(dimension,)`` (default: those of the catalogue).
+        Initial positions and velocities, a number or ``(dimension,)`` (default: those of the system).
     dtype:
         Float type of every operation: ``"float64"``, ``"float32"``, ``"float16"``, a NumPy type, or ``"bfloat16"``.
     save_every:
@@ -225,23 +224,9 @@ def simulate(
         for name, value in {"spread": spread, "threads": threads}.items():
             if value != 0:
                 raise ValueError(f"{name} is {value!r}, but there is one trajectory; it requires num_trajectories")
-    if isinstance(system, EquationSystem):
-        for name, value in {"q": q, "v": v}.items():
-            if value is not None:
-                raise ValueError(f"{name} is given, but a system by equations has its start; it requires Ensemble")
-        loop = {"feedback": feedback, "latency": latency, "jitter": jitter, "skew": skew}
-        for name, value in (loop | {"time_stamps": time_stamps}).items():
-            if value is not None:
-                raise ValueError(f"{name} is given, but it requires a system of the catalogue")
-        step = number("dt", dt, "finite and greater than 0")
-        found = _native._simulate_equations(system._text, text("integrator", integrator), step, rows)
-        return Trajectory(*found)
-    columns, units, ended = _native._simulate(
-        step_request(system, integrator, dt, q, v),
-        loop_request(feedback, latency, jitter, skew),
-        rows,
-    )
-    return Trajectory(columns, units, ended)
+    step = integrator_name(integrator), number("dt", dt, "finite and greater than 0")
+    loop = loop_request(feedback, latency, jitter, skew)
+    return Trajectory(*_native._simulate(system_request(system, q, v), step, loop, rows))
 
 
 _NAMES = {"float64": "f64", "float32": "f32", "float16": "f16", "bfloat16": "bf16"}

@@ -54,6 +54,17 @@ def test_columns_have_the_names_and_units_of_the_system():
         libration.simulate(decay, integrator="rk4", dt=0.01, steps=4).q
 
 
+def test_a_simulation_begins_at_the_given_state_and_warns_of_a_lost_order():
+    options = {"integrator": "velocity-verlet", "dt": 0.01, "steps": 5, "q": 0.7, "v": -0.2}
+    found = libration.simulate(pendulum(start={"q": 1.0}), **options)
+    wanted = libration.simulate(libration.System("pendulum", omega2=9.0), **options)
+    assert found.q[0, 0] == 0.7 and found.v[0, 0] == -0.2
+    np.testing.assert_array_equal(found.q, wanted.q)
+    damped = libration.System(acceleration={"q": "-9*q - q'"}, start={"q": 1.0})
+    with pytest.warns(UserWarning, match="`blanes-moan-srkn-6-4` does not suppose"):
+        libration.simulate(damped, integrator="blanes-moan-srkn-6-4", dt=0.01, steps=5)
+
+
 def test_an_energy_that_diverges_in_a_run_warns():
     system = libration.System(acceleration={"q": "-9*q"}, energy="q'^2/2 + 9*q^2/2", start={"q": 0.1})
     libration.simulate(system, integrator="velocity-verlet", dt=0.66, steps=200)
@@ -109,8 +120,8 @@ def test_equations_are_a_plant_for_budgets_and_analyses():
         (lambda: libration.System(acceleration="-x"), "acceleration must be a dictionary"),
         (lambda: libration.System(acceleration={"x": "-x"}, inputs="u"), "a list of names"),
         (lambda: pendulum(units={"p": "m"}), "the names are `q`, `energy`"),
-        (lambda: libration.simulate(pendulum(), integrator="rk5", dt=0.1, steps=1), "did you mean `rk4`"),
-        (lambda: libration.simulate(pendulum(), integrator="rk4", dt=0.1, steps=1, q=1), "q is given"),
+        (lambda: libration.simulate(pendulum(), integrator="rk5", dt=0.1, steps=1), "did you mean 'rk4'"),
+        (lambda: libration.simulate(pendulum(), integrator="rk4", dt=0.1, steps=1, q=[1, 2]), "q has 2 numbers; .* has 1 coord"),
         (lambda: libration.simulate(pendulum(), integrator="rk4", dt=0.1, steps=1, latency=0.1), "latency is given"),
         (lambda: libration.Ensemble(pendulum(), dt=0.1, q=np.zeros((3, 2))), r"must be \(N, 1\): q"),
         (lambda: libration.analyze(pendulum(), integrator="exact", dt=0.1), "exact"),

@@ -13,7 +13,6 @@ pub mod linear_analysis;
 pub mod linear_trajectory;
 pub mod motion;
 pub mod newton_residual;
-pub mod program_stepper;
 mod recording;
 pub mod reference_flow;
 mod stable_steps;

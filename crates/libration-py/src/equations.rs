@@ -2,7 +2,6 @@
 
 use std::sync::atomic::AtomicBool;
 
-use libration_analyze::Timing;
 use libration_analyze::equation_analysis::{self, EquationSummary};
 use libration_settings::SettingsError;
 use libration_settings::equations::{EquationSystem, EquationTask};
@@ -13,8 +12,7 @@ use serde_json::json;
 use crate::background::run_in_background;
 use crate::error::{Raised, keywords, value_error};
 use crate::linear_plant::{Names, Rows as MatrixRows, names, rows as rows_of};
-use crate::request::{SystemRequest, any_method, problem, stepping};
-use crate::simulate::{Rows, Simulated, simulated};
+use crate::request::{SystemRequest, any_method, problem};
 
 /// The text of a file of equations, its name in messages, and other values of parameters.
 pub(crate) type EquationText = (String, String, Vec<(String, f64)>);
@@ -69,20 +67,6 @@ fn located(error: SettingsError) -> PyErr {
 #[pyfunction]
 pub(crate) fn _equation_summary(system: EquationText) -> PyResult<String> {
     Ok(json!(EquationSummary::new(&equations(&system)?)).to_string())
-}
-
-/// Simulates. Gives columns, their units, and how it ended.
-#[pyfunction]
-pub(crate) fn _simulate_equations<'py>(
-    py: Python<'py>,
-    system: EquationText,
-    integrator: &str,
-    dt: f64,
-    rows: Rows,
-) -> PyResult<Simulated<'py>> {
-    let request =
-        rows.request(equations(&system)?, stepping(integrator)?, Timing::default(), dt)?;
-    simulated(py, &request)
 }
 
 /// Analyses steps. Gives JSON.

@@ -90,9 +90,9 @@ pub(crate) fn method(name: &str) -> PyResult<Method> {
     }
 }
 
-/// Warns of what must be known of `method` on `system`, if anything.
-pub(crate) fn warn_of(py: Python<'_>, system: AnySystem, method: Method) -> PyResult<()> {
-    let Some(caveat) = system.caveat(method) else { return Ok(()) };
+/// Warns of a caveat of an integrator on a system, if there is one.
+pub(crate) fn warn_of(py: Python<'_>, caveat: Option<String>) -> PyResult<()> {
+    let Some(caveat) = caveat else { return Ok(()) };
     let category = py.get_type::<PyUserWarning>();
     // Of who called the function of the package.
     PyErr::warn(py, &category, &CString::new(caveat)?, 3)

@@ -14,8 +14,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::background::run_in_background;
+use crate::equations::{AnySystem, any_system};
 use crate::error::{Raised, keywords, unknown, value_error};
-use crate::request::{Loop, Step, warn_of};
+use crate::request::{Loop, Step, stepping, warn_of};
 
 /// Options of the rows of a trajectory.
 #[derive(FromPyObject)]
@@ -33,7 +34,7 @@ pub(crate) struct Rows {
 
 impl Rows {
     /// The request for rows of a system.
-    pub(crate) fn request(
+    fn request(
         self,
         system: EquationSystem,
         stepping: Stepping,
@@ -80,29 +81,22 @@ pub(crate) struct AnalysisOptions {
 #[pyfunction]
 pub(crate) fn _simulate<'py>(
     py: Python<'py>,
-    step: Step,
+    system: AnySystem,
+    step: (String, f64),
     looped: Loop,
     rows: Rows,
 ) -> PyResult<Simulated<'py>> {
-    let setting = step.setting()?;
-    let (system, dt, stepping) = (setting.system, step.dt()?, step.stepping()?);
-    let setting =
-        EquationSystem::of_catalogue(setting).map_err(|error| value_error(error.to_string()))?;
-    let request = rows.request(setting, stepping, looped.timing()?, dt)?;
-    if let Some(method) = request.stepping.method() {
-        warn_of(py, system, method)?;
-    }
-    simulated(py, &request)
-}
-
-/// Simulates a request.
-pub(crate) fn simulated<'py>(py: Python<'py>, request: &Request) -> PyResult<Simulated<'py>> {
-    let done = run_in_background(py, |stop| trajectory::simulate_until(request, stop), |_| Ok(()))?;
+    let (system, (integrator, dt)) = (any_system(&system)?, step);
+    let stepping = stepping(&integrator)?;
+    let request = rows.request(system, stepping, looped.timing()?, dt)?;
+    warn_of(py, request.caveat())?;
+    let done =
+        run_in_background(py, |stop| trajectory::simulate_until(&request, stop), |_| Ok(()))?;
     converted(py, done.map_err(Raised::raised)?)
 }
 
 /// Columns, their units, and how a simulation ended.
-pub(crate) type Simulated<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, Bound<'py, PyDict>);
+type Simulated<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, Bound<'py, PyDict>);
 
 fn converted(py: Python<'_>, trajectory: trajectory::Trajectory) -> PyResult<Simulated<'_>> {
     let trajectory::Trajectory { table, outcome } = trajectory;

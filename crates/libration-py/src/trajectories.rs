@@ -69,7 +69,7 @@ impl Trajectories {
     ) -> PyResult<Self> {
         let (system, _) = request::system(&system)?;
         let method = method(integrator)?;
-        warn_of(q.py(), system, method)?;
+        warn_of(q.py(), system.caveat(method))?;
         let (q, v) = (q.as_array(), v.as_array());
         let [len, dimension] = [q.nrows(), q.ncols()];
         let of = |n: usize, i: usize| if i < dimension { q[[n, i]] } else { v[[n, i - dimension]] };

@@ -10,6 +10,7 @@ mod growth;
 mod method_color;
 mod nonlinear;
 mod precision;
+mod program_stepper;
 mod rounding;
 mod spectrum;
 mod stability;

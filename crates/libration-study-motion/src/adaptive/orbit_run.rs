@@ -6,7 +6,8 @@ use libration::Method;
 use libration::equations::{Dynamics, StepProgram};
 use libration::system::Kepler;
 use libration_analyze::adaptive::{AdaptivePrograms, AdaptiveStepper, StepControl};
-use libration_analyze::program_stepper::ProgramStepper;
+
+use crate::program_stepper::ProgramStepper;
 
 /// The integrator of all runs: symmetric, of order 2.
 pub(super) const METHOD: Method = Method::Leapfrog;

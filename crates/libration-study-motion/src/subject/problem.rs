@@ -7,10 +7,10 @@ use libration::equations::{Dynamics, StepProgram};
 use libration::number::TwoFloat;
 use libration::simulation::SimulationError;
 use libration::{Float, Method, Model, Scalar, State};
+use libration_analyze::reference_flow::Rates;
 
 use super::orbit::Orbit;
-use libration_analyze::program_stepper::ProgramStepper;
-use libration_analyze::reference_flow::Rates;
+use crate::program_stepper::ProgramStepper;
 
 /// A system of any kind under study: all that the laboratory must know of it.
 ///

@@ -7,7 +7,7 @@ use libration::system::Oscillator;
 use libration::{Float, Method, Scalar};
 
 use super::Problem;
-use libration_analyze::program_stepper::ProgramStepper;
+use crate::program_stepper::ProgramStepper;
 
 /// Defects of this size are rounding: 1024 bits carry a step to 2⁻¹⁰²⁰, and their products and
 /// sums to far below 2⁻⁹⁰⁰.

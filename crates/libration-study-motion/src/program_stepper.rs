@@ -5,7 +5,7 @@ use libration::equations::{Dynamics, Evaluation, StepProgram};
 
 /// A trajectory whose inputs are zero, on numbers of type `S`.
 #[derive(Debug)]
-pub struct ProgramStepper<'p, S> {
+pub(crate) struct ProgramStepper<'p, S> {
     step: Evaluation<'p, S>,
     /// Positions, velocities, inputs and the time step.
     inputs: Vec<S>,
@@ -16,7 +16,7 @@ pub struct ProgramStepper<'p, S> {
 
 impl<'p, S: Elementary> ProgramStepper<'p, S> {
     /// From positions and velocities.
-    pub fn new(step: &'p StepProgram, dynamics: &Dynamics, start: &[S]) -> Self {
+    pub(crate) fn new(step: &'p StepProgram, dynamics: &Dynamics, start: &[S]) -> Self {
         let mut inputs = start.to_vec();
         inputs.resize(start.len() + dynamics.inputs() + 1, S::zero());
         let next = Vec::with_capacity(start.len());
@@ -24,7 +24,7 @@ impl<'p, S: Elementary> ProgramStepper<'p, S> {
     }
 
     /// Positions and velocities after a step of `dt` seconds.
-    pub fn step(&mut self, dt: S) -> &[S] {
+    pub(crate) fn step(&mut self, dt: S) -> &[S] {
         let ProgramStepper { step, inputs, next, .. } = self;
         if let Some(last) = inputs.last_mut() {
             *last = dt;
@@ -36,7 +36,7 @@ impl<'p, S: Elementary> ProgramStepper<'p, S> {
     }
 
     /// Positions and velocities.
-    pub fn state(&self) -> &[S] {
+    pub(crate) fn state(&self) -> &[S] {
         &self.inputs[..self.states]
     }
 }
