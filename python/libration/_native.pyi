@@ -183,7 +183,7 @@ def _verify_dataset(
 class Trajectories:
     def __new__(
         cls,
-        system: _System,
+        system: _Equations | _System,
         integrator: str,
         dt: float,
         q: _Numbers,
@@ -191,16 +191,6 @@ class Trajectories:
         single: bool,
         threads: int,
     ) -> Self: ...
-    @staticmethod
-    def _of_equations(
-        system: _Equations,
-        integrator: str,
-        dt: float,
-        q: _Numbers,
-        v: _Numbers,
-        single: bool,
-        threads: int,
-    ) -> Trajectories: ...
     def _advance(self, steps: int) -> None: ...
     def _step(self) -> int: ...
     def _states(self) -> list[_Numbers]: ...

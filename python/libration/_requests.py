@@ -43,8 +43,12 @@ def system_request(system: Any, q: Any, v: Any) -> tuple[Any, list[float] | None
     system = known(system)
     if isinstance(system, CustomSystem):
         raise TypeError(f"system is {type(system).__name__}; expected a system of the catalogue or an EquationSystem")
-    description = system._text if isinstance(system, EquationSystem) else system._request()
-    return description, coordinates("q", q), coordinates("v", v)
+    return description_of(system), coordinates("q", q), coordinates("v", v)
+
+
+def description_of(system: System | EquationSystem) -> Any:
+    """Return a system in the format of the engine."""
+    return system._text if isinstance(system, EquationSystem) else system._request()
 
 
 def loop_request(

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from ._requests import rows, text
+from ._requests import description_of, rows, text
 from ._keywords import check_keywords
 from ._settings import count, positive
 from .equations import EquationSystem
-from .systems import CustomSystem, Program, System, known, seen
+from .systems import CustomSystem, Program, known, seen
 
 __all__ = ["Ensemble"]
 
@@ -76,22 +76,14 @@ class Ensemble:
                     raise ValueError(f"{name} is not finite in {self.dtype}")
         threads = count("threads", threads, 0, 1024)
         self._step, self._len = 0, len(at)
-        if isinstance(self.system, System):
-            single = bool(self.dtype == np.float32)
-            request = self.system._request()
-            self._trajectories: Any = _native.Trajectories(
-                request, self.integrator, self.dt, at, speed, single, threads
-            )
-        elif isinstance(self.system, EquationSystem):
-            single = bool(self.dtype == np.float32)
-            self._trajectories = _native.Trajectories._of_equations(
-                self.system._text, self.integrator, self.dt, at, speed, single, threads
-            )
-        else:
-            self._trajectories = Program(self.integrator, self.system)
+        if isinstance(self.system, CustomSystem):
+            self._trajectories: Any = Program(self.integrator, self.system)
             # The engine has its own lock; this one is for NumPy arrays.
             self._turn = threading.RLock()
             self._state = (at.astype(self.dtype), speed.astype(self.dtype))
+        else:
+            description, single = description_of(self.system), bool(self.dtype == np.float32)
+            self._trajectories = _native.Trajectories(description, self.integrator, self.dt, at, speed, single, threads)
 
     @property
     def step(self) -> int:

@@ -1,19 +1,19 @@
-//! The Python class `Trajectories`: an ensemble of a catalogue system.
+//! The Python class `Trajectories`: an ensemble of a system.
 
+use libration::Method;
 use libration::ensemble::{AnyEnsemble, BatchFloat, EnsembleError, Execution};
 use libration::rl::EnvironmentError;
-use libration::{AnySystem, Method};
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::array::{Array, Number, allocate, view_mut};
 use crate::checked_mutex::CheckedMutex;
-use crate::equations::{EquationText, equations};
-use crate::error::{Raised, value_error};
-use crate::request::{self, SystemRequest, method, warn_of};
+use crate::equations::{Description, any_system};
+use crate::error::Raised;
+use crate::request::{method, warn_of};
 use crate::time_slices::run_in_slices;
 
-/// Trajectories of a catalogue system, which the engine steps together.
+/// Trajectories of a system, which the engine steps together.
 #[pyclass(frozen, module = "libration._native")]
 pub(crate) struct Trajectories {
     ensemble: CheckedMutex<(AnyTrajectories, Threads)>,
@@ -56,10 +56,10 @@ const FIRST: u64 = 1 << 18;
 
 #[pymethods]
 impl Trajectories {
-    /// Creates trajectories from `q` and `v`, `(len, dimension)` each.
+    /// Creates trajectories from `q` and `v`, `(len, degrees of freedom)` each.
     #[new]
     fn new(
-        system: SystemRequest,
+        system: Description,
         integrator: &str,
         dt: f64,
         q: PyReadonlyArray2<'_, f64>,
@@ -67,49 +67,24 @@ impl Trajectories {
         single: bool,
         threads: usize,
     ) -> PyResult<Self> {
-        let (system, _) = request::system(&system)?;
-        let method = method(integrator)?;
-        warn_of(q.py(), system.caveat(method))?;
+        let py = q.py();
         let (q, v) = (q.as_array(), v.as_array());
-        let [len, dimension] = [q.nrows(), q.ncols()];
-        let of = |n: usize, i: usize| if i < dimension { q[[n, i]] } else { v[[n, i - dimension]] };
-        let (execution, threads) = Threads::start(threads)?;
-        let ensemble = if single {
-            AnyTrajectories::F32(made(system, [len, dimension], execution, &|n, i| {
-                of(n, i) as f32
-            })?)
-        } else {
-            AnyTrajectories::F64(made(system, [len, dimension], execution, &of)?)
-        };
-        let ensemble = CheckedMutex::new((ensemble, threads));
-        Ok(Trajectories { ensemble, method, dt })
-    }
-
-    /// Creates trajectories of a system by equations from `q` and `v`, `(len, degrees of freedom)` each.
-    #[staticmethod]
-    fn _of_equations(
-        system: EquationText,
-        integrator: &str,
-        dt: f64,
-        q: PyReadonlyArray2<'_, f64>,
-        v: PyReadonlyArray2<'_, f64>,
-        single: bool,
-        threads: usize,
-    ) -> PyResult<Self> {
-        let system = equations(&system)?;
+        let [len, degrees] = [q.nrows(), q.ncols()];
+        // The catalogue has some systems in several dimensions.
+        let origin = matches!(system, Description::Name(_)).then(|| vec![0.0; degrees]);
+        let system = any_system(&(system, origin, None))?;
         let method = method(integrator)?;
-        let (q, v) = (q.as_array(), v.as_array());
-        let dynamics = system.equations.dynamics();
-        let [len, degrees] = [q.nrows(), dynamics.degrees()];
+        warn_of(py, system.caveat(method))?;
         let of = |n: usize, i: usize| if i < degrees { q[[n, i]] } else { v[[n, i - degrees]] };
         let (execution, threads) = Threads::start(threads)?;
         let refused = |error: EnsembleError| EnvironmentError::from(error).raised();
+        let (dynamics, twin) = (system.equations.dynamics(), system.twin.map(|twin| twin.system));
         let ensemble = if single {
             let start = |n, i| of(n, i) as f32;
-            let all = f32::program_ensemble(dynamics, len, execution, &start);
+            let all = f32::ensemble_for(method.into(), dynamics, twin, len, execution, &start);
             AnyTrajectories::F32(all.map_err(refused)?)
         } else {
-            let all = f64::program_ensemble(dynamics, len, execution, &of);
+            let all = f64::ensemble_for(method.into(), dynamics, twin, len, execution, &of);
             AnyTrajectories::F64(all.map_err(refused)?)
         };
         let ensemble = CheckedMutex::new((ensemble, threads));
@@ -175,19 +150,4 @@ impl Trajectories {
             AnyTrajectories::F64(all) => PyArray1::from_vec(py, energies(&**all)).into_any(),
         })
     }
-}
-
-fn made<T: BatchFloat>(
-    system: AnySystem,
-    [len, dimension]: [usize; 2],
-    execution: Execution,
-    start: &(dyn Fn(usize, usize) -> T + Sync),
-) -> PyResult<Box<dyn AnyEnsemble<T>>> {
-    if len == 0 {
-        return Err(value_error(
-            "q has no rows, but there must be a trajectory at least".to_owned(),
-        ));
-    }
-    let made: Result<_, EnsembleError> = T::ensemble(system, dimension, len, execution, start);
-    made.map_err(|error| EnvironmentError::from(error).raised())
 }

@@ -1,10 +1,9 @@
 //! Rows of an ensemble.
 
 use half::{bf16, f16};
+use libration::AnyMethod;
 use libration::ensemble::{AnyEnsemble, BatchFloat, InsufficientMemory};
 use libration::equations::{Dynamics, StepProgram};
-use libration::{AnyMethod, AnySystem};
-use libration_settings::equations::Twin;
 
 use super::{EnsembleOptions, Monitor, Outcome, Request, TrajectoryError, loops};
 use crate::export::{Number, Rows};
@@ -129,13 +128,8 @@ fn run<S: BatchFloat + Number>(
     let scale = |n, i| if kept.contains(&i) { ensemble.scale(n) } else { 1.0 };
     let start = |n: usize, i: usize| S::from_f64(scale(n, i) * first[i]);
     let (count, execution) = (ensemble.count, ensemble.execution()?);
-    let mut all = match (system.twin, method) {
-        // The steps of an oscillator are shorter than the way through a program.
-        (Some(Twin { system: own @ AnySystem::Oscillator(_), .. }), AnyMethod::Explicit(_)) => {
-            S::ensemble(own, system.q.len(), count, execution, &start)?
-        }
-        _ => S::program_ensemble(dynamics, count, execution, &start)?,
-    };
+    let twin = system.twin.map(|twin| twin.system);
+    let mut all = S::ensemble_for(method, dynamics, twin, count, execution, &start)?;
     let run = EnsembleRun { method, dt: *dt, steps: *steps, every: *every, kept: &kept };
     let (lost, residual) = run.record(&mut *all, dynamics, rows, monitor)?;
     Ok(Outcome::of::<S>(request, &lost).with_residual(residual))

@@ -43,18 +43,7 @@ pub struct Request {
 impl Request {
     /// Why steps of this integrator lose their order on this system; none if they do not.
     pub fn caveat(&self) -> Option<String> {
-        let method = self.stepping.method()?;
-        if let Some(Twin { system, .. }) = self.system.twin {
-            return system.caveat(method);
-        }
-        let is_positional = self.system.equations.dynamics().is_positional();
-        (method.supposes_positional_forces() && !is_positional).then(|| {
-            format!(
-                "a force of `{}` depends on a velocity, which `{}` does not suppose: its errors are those of order 1; `rk4` keeps its order",
-                self.system.name,
-                method.name()
-            )
-        })
+        self.system.caveat(self.stepping.method()?)
     }
 
     /// The first option that requires a loop.

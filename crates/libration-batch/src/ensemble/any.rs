@@ -3,14 +3,11 @@
 use core::fmt::Debug;
 
 use bytemuck::Pod;
-use libration_core::system::Oscillator;
-use libration_core::{AnySystem, ImplicitMethod, Method, Model, State, with_method, with_system};
+use libration_core::{AnyMethod, AnySystem, ImplicitMethod, Method, with_system};
 use libration_equations::{Dynamics, Program};
 
-use super::{
-    All, Ensemble, EnsembleError, Execution, InstructionSet, InsufficientMemory, ProgramEnsemble,
-    iterated_program,
-};
+use super::isotropic::Isotropic;
+use super::{EnsembleError, Execution, InstructionSet, ProgramEnsemble, iterated_program};
 use crate::machine::MachineFloat;
 
 /// An ensemble of a system in some number of dimensions.
@@ -94,18 +91,33 @@ pub trait BatchFloat: MachineFloat + Pod {
         start: &(dyn Fn(usize, usize) -> Self + Sync),
     ) -> Result<Box<dyn AnyEnsemble<Self>>, EnsembleError>;
 
+    /// The same in steps of `method`, by compiled kernels of `twin` where they are faster: `twin` has the same bits.
+    ///
+    /// # Errors
+    /// [`EnsembleError::System`] if the twin does not exist in that dimension; [`EnsembleError::Memory`].
+    fn ensemble_for(
+        method: AnyMethod,
+        dynamics: &Dynamics,
+        twin: Option<AnySystem>,
+        len: usize,
+        execution: Execution,
+        start: &(dyn Fn(usize, usize) -> Self + Sync),
+    ) -> Result<Box<dyn AnyEnsemble<Self>>, EnsembleError> {
+        // Kernels of tables loop over coefficients, which takes 20 times as long as a program.
+        let is_table = |method| matches!(method, Method::Splitting(_) | Method::RungeKutta(_));
+        match (twin, method) {
+            (Some(system @ AnySystem::Oscillator(_)), AnyMethod::Explicit(method))
+                if !is_table(method) =>
+            {
+                Self::ensemble(system, dynamics.degrees(), len, execution, start)
+            }
+            _ => Self::program_ensemble(dynamics, len, execution, start),
+        }
+    }
+
     /// Runs a program `times` times on its own results, in each lane alike: row `i` has input `i` of every lane, and output `i`
     /// in the end. Rows have equal lengths, and the program has an output for each of them.
     fn iterate(program: &Program, rows: &mut [Vec<Self>], times: u64, set: InstructionSet);
-}
-
-/// An isotropic oscillator in several dimensions, integrated as independent one-dimensional
-/// oscillators. Coordinate `i` of trajectory `n` of `N` is number `iN + n`.
-#[derive(Debug)]
-struct Isotropic<T> {
-    system: Oscillator<T>,
-    dimension: usize,
-    coordinates: Ensemble<T, 1>,
 }
 
 // Functions of this crate, which compiles the machine once: provided methods would be compiled by each that calls them.
@@ -158,26 +170,6 @@ pub fn dynamics_of(system: AnySystem, dimension: usize) -> Option<Dynamics> {
     with_system!(system, dimension, |model, D| Some(Dynamics::of::<D>(&model, None)), None)
 }
 
-impl<T: BatchFloat> Isotropic<T> {
-    fn new(
-        model: Oscillator<f64>,
-        dimension: usize,
-        len: usize,
-        execution: Execution,
-        start: &(dyn Fn(usize, usize) -> T + Sync),
-    ) -> Result<Self, EnsembleError> {
-        let coordinate = |number: usize| {
-            let (i, n) = (number / len, number % len);
-            State { q: [start(n, i)], v: [start(n, dimension + i)] }
-        };
-        let needed = ProgramEnsemble::<T>::bytes(dimension, len);
-        let all = len.checked_mul(dimension);
-        let all = all.ok_or(InsufficientMemory { needed, available: None })?;
-        let coordinates = Ensemble::from_fn(all, execution, coordinate)?;
-        Ok(Isotropic { system: Model::<1>::on::<T>(&model), dimension, coordinates })
-    }
-}
-
 impl<T: BatchFloat> AnyEnsemble<T> for ProgramEnsemble<T> {
     fn len(&self) -> usize {
         self.len()
@@ -223,65 +215,5 @@ impl<T: BatchFloat> AnyEnsemble<T> for ProgramEnsemble<T> {
 
     fn not_finite(&self) -> Vec<usize> {
         self.not_finite().collect()
-    }
-}
-
-impl<T: BatchFloat> AnyEnsemble<T> for Isotropic<T> {
-    fn len(&self) -> usize {
-        self.coordinates.len() / self.dimension
-    }
-
-    fn dimension(&self) -> usize {
-        self.dimension
-    }
-
-    fn step(&self) -> u64 {
-        self.coordinates.step()
-    }
-
-    fn advance(&mut self, method: Method, dt: T, steps: u64) {
-        let Isotropic { system, coordinates, .. } = self;
-        // The one place where kernels of an ensemble are made for all methods.
-        let outcome =
-            with_method!(method, |m| coordinates.advance(m, All(*system), All(dt), steps));
-        // One value for all is never too few or too many.
-        debug_assert_eq!(outcome, Ok(()));
-    }
-
-    fn advance_implicit(
-        &mut self,
-        method: ImplicitMethod,
-        _: T,
-        _: u64,
-    ) -> Result<(), EnsembleError> {
-        Err(EnsembleError::Implicit { method: method.name() })
-    }
-
-    fn execute(&mut self, execution: Execution) {
-        self.coordinates.execute(execution);
-    }
-
-    fn q(&self, i: usize) -> Option<&[T]> {
-        self.coordinates.q(0).get(i * self.len()..(i + 1) * self.len())
-    }
-
-    fn v(&self, i: usize) -> Option<&[T]> {
-        self.coordinates.v(0).get(i * self.len()..(i + 1) * self.len())
-    }
-
-    fn energies(&self) -> Option<Vec<T>> {
-        let q: Vec<&[T]> = (0..self.dimension).filter_map(|i| self.q(i)).collect();
-        let v: Vec<&[T]> = (0..self.dimension).filter_map(|i| self.v(i)).collect();
-        let at =
-            |planes: &[&[T]], n: usize| planes.iter().map(|plane| plane[n]).collect::<Vec<T>>();
-        Some((0..self.len()).map(|n| self.system.energy_of(&at(&q, n), &at(&v, n))).collect())
-    }
-
-    fn not_finite(&self) -> Vec<usize> {
-        let mut lost: Vec<usize> =
-            self.coordinates.not_finite().map(|number| number % self.len()).collect();
-        lost.sort_unstable();
-        lost.dedup();
-        lost
     }
 }

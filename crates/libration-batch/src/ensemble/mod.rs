@@ -18,6 +18,8 @@ mod error;
 mod execution;
 pub(crate) mod instructions;
 #[cfg(not(test))]
+mod isotropic;
+#[cfg(not(test))]
 mod iterated_program;
 pub(crate) mod kernel;
 mod loops;

@@ -1,5 +1,6 @@
 //! Systems of the catalogue by their equations.
 
+use libration::Method;
 use libration::equations::{Definitions, EquationError, Equations};
 
 use super::{EquationSystem, Twin, named_states};
@@ -36,6 +37,21 @@ impl EquationSystem {
             v,
             task: None,
             twin: Some(Twin { system, actuation }),
+        })
+    }
+
+    /// Why steps of an integrator lose their order on this system; none if they do not.
+    pub fn caveat(&self, method: Method) -> Option<String> {
+        if let Some(Twin { system, .. }) = self.twin {
+            return system.caveat(method);
+        }
+        let is_positional = self.equations.dynamics().is_positional();
+        (method.supposes_positional_forces() && !is_positional).then(|| {
+            format!(
+                "a force of `{}` depends on a velocity, which `{}` does not suppose: its errors are those of order 1; `rk4` keeps its order",
+                self.name,
+                method.name()
+            )
         })
     }
 

@@ -6,6 +6,7 @@
 mod analysis;
 mod block_machine;
 mod catalog;
+mod compiled_twins;
 mod dimensions;
 mod elementary;
 mod elementary_functions;
