@@ -1,12 +1,13 @@
 //! Ensembles of oscillators by compiled kernels.
 
+use bytemuck::Pod;
 use libration_core::system::Oscillator;
 use libration_core::{ImplicitMethod, Method, Model, State, with_method};
 
-use super::{
-    All, AnyEnsemble, BatchFloat, Ensemble, EnsembleError, Execution, InsufficientMemory,
-    ProgramEnsemble,
-};
+use super::any_ensemble::AnyEnsemble;
+use super::planes::Planes;
+use super::{All, Ensemble, EnsembleError, Execution, InsufficientMemory};
+use crate::machine::MachineFloat;
 
 /// An isotropic oscillator in several dimensions, integrated as independent one-dimensional
 /// oscillators. Coordinate `i` of trajectory `n` of `N` is number `iN + n`.
@@ -17,7 +18,7 @@ pub(super) struct Isotropic<T> {
     coordinates: Ensemble<T, 1>,
 }
 
-impl<T: BatchFloat> Isotropic<T> {
+impl<T: MachineFloat + Pod> Isotropic<T> {
     pub(super) fn new(
         model: Oscillator<f64>,
         dimension: usize,
@@ -29,7 +30,7 @@ impl<T: BatchFloat> Isotropic<T> {
             let (i, n) = (number / len, number % len);
             State { q: [start(n, i)], v: [start(n, dimension + i)] }
         };
-        let needed = ProgramEnsemble::<T>::bytes(dimension, len);
+        let needed = Planes::<T>::bytes(2 * dimension, len);
         let all = len.checked_mul(dimension);
         let all = all.ok_or(InsufficientMemory { needed, available: None })?;
         let coordinates = Ensemble::from_fn(all, execution, coordinate)?;
@@ -37,7 +38,7 @@ impl<T: BatchFloat> Isotropic<T> {
     }
 }
 
-impl<T: BatchFloat> AnyEnsemble<T> for Isotropic<T> {
+impl<T: MachineFloat + Pod> AnyEnsemble<T> for Isotropic<T> {
     fn len(&self) -> usize {
         self.coordinates.len() / self.dimension
     }

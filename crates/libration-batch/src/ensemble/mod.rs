@@ -8,10 +8,12 @@
 //! Nothing is contracted or reordered, so a lane holds the bits of the lone scalar trajectory, for
 //! every instruction set, block width, number of threads and number of trajectories.
 
-// Its kernels take long to compile, and no unit test needs them.
+// Kernels take long to compile, and no unit test needs these.
 #[cfg(not(test))]
-mod any;
+mod any_ensemble;
 mod assign;
+#[cfg(not(test))]
+mod batch_float;
 mod buffer;
 mod checkpoint;
 mod error;
@@ -36,8 +38,10 @@ use core::marker::PhantomData;
 use bytemuck::Pod;
 
 #[cfg(not(test))]
-pub use any::{AnyEnsemble, BatchFloat, dynamics_of};
+pub use any_ensemble::AnyEnsemble;
 pub use assign::{All, Assign, PerTrajectory};
+#[cfg(not(test))]
+pub use batch_float::{BatchFloat, dynamics_of};
 pub use buffer::{Buffer, Pages};
 pub use error::EnsembleError;
 pub use execution::{Execution, MOST_THREADS, has_global_threads};
