@@ -6,6 +6,8 @@ use libration::live::{Control as LiveControl, Setting, answer};
 use libration_report::live::LiveSetting;
 use libration_report::page::Page;
 use libration_report::verdict::Outcome;
+use libration_settings::equations::EquationSystem;
+use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::live_settings;
 
 use super::advice::Advice;
@@ -16,16 +18,20 @@ use super::request::Request;
 /// The system of a request, with its loop; none where the loop is no feedback of position and velocity around an equilibrium.
 pub(super) fn of_request(request: &Request) -> Option<Setting> {
     let mut setting = match &request.system {
-        AdvisedSystem::Equations { system, .. } => live_settings::of_equations(system),
-        AdvisedSystem::Catalogued { system, actuation } => Setting::of_system(*system, *actuation),
+        AdvisedSystem::Equations { system, .. } => live_settings::of_system(system),
+        AdvisedSystem::Catalogued { system, actuation } => {
+            // Coordinates of an oscillator do not depend on each other: a page has the first.
+            let dimension = *system.entry().dimensions.start();
+            let [q, v] = [&request.q, &request.v].map(|x| x.iter().copied().take(dimension));
+            let (q, v) = (q.collect(), v.collect());
+            let problem = InitialValueProblem { system: *system, actuation: *actuation, q, v };
+            let mut setting =
+                live_settings::of_system(&EquationSystem::of_catalogue(problem).ok()?);
+            setting.horizon = request.horizon;
+            setting
+        }
     };
     let names = setting.definitions.coordinates.clone();
-    if let AdvisedSystem::Catalogued { .. } = request.system {
-        let states = names.iter().cloned().zip(request.q.iter().copied());
-        let velocities = names.iter().map(|name| format!("{name}'")).zip(request.v.iter().copied());
-        setting.start = states.chain(velocities).collect();
-        setting.horizon = request.horizon;
-    }
     let Some(control) = &request.control else { return Some(setting) };
     let Control { law, period, latency, jitter, skew, loss, record, deviation, .. } = control;
     let (Law::Pd(gains), None) = (law, record) else { return None };

@@ -3,6 +3,8 @@
 use libration::catalog;
 use libration::live::Setting;
 use libration_report::live::LiveSetting;
+use libration_settings::equations::EquationSystem;
+use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::live_settings;
 use libration_study::Config;
 
@@ -22,9 +24,10 @@ pub(crate) fn settings(config: &Config, system: Option<&StudiedSystem>) -> Vec<L
 fn oscillator(config: &Config) -> Option<Setting> {
     let (spring, start) = (config.oscillator, config.start);
     let values = [("m", spring.m), ("k", spring.k)];
-    let (system, actuation) = catalog::build("oscillator", &values).ok()?;
-    let mut setting = Setting::of_system(system, actuation);
+    let built = catalog::build("oscillator", &values).ok()?;
+    let (q, v) = (Some(vec![start.q]), Some(vec![start.v]));
+    let problem = InitialValueProblem::new(built, q, v).ok()?;
+    let mut setting = live_settings::of_system(&EquationSystem::of_catalogue(problem).ok()?);
     setting.system = "oscillator of this report".into();
-    setting.start = vec![("q".into(), start.q), ("q'".into(), start.v)];
     Some(setting)
 }

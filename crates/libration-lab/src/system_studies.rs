@@ -98,7 +98,7 @@ impl<'a> SystemStudies<'a> {
             turn: self.problem.turn(),
             study_count: self.studies.len(),
             options: self.options.clone(),
-            live: live_settings::of_equations(self.system),
+            live: live_settings::of_system(self.system),
         }
     }
 

@@ -8,7 +8,6 @@
 #[cfg(target_arch = "wasm32")]
 mod abi;
 mod answer;
-mod catalogue;
 mod control_loop;
 mod growth;
 mod linear_system;

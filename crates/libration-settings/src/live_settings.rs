@@ -4,26 +4,35 @@ use libration::catalog;
 use libration::live::Setting;
 
 use crate::EquationExample;
-use crate::equations::EquationSystem;
+use crate::equations::{EquationSystem, Twin};
+use crate::initial_value_problem::InitialValueProblem;
 
-/// Free motion of a system by its equations, from its start.
-pub fn of_equations(system: &EquationSystem) -> Setting {
+/// Free motion of a system, from its start. A system of the catalogue in one dimension has an input `u`: a force on its mass `m`, or an
+/// acceleration.
+pub fn of_system(system: &EquationSystem) -> Setting {
+    let definitions = match system.twin {
+        Some(Twin { actuation, .. }) if system.definitions.coordinates.len() == 1 => {
+            system.definitions.clone().commanded(actuation)
+        }
+        _ => system.definitions.clone(),
+    };
     let start = system.states.iter().filter(|state| state.start != 0.0 || system.states.len() <= 4);
     let start = start.map(|state| (state.name.clone(), state.start)).collect();
-    Setting::of_equations(&system.name, system.definitions.clone(), start)
+    Setting::of_equations(&system.name, definitions, start)
 }
 
 /// The systems of the catalogue and the example files, without those that are too large for a page.
 pub fn examples() -> Vec<Setting> {
     let none: [(&str, f64); 0] = [];
     let catalogue = catalog::ENTRIES.into_iter().filter_map(|entry| {
-        let (system, actuation) = catalog::build(entry.name, &none).ok()?;
-        Some(Setting::of_system(system, actuation))
+        let built = catalog::build(entry.name, &none).ok()?;
+        let problem = InitialValueProblem::new(built, None, None).ok()?;
+        Some(of_system(&EquationSystem::of_catalogue(problem).ok()?))
     });
     let files = EquationExample::ALL.into_iter().filter_map(|example| {
         let system = EquationSystem::parse(example.text, example.name, &[]).ok()?;
         let fits = system.equations.degrees().len() <= libration::live::MOST_DEGREES;
-        fits.then(|| of_equations(&system))
+        fits.then(|| of_system(&system))
     });
     catalogue.chain(files).collect()
 }

@@ -28,7 +28,7 @@ pub(super) fn live_setting(request: &LinearRequest) -> Option<Setting> {
     let names = [names(&plant.states), names(&plant.inputs)];
     // A loop around the system itself where its equations are known.
     let mut setting = match request.system.as_ref().filter(|_| !request.has_stated_point) {
-        Some(system) => live_settings::of_equations(system),
+        Some(system) => live_settings::of_system(system),
         None => Setting::of_plant("plant", &plant.a, &plant.b, names),
     };
     if setting.definitions.inputs.len() != plant.inputs.len() {

@@ -3,8 +3,6 @@
 use std::io::Write as _;
 use std::net::{Ipv4Addr, TcpListener};
 
-use libration::catalog;
-use libration::live::Setting;
 use libration_report::live::{self, LiveSetting};
 use libration_settings::live_settings;
 
@@ -47,13 +45,8 @@ pub(crate) fn run(args: &ServeArgs) -> Result<(), Failure> {
 /// The page, with the system of the options first.
 fn page(options: &SystemArgs) -> Result<String, Failure> {
     let mut settings = Vec::new();
-    if let Some(system) = equation_file::system(options) {
-        settings.push(live_settings::of_equations(&system?));
-    } else if let Some(name) = &options.system {
-        let (system, actuation) = catalog::build(name, &options.set).map_err(Failure::usage)?;
-        let mut setting = Setting::of_system(system, actuation);
-        begin_at(&mut setting, options)?;
-        settings.push(setting);
+    if options.system.is_some() || !options.force.is_empty() {
+        settings.push(live_settings::of_system(&equation_file::any_system(options)?));
     } else if let Some(option) = first_of_start(options) {
         return Err(Failure::usage(format!(
             "{option} is given without a system; expected --system or --force"
@@ -81,31 +74,6 @@ fn first_of_start(options: &SystemArgs) -> Option<&'static str> {
     ]
     .into_iter()
     .find_map(|(given, name)| given.then_some(name))
-}
-
-/// Replaces the start by that of the options.
-fn begin_at(setting: &mut Setting, options: &SystemArgs) -> Result<(), Failure> {
-    let coordinates = setting.definitions.coordinates.clone();
-    for (given, flag, prime) in [(&options.q, "--q", ""), (&options.v, "--v", "'")] {
-        let Some(given) = given else { continue };
-        let values = given.values();
-        if values.len() != coordinates.len() {
-            return Err(Failure::usage(format!(
-                "{flag} has {} numbers; expected {} in a page of `{}`",
-                values.len(),
-                coordinates.len(),
-                setting.system
-            )));
-        }
-        for (name, value) in coordinates.iter().zip(values) {
-            let key = format!("start.{name}{prime}");
-            setting.set(&key, &value.to_string()).map_err(Failure::usage)?;
-        }
-    }
-    for (name, value) in &options.start {
-        setting.set(&format!("start.{name}"), &value.to_string()).map_err(Failure::usage)?;
-    }
-    Ok(())
 }
 
 fn open(address: &str) {

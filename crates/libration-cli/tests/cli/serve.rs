@@ -71,6 +71,7 @@ fn serve_writes_a_page_that_begins_with_the_system_of_the_options() {
     for (options, first) in [
         (&["--system", "pendulum", "--set", "omega2=4"][..], "system=pendulum\\ncoordinates=q"),
         (&["--force", "-k*q0", "--set", "k=3"], "acceleration.q0=-k*q0"),
+        (&["--system", "oscillator", "--q", "1,2"], "system=oscillator\\ncoordinates=q0,q1"),
         (&[], "system=oscillator\\n"),
     ] {
         libration(&[&["serve", "--out", page], options].concat()).success();
@@ -80,6 +81,9 @@ fn serve_writes_a_page_that_begins_with_the_system_of_the_options() {
         assert!(own < 60, "{first}: {settings:.200}");
     }
     libration(&["serve", "--system", "pendulum", "--set", "omega=1", "--out", page]).code(2);
+    libration(&["serve", "--system", "pendulum", "--start", "foo=1", "--out", page])
+        .code(2)
+        .stderr(contains("--start foo=1: unknown state `foo`; help: the states are `q`, `q'`"));
     libration(&["serve", "--out", "/nowhere/page.html"])
         .code(1)
         .stderr(contains("cannot write `/nowhere/page.html`"));
@@ -109,7 +113,7 @@ fn example(folder: &Path, name: &str) -> (String, Setting) {
     let file = folder.join(format!("{name}.toml"));
     fs::write(&file, text).unwrap();
     let system = EquationSystem::parse(text, name, &[]).unwrap();
-    (file.to_str().unwrap().to_owned(), live_settings::of_equations(&system))
+    (file.to_str().unwrap().to_owned(), live_settings::of_system(&system))
 }
 
 fn stdout(words: &[&str]) -> String {
