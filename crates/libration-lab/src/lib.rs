@@ -3,6 +3,8 @@
 mod claim_changes;
 mod claims_table;
 pub mod claims_without_study;
+mod comparison_verdict;
+mod finding_pair;
 mod live_page;
 pub mod output;
 mod report_check;

@@ -1,21 +1,27 @@
 //! Two results of `lab`, finding by finding.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::io;
 use std::path::Path;
 
 use libration_data::{read_text_bounded, read_text_regular};
 use libration_report::Record;
 use libration_report::record::{Agreement, Claim, Finding};
+use libration_report::verdict::Verdict;
 use serde::{Deserialize, Serialize};
 
 use crate::claim_changes::{ClaimChange, claim_changes};
+use crate::finding_pair::{change, is_loosened, is_misstated, is_moved, is_within, verdict};
 use crate::results::SCHEMA;
 use crate::run_conditions::{Condition, differing};
 
 /// Findings of two runs, compared.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ResultsComparison {
+    /// Whether something became worse; unknown if no finding was compared.
+    pub verdict: Verdict,
+    /// Findings of both runs in the same unit, with a number in one of them.
+    pub compared: usize,
     /// What differs between the runs themselves: the machine, the version, keys of the configuration.
     pub conditions: Vec<Condition>,
     /// Findings with the same bits.
@@ -28,6 +34,16 @@ pub struct ResultsComparison {
     pub improvements: Vec<Change>,
     /// Other findings that differ.
     pub changed: Vec<Change>,
+    /// Findings that agree with another prediction than before, by more than its tolerance and under the same settings.
+    pub moved: Vec<Change>,
+    /// Findings of either run that are judged and undecided at once.
+    pub misstated: Vec<String>,
+    /// Whether the second run is unfinished and the first is not.
+    pub is_unfinished: bool,
+    /// Findings that disagree with theory in both runs.
+    pub disagreeing: usize,
+    /// Findings that theory predicted in the first run, and that the second left undecided.
+    pub undecided: Vec<String>,
     /// Findings of the first run that theory predicted, and that the second run should have as well.
     pub lost: Vec<String>,
     /// Claims whose verdicts differ.
@@ -57,6 +73,9 @@ pub struct Change {
     pub tolerance: Option<f64>,
     /// Verdicts of both runs.
     pub verdicts: [Agreement; 2],
+    /// The predictions of both runs, if they differ.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub predictions: Option<[Option<f64>; 2]>,
     /// Unit of the first measurement, if it is another one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit_before: Option<String>,
@@ -106,8 +125,17 @@ impl ComparedResults {
                 ));
             }
         }
-        serde_json::from_value(value)
-            .map_err(|error| format!("no results of `libration lab`: {error}"))
+        let results: Self = serde_json::from_value(value)
+            .map_err(|error| format!("no results of `libration lab`: {error}"))?;
+        let claims = results.claims().map(|(_, claim)| claim.id.as_str());
+        first_repeated("finding", results.findings().map(|finding| finding.id.as_str()))?;
+        first_repeated("claim", claims)?;
+        Ok(results)
+    }
+
+    /// Whether all studies of the run are there.
+    pub(crate) fn is_complete(&self) -> bool {
+        self.complete
     }
 
     /// Whether these results should have a finding or claim of a study that others have: with the same settings but for the studies, and this
@@ -142,6 +170,17 @@ fn yes() -> bool {
     true
 }
 
+/// Fails for an identifier that occurs twice: one of the two would be compared, by the order of the file.
+fn first_repeated<'a>(what: &str, ids: impl Iterator<Item = &'a str>) -> Result<(), String> {
+    let mut known = HashSet::new();
+    for id in ids {
+        if !known.insert(id) {
+            return Err(format!("the {what} `{id}` occurs twice; expected each identifier once"));
+        }
+    }
+    Ok(())
+}
+
 /// The largest relative change of a measurement without a prediction that is taken for noise, unless the user says otherwise.
 pub const NOISE: f64 = 0.2;
 
@@ -152,13 +191,21 @@ impl ResultsComparison {
             after.findings().map(|finding| (finding.id.as_str(), finding)).collect();
         let old: HashMap<&str, &Finding> =
             before.findings().map(|finding| (finding.id.as_str(), finding)).collect();
+        let all = before.findings().chain(after.findings());
         let mut comparison = ResultsComparison {
+            verdict: Verdict::unknown(""),
+            compared: 0,
             conditions: conditions(before, after),
             same: 0,
             within: 0,
             regressions: Vec::new(),
             improvements: Vec::new(),
             changed: Vec::new(),
+            moved: Vec::new(),
+            misstated: all.filter(|one| is_misstated(one)).map(|one| one.id.clone()).collect(),
+            is_unfinished: before.complete && !after.complete,
+            disagreeing: 0,
+            undecided: Vec::new(),
             lost: Vec::new(),
             claims: claim_changes(before.claims(), after.claims(), |study| {
                 after.should_have(before, study)
@@ -169,13 +216,7 @@ impl ResultsComparison {
         for first in before.findings() {
             match known.get(first.id.as_str()) {
                 Some(second) => {
-                    let is_unjudged = verdict(first) == Agreement::Agrees
-                        && verdict(second) == Agreement::Measured
-                        && second.undecided.is_none();
-                    match is_unjudged && after.should_have(before, &first.id) {
-                        true => comparison.regressions.push(change(Some(first), second)),
-                        false => comparison.add(first, second, noise),
-                    }
+                    comparison.add(first, second, noise, after.should_have(before, &first.id));
                 }
                 None => {
                     comparison.only_before.push(first.id.clone());
@@ -192,10 +233,29 @@ impl ResultsComparison {
                 comparison.regressions.push(change(None, new));
             }
         }
+        comparison.misstated.sort();
+        comparison.misstated.dedup();
+        comparison.verdict = comparison.judge([before, after].map(ComparedResults::is_complete));
         comparison
     }
 
-    fn add(&mut self, first: &Finding, second: &Finding, noise: f64) {
+    /// Adds a finding of both runs. `is_alike` says whether their settings are the same.
+    fn add(&mut self, first: &Finding, second: &Finding, noise: f64, is_alike: bool) {
+        let is_number = !(first.measured.is_nan() && second.measured.is_nan());
+        self.compared += usize::from(first.unit == second.unit && is_number);
+        let verdicts = [verdict(first), verdict(second)];
+        self.disagreeing += usize::from(verdicts == [Agreement::Disagrees; 2]);
+        if verdicts == [Agreement::Agrees, Agreement::Measured] {
+            match second.undecided {
+                Some(_) => self.undecided.push(second.id.clone()),
+                None if is_alike => return self.regressions.push(change(Some(first), second)),
+                None => {}
+            }
+        }
+        if is_moved(first, second) {
+            let list = if is_alike { &mut self.moved } else { &mut self.changed };
+            return list.push(change(Some(first), second));
+        }
         let change = || change(Some(first), second);
         let difference = second.measured - first.measured;
         // Files have no infinities: both are NaN then.
@@ -215,6 +275,12 @@ impl ResultsComparison {
             (Agreement::Agrees | Agreement::Measured, Agreement::Disagrees) => {
                 self.regressions.push(change())
             }
+            (Agreement::Disagrees, Agreement::Agrees) if is_loosened(first, second) => {
+                let verdicts = [Agreement::Disagrees; 2];
+                let tolerance = first.tolerance.tolerance;
+                self.disagreeing += 1;
+                self.changed.push(Change { tolerance, verdicts, ..change() });
+            }
             (Agreement::Disagrees, Agreement::Agrees) => self.improvements.push(change()),
             // A rate in another unit may have fallen.
             (Agreement::Measured, _) if first.unit.ends_with("/s") && first.unit != second.unit => {
@@ -231,59 +297,11 @@ impl ResultsComparison {
     }
 }
 
-fn change(first: Option<&Finding>, second: &Finding) -> Change {
-    Change {
-        id: second.id.clone(),
-        text: second.text.clone(),
-        unit: second.unit.clone(),
-        before: first.map_or(f64::NAN, |first| first.measured),
-        after: second.measured,
-        predicted: second.predicted,
-        tolerance: second.tolerance.tolerance,
-        verdicts: [first.map_or(Agreement::Measured, verdict), verdict(second)],
-        unit_before: first.map(|first| first.unit.clone()).filter(|unit| *unit != second.unit),
-    }
-}
-
-/// The verdict that the numbers of a finding give, whatever its file says. Files have no infinities, of which the file alone knows.
-fn verdict(own: &Finding) -> Agreement {
-    match own.predicted.filter(|predicted| predicted.is_finite() && own.measured.is_finite()) {
-        Some(predicted)
-            if own.verdict == Agreement::Agrees
-                && !own.relation.holds(predicted, own.measured, own.tolerance.tolerance) =>
-        {
-            Agreement::Disagrees
-        }
-        _ => own.verdict,
-    }
-}
-
-/// Whether the second agrees with theory by a wider tolerance, or a weaker relation, alone.
-fn is_loosened(first: &Finding, second: &Finding) -> bool {
-    let [before, after] = [first, second].map(|finding| finding.tolerance.tolerance);
-    let is_wider = before.zip(after).is_some_and(|(before, after)| after > before);
-    let holds = |predicted| first.relation.holds(predicted, second.measured, before);
-    (is_wider || first.relation != second.relation)
-        && first.unit == second.unit
-        && second.predicted.is_some_and(|predicted| !holds(predicted))
-}
-
-/// Whether measurements and predictions differ by no more than the tolerances of both.
-fn is_within(first: &Finding, second: &Finding) -> bool {
-    let [Some(one), Some(other)] = [first, second].map(|finding| finding.tolerance.tolerance)
-    else {
-        return false;
-    };
-    let [Some(before), Some(after)] = [first.predicted, second.predicted] else { return false };
-    let allowed = one + other;
-    (second.measured - first.measured).abs() <= allowed && (after - before).abs() <= allowed
-}
-
 /// The conditions that differ.
 fn conditions(before: &ComparedResults, after: &ComparedResults) -> Vec<Condition> {
     let is_complete = [before, after].map(|results| results.complete.to_string());
     let [first, second] = is_complete;
-    let incomplete = (!(before.complete && after.complete)).then(|| Condition {
+    let incomplete = (before.complete != after.complete).then(|| Condition {
         key: "complete".to_owned(),
         before: first,
         after: second,

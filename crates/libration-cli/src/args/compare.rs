@@ -30,7 +30,9 @@ Examples:
   libration compare before after
 
 A finding is worse if it disagrees with theory and did not before, or if it is a rate (its unit ends in /s) that
-fell by more than --noise or is missing. Then the exit code is 1.";
+fell by more than --noise or is missing. Then the exit code is 1. It is 1 as well if no finding was compared, if a
+prediction changed under the same settings, if only the second run is unfinished, and if a finding is judged and
+undecided at once. An identifier that occurs twice in a file is an error (2).";
 
 fn noise(text: &str) -> Result<f64, String> {
     let noise = super::timing::finite(text).filter(|x| (0.0..=1.0).contains(x));

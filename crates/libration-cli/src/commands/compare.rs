@@ -29,22 +29,14 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
         false => describe(&comparison),
     };
     terminal::print(&text)?;
-    let counted = |n: usize, what: &str| match n {
-        0 => None,
-        1 => Some(format!("a finding {what}")),
-        n => Some(format!("{n} findings {what}")),
-    };
-    let [worse, lost] = [
-        counted(comparison.regressions.len(), "became worse"),
-        counted(comparison.lost.len(), "of the first run missing in the second"),
-    ];
-    let refuted = match comparison.claims.iter().filter(|claim| claim.is_lost).count() {
-        0 => None,
-        1 => Some("a claim has another verdict".to_owned()),
-        n => Some(format!("{n} claims have other verdicts")),
-    };
-    let failures: Vec<String> = worse.into_iter().chain(lost).chain(refuted).collect();
-    if failures.is_empty() { Ok(()) } else { Err(Failure::run(failures.join(", "))) }
+    if comparison.verdict.is_good() {
+        return Ok(());
+    }
+    let failures = comparison.failures();
+    Err(Failure::run(match failures.is_empty() {
+        true => "no finding was compared".to_owned(),
+        false => printable(&failures.join(", ")).to_string(),
+    }))
 }
 
 fn read(path: &Path) -> Result<ComparedResults, Failure> {
@@ -57,18 +49,20 @@ fn read(path: &Path) -> Result<ComparedResults, Failure> {
 
 // Writing into a string cannot fail.
 fn describe(comparison: &ResultsComparison) -> String {
-    let ResultsComparison { conditions, same, within, regressions, improvements, changed, .. } =
+    let ResultsComparison { conditions, regressions, moved, improvements, changed, .. } =
         comparison;
-    let mut text =
-        format!("{same} findings are the same, {within} within their tolerance or noise\n");
+    let mut text = format!("{}\n", printable(&comparison.verdict.to_string()));
     for condition in conditions {
         let (key, before, after) = (&condition.key, &condition.before, &condition.after);
         let line = format!("{key} differs: {before}, then {after}");
         let _ = writeln!(text, "{}", printable(&line));
     }
-    for (title, changes) in
-        [("worse", regressions), ("better", improvements), ("different", changed)]
-    {
+    for (title, changes) in [
+        ("worse", regressions),
+        ("other predictions", moved),
+        ("better", improvements),
+        ("different", changed),
+    ] {
         if !changes.is_empty() {
             let _ = writeln!(text, "\n{title}");
         }
@@ -136,7 +130,18 @@ fn sentence(change: &Change) -> String {
         (Agreement::Measured, Agreement::Agrees) => "has a prediction now: ",
         _ => "",
     };
-    format!("{verdict}{}, then {}{ratio}; {text}", of(*before, &unit_before), of(*after, &unit))
+    let number = |x: Option<f64>| x.map_or_else(|| "none".to_owned(), exact);
+    let moved = match change.predictions {
+        Some([before, after]) if second == Agreement::Agrees && first != Agreement::Measured => {
+            format!("prediction changed from {} to {}: ", number(before), number(after))
+        }
+        _ => String::new(),
+    };
+    format!(
+        "{verdict}{moved}{}, then {}{ratio}; {text}",
+        of(*before, &unit_before),
+        of(*after, &unit)
+    )
 }
 
 /// Identifiers; of many the number for each study.

@@ -8,7 +8,12 @@ use serde_json::{Value, json};
 use super::advise::libration;
 
 /// Writes results with three findings: of theory, of a speed, and of another measurement.
-fn results(folder: &Path, name: &str, [drift, rate, share]: [f64; 3], verdict: &str) -> PathBuf {
+pub(super) fn results(
+    folder: &Path,
+    name: &str,
+    [drift, rate, share]: [f64; 3],
+    verdict: &str,
+) -> PathBuf {
     let finding = |id: &str, unit: &str, measured: f64, predicted: Value, verdict: &str| {
         let tolerance = if predicted.is_null() { Value::Null } else { json!(1e-3) };
         json!({
@@ -36,7 +41,7 @@ fn results(folder: &Path, name: &str, [drift, rate, share]: [f64; 3], verdict: &
     folder
 }
 
-fn compared(words: &[&str], code: i32) -> String {
+pub(super) fn compared(words: &[&str], code: i32) -> String {
     let done = libration(&[&["compare"], words].concat()).code(code);
     let output = done.get_output();
     String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)

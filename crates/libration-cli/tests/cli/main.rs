@@ -14,6 +14,7 @@ mod bodies_verdicts;
 mod clocks;
 mod closed_loop;
 mod compare;
+mod compare_evidence;
 mod comparison;
 mod deadline_misses;
 mod doors;
