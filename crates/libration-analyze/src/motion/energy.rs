@@ -105,7 +105,7 @@ impl<'a> EnergyOf<'a> {
     }
 
     /// The energy with velocities of zero, and states of first order of zero.
-    fn potential(&mut self, state: &[f64]) -> f64 {
+    pub(crate) fn potential(&mut self, state: &[f64]) -> f64 {
         self.at_rest.clear();
         self.at_rest.extend_from_slice(state);
         self.at_rest[self.degrees..2 * self.degrees].fill(0.0);
