@@ -21,7 +21,6 @@ use crate::step::{StepMatrix, Stepping};
 
 pub use crate::motion::{EnergyChange, MotionExamination, StateExamination};
 use crate::newton_residual::{self, NewtonResidual};
-pub(crate) use motion::motion_states;
 pub use motion::{EquationMotion, StateError};
 pub use motion_steps::MotionSteps;
 pub use step::{spectral_radius, step_order};

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use libration::equations::{Degree, StepProgram};
+use libration::equations::StepProgram;
 use libration::{AnyMethod, Float};
 use libration_settings::equations::{EquationSystem, NamedState};
 use serde::Serialize;
@@ -106,7 +106,7 @@ impl EquationMotion {
             substeps: 1 << halvings,
         });
         let errors = errors(system, &runs, error_steps, predicted_reduction, stop)?;
-        let states: Vec<MotionState> = motion_states(system);
+        let states = MotionState::all(system);
         let subject = MotionSubject {
             dynamics: system.equations.dynamics(),
             start: &start,
@@ -143,21 +143,6 @@ impl EquationMotion {
 /// Whether the rates of all states are sums of constants times states, and of constants.
 pub(super) fn is_affine(system: &EquationSystem) -> bool {
     system.equations.polynomial_degree().is_some_and(|degree| degree <= 1)
-}
-
-/// The states of an examination.
-pub(crate) fn motion_states(system: &EquationSystem) -> Vec<MotionState> {
-    let degrees = system.equations.degrees();
-    let state = |state: &NamedState| MotionState {
-        place: state.place,
-        name: state.name.clone(),
-        unit: state.unit.clone(),
-        is_velocity: state
-            .place
-            .checked_sub(degrees.len())
-            .is_some_and(|degree| matches!(degrees[degree], Degree::Coordinate(_))),
-    };
-    system.states.iter().map(state).collect()
 }
 
 /// The states after steps, and what two and four steps in their place change, in the largest sizes over all steps.

@@ -11,7 +11,8 @@ mod step_run;
 mod undefined_function;
 mod unseen;
 
-use libration::equations::{Dynamics, StepProgram};
+use libration::equations::{Degree, Dynamics, StepProgram};
+use libration_settings::equations::{EquationSystem, NamedState};
 
 pub use energy::EnergyChange;
 pub(crate) use energy::{EnergyOf, EnergyScale};
@@ -52,6 +53,22 @@ pub(crate) struct MotionState {
 }
 
 impl MotionState {
+    /// The states of a system.
+    pub(crate) fn all(system: &EquationSystem) -> Vec<Self> {
+        let degrees = system.equations.degrees();
+        let is_velocity = |place: usize| {
+            let degree = place.checked_sub(degrees.len()).map(|degree| &degrees[degree]);
+            matches!(degree, Some(Degree::Coordinate(_)))
+        };
+        let state = |state: &NamedState| MotionState {
+            place: state.place,
+            name: state.name.clone(),
+            unit: state.unit.clone(),
+            is_velocity: is_velocity(state.place),
+        };
+        system.states.iter().map(state).collect()
+    }
+
     /// Whether values of both are of one kind: equal units, and without units both positions or both velocities.
     fn is_like(&self, other: &MotionState) -> bool {
         self.unit == other.unit && (!self.unit.is_empty() || self.is_velocity == other.is_velocity)

@@ -12,8 +12,7 @@ use serde::Serialize;
 use super::limits::is_free;
 use super::{Analysis, AnalyzeError, LoopAnalysis, Request, analyze_until};
 use crate::digits::{change_per_step, significant};
-use crate::equation_analysis::motion_states;
-use crate::motion::{MotionExamination, MotionSubject, examine};
+use crate::motion::{MotionExamination, MotionState, MotionSubject, examine};
 use crate::step_verdict::StepGrowth;
 
 /// The verdicts on a step of a system of the catalogue. Of a loop there is that of the loop alone.
@@ -265,7 +264,7 @@ pub(super) fn motion(
         return Ok(None);
     }
     let system = &request.system;
-    let (start, states) = (system.start(), motion_states(system));
+    let (start, states) = (system.start(), MotionState::all(system));
     let subject = MotionSubject {
         dynamics: system.equations.dynamics(),
         start: &start,

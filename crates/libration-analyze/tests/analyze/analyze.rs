@@ -1,25 +1,11 @@
 //! Tests of the analysis of one step.
 
-use libration::catalog::Actuation;
 use libration::integrator::VelocityVerlet;
 use libration::system::Oscillator;
 use libration::{AnySystem, Hamiltonian, Integrator, Method, State};
-use libration_analyze::{Analysis, AnalyzeError, Criteria, Request, Timing, analyze};
-use libration_settings::equations::EquationSystem;
-use libration_settings::initial_value_problem::InitialValueProblem;
+use libration_analyze::{Analysis, AnalyzeError, Criteria, Request, analyze};
 
-pub(crate) fn request(system: &str, method: Method, dt: f64, q: &[f64], v: &[f64]) -> Request {
-    let system = at(AnySystem::build(system, &[] as &[(&str, f64)]).unwrap(), q, v);
-    let criteria = Criteria::default();
-    let (stepping, timing) = (method.into(), Timing::default());
-    Request { system, stepping, dt, steps: 1000, criteria, timing }
-}
-
-/// A system of the catalogue at a start.
-pub(crate) fn at(system: AnySystem, q: &[f64], v: &[f64]) -> EquationSystem {
-    let (actuation, q, v) = (Actuation::Acceleration, q.to_vec(), v.to_vec());
-    EquationSystem::of_catalogue(InitialValueProblem { system, actuation, q, v }).unwrap()
-}
+use super::requests::{at, request};
 
 fn json(analysis: &Analysis) -> serde_json::Value {
     serde_json::to_value(analysis).unwrap()

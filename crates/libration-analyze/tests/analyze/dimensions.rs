@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use libration::Method;
 use libration_analyze::trajectory::{FloatType, Format, Request, write};
 
-use super::{analyze, trajectory};
+use super::{requests, trajectory};
 
 /// The positions and velocities of the rows as text, one list for each column; every float type prints all digits that tell two
 /// numbers apart.
@@ -48,7 +48,7 @@ fn each_dimension_of_an_oscillator_moves_as_it_does_alone() {
 fn the_matrix_of_an_oscillator_in_three_dimensions_has_that_of_one_in_each() {
     for method in Method::ALL {
         let of = |q: &[f64], v: &[f64]| {
-            libration_analyze::analyze(&analyze::request("oscillator", method, 0.1, q, v))
+            libration_analyze::analyze(&requests::request("oscillator", method, 0.1, q, v))
                 .unwrap()
                 .matrix
                 .update_matrix

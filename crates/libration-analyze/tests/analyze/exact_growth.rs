@@ -5,7 +5,7 @@ use core::f64::consts::PI;
 use libration::Method;
 use libration_analyze::analyze;
 
-use super::analyze::request;
+use super::requests::request;
 
 #[test]
 fn the_growth_of_an_exact_step_is_that_of_the_linearised_equations() {

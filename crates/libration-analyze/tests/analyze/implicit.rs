@@ -8,7 +8,7 @@ use libration_analyze::export::Values;
 use libration_analyze::trajectory::{EnsembleOptions, FloatType, Request, simulate};
 use libration_analyze::{Criteria, Stepping, Timing, analyze};
 
-use super::analyze::at;
+use super::requests::at;
 use super::trajectory::request;
 
 fn of(system: &str, method: ImplicitMethod, dt: f64) -> libration_analyze::Request {

@@ -17,6 +17,7 @@ mod operating_points;
 mod overflow;
 mod reference;
 mod reference_flow;
+mod requests;
 mod stability_windows;
 mod temperature;
 #[path = "../../src/trajectory/three_digits.rs"]

@@ -7,7 +7,7 @@ use libration_analyze::{Request, Stepping, analyze};
 use libration_report::verdict::Outcome;
 use serde_json::Value;
 
-use super::analyze::{at, request};
+use super::requests::{at, request};
 
 #[test]
 fn windows_of_damped_oscillators_are_those_that_numpy_finds() {
