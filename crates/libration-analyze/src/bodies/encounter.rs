@@ -23,7 +23,7 @@ pub struct Encounter {
 }
 
 /// Bodies up to which they are taken at each sample.
-const MOST: usize = 2048;
+pub(super) const MOST: usize = 2048;
 
 /// The closest pair so far, of bodies that no watch looks at in each step.
 #[derive(Debug)]

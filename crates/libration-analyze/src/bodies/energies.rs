@@ -35,21 +35,29 @@ const MOST_PAIRS: usize = 1024;
 
 /// An orbit or a body with an energy of its own.
 #[derive(Clone, Copy, Debug)]
-enum Part {
+pub(super) enum Part {
     Orbit(usize, usize),
     Single(usize),
 }
 
 /// Energies per mass, and the power of the others.
 #[derive(Clone, Copy, Debug)]
-struct Reading {
+pub(super) struct Reading {
     kinetic: f64,
     potential: f64,
     power: f64,
 }
 
+impl Reading {
+    /// The energy, or the kinetic energy where that is the small difference of larger ones.
+    pub(super) fn size(&self) -> f64 {
+        let energy = (self.kinetic + self.potential).abs();
+        if energy < SMALL * self.kinetic { self.kinetic } else { energy }
+    }
+}
+
 impl Part {
-    fn read(self, bodies: &Bodies, field: &Field) -> Reading {
+    pub(super) fn read(self, bodies: &Bodies, field: &Field) -> Reading {
         match self {
             Part::Single(i) => {
                 let velocity = field.velocities[i];
@@ -72,7 +80,7 @@ impl Part {
         }
     }
 
-    fn names(self, names: &[String]) -> Vec<String> {
+    pub(super) fn names(self, names: &[String]) -> Vec<String> {
         match self {
             Part::Orbit(i, j) => vec![names[i].clone(), names[j].clone()],
             Part::Single(i) => vec![names[i].clone()],
@@ -94,7 +102,7 @@ fn disturbance(field: &Field, attraction: Vector, i: usize, j: usize) -> Vector 
 }
 
 /// The orbits, and the bodies in none. The heaviest body is none of them: its motion follows from those of the others.
-fn parts(bodies: &Bodies, field: &Field) -> Vec<Part> {
+pub(super) fn parts(bodies: &Bodies, field: &Field) -> Vec<Part> {
     let (count, masses) = (bodies.count(), bodies.masses());
     let mut parts = Vec::new();
     let mut is_in_orbit = vec![false; count];
@@ -153,13 +161,6 @@ impl Course {
         }
     }
 
-    /// The energy at the start, or the kinetic energy where that is the small difference of larger ones.
-    fn size(&self) -> f64 {
-        let Reading { kinetic, potential, .. } = self.start;
-        let energy = (kinetic + potential).abs();
-        if energy < SMALL * kinetic { kinetic } else { energy }
-    }
-
     fn add(&mut self, now: Reading, length: f64, even_length: Option<f64>, has_zero: bool) {
         self.work += 0.5 * length * (self.last.power + now.power);
         if let Some(length) = even_length {
@@ -173,12 +174,22 @@ impl Course {
         let change = (energy - self.work).abs();
         self.most_work = self.most_work.max(self.work.abs());
         // Near a body all energies are large: a change of the orbit is one that stays. Of a pair that others part, their work is the size.
-        let size = if has_zero { self.size().max(now.kinetic).max(self.most_work) } else { 1.0 };
+        let size =
+            if has_zero { self.start.size().max(now.kinetic).max(self.most_work) } else { 1.0 };
         let [largest, of] = self.largest;
         if change.is_nan() || change * of > largest * size {
             self.largest = [change, size];
         }
     }
+}
+
+/// The velocity of the centre of mass.
+pub(super) fn centre_velocity(bodies: &Bodies) -> Vector {
+    let total: f64 = bodies.masses().iter().sum();
+    core::array::from_fn(|k| match total > 0.0 {
+        true => bodies.iter().map(|body| body.mass * body.velocity[k]).sum::<f64>() / total,
+        false => 0.0,
+    })
 }
 
 /// The energies of all parts in the course of a motion.
@@ -202,11 +213,7 @@ impl Energies {
         if !is_allowed {
             return None;
         }
-        let total: f64 = bodies.masses().iter().sum();
-        let centre_velocity = core::array::from_fn(|k| match total > 0.0 {
-            true => bodies.iter().map(|body| body.mass * body.velocity[k]).sum::<f64>() / total,
-            false => 0.0,
-        });
+        let centre_velocity = centre_velocity(bodies);
         let field = Field::new(bodies, centre_velocity);
         let course = |part: Part| Course::new(part, part.read(bodies, &field));
         Some(Energies {
@@ -251,6 +258,14 @@ impl Energies {
     }
 }
 
+/// `the orbit of a and b`, or `a alone`.
+pub(super) fn text(names: &[String]) -> String {
+    match names {
+        [own] => format!("{own} alone"),
+        names => format!("the orbit of {}", names.join(" and ")),
+    }
+}
+
 impl PartEnergy {
     /// The largest change that is possible with the error of the work.
     pub(super) fn most(&self) -> f64 {
@@ -264,9 +279,6 @@ impl PartEnergy {
 
     /// `the orbit of a and b`, or `a alone`.
     pub(super) fn text(&self) -> String {
-        match self.bodies.as_slice() {
-            [own] => format!("{own} alone"),
-            names => format!("the orbit of {}", names.join(" and ")),
-        }
+        text(&self.bodies)
     }
 }

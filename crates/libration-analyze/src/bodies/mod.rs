@@ -6,6 +6,7 @@ mod encounter;
 mod energies;
 mod field;
 mod files;
+mod hidden_change;
 mod request;
 mod verdict;
 mod watch;

@@ -6,6 +6,7 @@ use libration_report::verdict::{Outcome, Verdict};
 use super::approach::ENCOUNTERS_AT_EACH_STEP;
 use super::encounter::Encounter;
 use super::energies::{BROKEN, PartEnergy};
+use super::hidden_change::hidden_change;
 use super::{BodiesAudit, BodiesRequest};
 
 /// Steps of an orbit below which an encounter is too fast for the time step.
@@ -94,8 +95,19 @@ impl BodiesAudit {
                 number(part.work_error, 2)
             ));
         }
-        let light = self.light(evidence.request, change)?;
-        Some(format!("the energy of {light} is too small a part of the energy to be seen in it"))
+        if let Some(light) = self.light(evidence.request, change) {
+            let said = "is too small a part of the energy to be seen in it";
+            return Some(format!("the energy of {light} {said}"));
+        }
+        self.hidden(evidence, change)
+    }
+
+    /// An orbit, or a single body, whose energy may have changed by as much as that of all. None where each is looked at.
+    fn hidden(&self, evidence: &Evidence<'_>, change: f64) -> Option<String> {
+        let energy =
+            self.conserved.first().filter(|_| self.energies.is_empty() && self.bodies > 1)?;
+        let change = change.max(energy.predicted_by_rounding);
+        hidden_change(evidence.request, [change, energy.size], evidence.largest_kinetic)
     }
 
     /// An orbit or oscillation with few steps.

@@ -10,14 +10,14 @@ use serde_json::Value;
 
 const HEAD: &str = "name,mass,x,y,z,vx,vy,vz";
 
-fn file(folder: &Path, name: &str, rows: &[&str]) -> String {
+pub(super) fn file(folder: &Path, name: &str, rows: &[&str]) -> String {
     let path = folder.join(name);
     fs::write(&path, rows.join("\n") + "\n").unwrap();
     path.display().to_string()
 }
 
 /// The audit of `libration bodies`, whose exit code must be that of its verdict.
-fn audit(system: &str, words: &str, potential: Option<&str>) -> Value {
+pub(super) fn audit(system: &str, words: &str, potential: Option<&str>) -> Value {
     let mut command = Command::cargo_bin("libration").unwrap();
     command.args(["bodies", system, "--json", "--no-prediction"]).args(words.split_whitespace());
     command.args(potential.map(|text| format!("--pair-potential={text}")));
@@ -28,7 +28,7 @@ fn audit(system: &str, words: &str, potential: Option<&str>) -> Value {
     audit
 }
 
-fn assert_outcome(audit: &Value, outcome: &str, part: &str) {
+pub(super) fn assert_outcome(audit: &Value, outcome: &str, part: &str) {
     let verdict = &audit["verdict"];
     assert_eq!(verdict["outcome"], outcome, "{verdict}");
     assert!(verdict["evidence"].as_str().unwrap().contains(part), "{part}: {verdict}");

@@ -10,6 +10,7 @@ mod analyze_verdicts;
 mod audit;
 mod bench;
 mod bodies;
+mod bodies_hidden_change;
 mod bodies_verdicts;
 mod clocks;
 mod closed_loop;
