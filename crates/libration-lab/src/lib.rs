@@ -3,6 +3,7 @@
 mod claim_changes;
 mod claims_table;
 pub mod claims_without_study;
+mod compared_results;
 mod comparison_verdict;
 mod finding_pair;
 mod live_page;
@@ -21,8 +22,9 @@ mod system_studies;
 mod unjudged_claims;
 
 pub use claim_changes::ClaimChange;
+pub use compared_results::ComparedResults;
 pub use report_check::{CheckedStudy, ReportCheck};
-pub use results_comparison::{Change, ComparedResults, NOISE, ResultsComparison};
+pub use results_comparison::{Change, NOISE, ResultsComparison};
 pub use run_conditions::Condition;
 pub use studies::STUDIES;
 pub use system_studies::{NotApplicable, SystemStudies};
