@@ -124,6 +124,9 @@ fn a_comparison_as_json_has_all_that_differs() {
     let said: Value = serde_json::from_str(&said).unwrap();
     assert_eq!(said["schema"], "libration.compare/1");
     assert_eq!((&said["same"], &said["only_before"]), (&json!(2), &json!(["drift.largest"])));
+    assert_eq!((&said["compared"], &said["verdict"]["outcome"]), (&json!(2), &json!("no-fault")));
+    let rest = json!(["1 finding of the first run alone"]);
+    assert_eq!(said["verdict"]["not_examined"], rest);
 }
 
 #[test]
