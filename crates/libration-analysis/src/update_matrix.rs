@@ -55,6 +55,11 @@ fn jacobian(f: &DualMap<'_>, at: &State<f64, 1>) -> UpdateMatrix<Wide> {
 impl<S: Scalar> UpdateMatrix<S> {
     /// The linear map `f`, by its values on the unit vectors.
     pub fn from_map(f: impl Fn(State<S, 1>) -> State<S, 1>) -> Self {
+        UpdateMatrix::from_images(&f)
+    }
+
+    /// With a dynamic map, whose numbers may be large, so that they are on the stack once.
+    fn from_images(f: &dyn Fn(State<S, 1>) -> State<S, 1>) -> Self {
         let (zero, one) = (S::zero(), S::one());
         UpdateMatrix { dq: f(State { q: [one], v: [zero] }), dv: f(State { q: [zero], v: [one] }) }
     }
