@@ -1,10 +1,11 @@
 //! Causes of overflows by the stability of a step.
 
-use libration::analysis::{LinearMap, eigenvalues};
+use libration::analysis::jacobian;
+use libration::equations::{Degree, StepProgram};
+use libration::linear::eigenvalues;
 use libration::system::{DampedOscillator, Oscillator};
 use libration::{AnyMethod, AnySystem, Float};
-
-use libration::equations::StepProgram;
+use libration_settings::equations::{EquationSystem, Twin};
 
 use super::three_digits::{short, short_above, short_below};
 use super::{FloatType, Request};
@@ -28,44 +29,53 @@ pub(super) fn cause<S: Float>(request: &Request, last: Option<&[f64]>) -> Option
         let why = undefined_function(&StepProgram::of(method, dynamics), &from, dt)?;
         Some(why.trim_end_matches(',').to_owned())
     };
-    let Some(twin) = request.system.twin else { return undefined() };
     match request.loop_option() {
-        Some(_) => loop_cause(request, twin.system),
-        None => step_cause::<S>(request, twin.system).or_else(undefined),
+        Some(_) => loop_cause(request, request.system.twin?.system),
+        None => step_cause::<S>(request).or_else(undefined),
     }
 }
 
 /// The cause of an overflow without a loop.
-fn step_cause<S: Float>(request: &Request, system: AnySystem) -> Option<String> {
+fn step_cause<S: Float>(request: &Request) -> Option<String> {
     let rounded = |x: f64| S::from_f64(x).to_f64();
-    let dt = rounded(request.dt);
     let Some(method) = request.stepping.any_method() else {
         return Some(range_cause(request.float, "the exact step"));
     };
-    // The parameters are those of the float type. A drive adds a bounded force.
-    let linear = match system {
-        AnySystem::Oscillator(Oscillator { omega2 }) => {
-            Some(AnySystem::Oscillator(Oscillator { omega2: rounded(omega2) }))
-        }
-        AnySystem::DampedOscillator(DampedOscillator { omega2, gamma }) => {
-            let (omega2, gamma) = (rounded(omega2), rounded(gamma));
-            Some(AnySystem::DampedOscillator(DampedOscillator { omega2, gamma }))
-        }
-        AnySystem::DrivenOscillator(driven) => {
-            let (omega2, gamma) = (rounded(driven.omega2), rounded(driven.gamma));
-            Some(AnySystem::DampedOscillator(DampedOscillator { omega2, gamma }))
-        }
-        _ => None,
-    };
-    match linear {
-        Some(system) => linear_cause(method, system, dt, S::UNIT_ROUNDOFF, request.float),
+    let [dt, roundoff] = [rounded(request.dt), S::UNIT_ROUNDOFF];
+    match oscillator_of(&request.system, rounded) {
+        Some(system) => linear_cause(method, system, dt, roundoff, request.float),
         None => {
-            let omega = start_frequency(request)?;
+            let omega = start_frequency(&request.system)?;
             let near = AnySystem::Oscillator(Oscillator { omega2: omega * omega });
             let why = instability_cause(method, near, [dt, 1.0])?;
             Some(format!("linearised at the start, {why}"))
         }
     }
+}
+
+/// The oscillator whose coordinates all those of a linear system are, with the numbers of the float type; none of other systems.
+fn oscillator_of(system: &EquationSystem, rounded: impl Fn(f64) -> f64) -> Option<AnySystem> {
+    let of = |omega2: f64, gamma: f64| match gamma == 0.0 {
+        true => AnySystem::Oscillator(Oscillator { omega2 }),
+        false => AnySystem::DampedOscillator(DampedOscillator { omega2, gamma }),
+    };
+    // A drive adds a bounded force.
+    if let Some(Twin { system: AnySystem::DrivenOscillator(driven), .. }) = system.twin {
+        return Some(of(rounded(driven.omega2), rounded(driven.gamma)));
+    }
+    let is_coordinate = |degree: &Degree| matches!(degree, Degree::Coordinate(_));
+    if !(system.is_linear() && system.equations.degrees().iter().all(is_coordinate)) {
+        return None;
+    }
+    let jacobian = jacobian(system.equations.dynamics(), &system.start());
+    let n = system.equations.degrees().len();
+    let [omega2, gamma] = [-jacobian[(0, 0)], -jacobian[(0, n)]];
+    let is_own = |i: usize, j: usize| {
+        let own = if i == j { [omega2, gamma] } else { [0.0; 2] };
+        [-jacobian[(i, j)], -jacobian[(i, n + j)]] == own
+    };
+    let is_isotropic = (0..n).all(|i| (0..n).all(|j| is_own(i, j)));
+    (is_isotropic && omega2 >= 0.0 && gamma >= 0.0).then(|| of(rounded(omega2), rounded(gamma)))
 }
 
 /// The cause of an overflow of a loop or an uneven clock: it is unstable, or unstable in the mean square.
@@ -214,10 +224,10 @@ fn instability_cause(
 }
 
 /// The largest angular frequency of the linearisation at the start, in rad/s; none if it does not oscillate, or grows.
-fn start_frequency(request: &Request) -> Option<f64> {
-    let rates = LinearMap::of_rates(request.system.equations.dynamics(), &request.system.start());
-    let values = eigenvalues(&rates);
-    let fastest = values.iter().map(|z| [z.re.to_f64(), z.im.to_f64()]);
-    let [re, im] = fastest.max_by(|a, b| a[1].total_cmp(&b[1]))?;
+fn start_frequency(system: &EquationSystem) -> Option<f64> {
+    let jacobian = jacobian(system.equations.dynamics(), &system.start());
+    let values = eigenvalues(&system.state_matrix(&jacobian))?;
+    let fastest = values.into_iter().max_by(|a, b| a.im.total_cmp(&b.im))?;
+    let [re, im] = [fastest.re, fastest.im];
     (im > 0.0 && im.is_finite() && re.abs() <= 1e-9 * im).then_some(im)
 }

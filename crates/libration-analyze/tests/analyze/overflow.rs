@@ -3,6 +3,7 @@
 use libration::{AnySystem, Method};
 use libration_analyze::Stepping;
 use libration_analyze::trajectory::{EnsembleOptions, FloatType, Outcome, Request, simulate};
+use libration_settings::equations::EquationSystem;
 
 use super::trajectory::{at, from};
 
@@ -100,6 +101,29 @@ fn a_nonlinear_system_is_judged_by_its_linearisation_at_the_start_or_not_at_all(
     let oscillator = request("oscillator", &[], Method::Leapfrog, 0.01);
     let escape = Request { system: from(one, [q, v]), ..oscillator };
     assert_eq!(reason(&escape).unwrap(), "the state stopped being finite");
+}
+
+#[test]
+fn a_system_by_equations_has_the_reasons_of_the_same_system_by_name() {
+    let own = |acceleration: &str, x: f64| {
+        let text = format!(
+            "[system]\nname = \"own\"\ncoordinates = [\"x\"]\nacceleration.x = \"{acceleration}\"\nstart = {{ x = {x:?} }}"
+        );
+        EquationSystem::parse(&text, "own", &[]).unwrap()
+    };
+    let of = |name, method, dt| request(name, &[("omega2", 10.0)], method, dt);
+    let half = Request { float: FloatType::F16, ..of("oscillator", Method::Rk4, 0.1) };
+    for (named, system) in [
+        (of("oscillator", Method::Rk4, 0.9), own("-10*x", 1.0)),
+        (of("damped-oscillator", Method::ExplicitEuler, 0.5), own("-10*x - 0.2*x'", 1.0)),
+        // ω² = 10 cos(0.5) = 8.78.
+        (at(0.5, of("pendulum", Method::SymplecticEuler, 0.7)), own("-10*sin(x)", 0.5)),
+        (at(3e4, half), own("-10*x", 3e4)),
+    ] {
+        let found = reason(&named);
+        assert!(found.is_some(), "{named:?}");
+        assert_eq!(reason(&Request { system, ..named }), found);
+    }
 }
 
 #[test]
