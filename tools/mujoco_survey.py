@@ -65,8 +65,15 @@ def fast_radius(model, point, eps):
 
 
 def with_gains(model, point, servo, kp, kv):
-    """Return the model with other gains of a servo and the same force at the point."""
+    """Return the model with other gains of a servo, the same force at the point, and no limits of forces.
+
+    The differences with a stiff servo are longer than the deviations at which forces meet their limits.
+    """
     own, forward = copy.deepcopy(model), copy.copy(point)
+    own.actuator_forcelimited[:] = 0
+    for flags in ("jnt_actfrclimited", "tendon_actfrclimited"):
+        if hasattr(own, flags):
+            getattr(own, flags)[:] = 0
     mujoco.mj_forward(model, forward)
     out = int(model.actuator_outadr[servo]) if hasattr(model, "actuator_outadr") else servo
     bias = own.actuator_biasprm[servo]
