@@ -118,6 +118,21 @@ def test_servos_that_do_not_act_have_no_verdict(model):
     assert alone.verdict["outcome"] == "unknown" and "`s` does not act" in alone.answer
 
 
+def test_a_tendon_that_is_taut_acts_by_its_force_and_no_servo_is_called_innocent():
+    # The rod points at the anchor: the moment arm is 0, and the force of the servo is 0.7 kp.
+    text = (
+        '<mujoco><option gravity="0 0 0" timestep="0.002"/><worldbody><site name="s0" pos="0 0 1"/><body><joint name="j" axis="0 1 0" '
+        'damping="0.1"/><geom type="capsule" fromto="0 0 0 0 0 .3" size=".02" mass="1"/><site name="s1" pos="0 0 .3"/></body></worldbody>'
+        '<tendon><spatial name="t"><site site="s0"/><site site="s1"/></spatial></tendon>'
+        '<actuator><position name="s" tendon="t" kp="{}"/></actuator></mujoco>'
+    )
+    slack = gains.mujoco(mujoco.MjModel.from_xml_string(text.format(1000)))
+    assert slack.verdict["outcome"] == "unknown" and "only its force of -700 acts" in slack.answer
+    taut = gains.mujoco(mujoco.MjModel.from_xml_string(text.format(300_000)))
+    assert taut.verdict["outcome"] == "unstable" and "without any servo" not in taut.answer
+    assert "with their forces at the point as they are" in taut.answer
+
+
 def test_a_group_that_is_not_disabled_acts():
     model = model_of(servo(100, 'group="2"'), option='actuatorgroupdisable="1"')
     assert gains.mujoco(model).largest_factor == pytest.approx(largest_kp(model) / 100, rel=1e-5)

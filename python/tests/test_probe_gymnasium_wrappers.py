@@ -290,7 +290,11 @@ def test_wrappers_of_rewards_records_and_time_limits_do_not_matter():
 
     report = audit("Slider", many)
     assert report.B == pytest.approx(B, rel=1e-9) and report.holds
-    assert report.verdict["not_examined"] == ["rewards and ends of episodes", "delays of fewer than one in 16 steps"]
+    assert report.verdict["not_examined"] == [
+        "rewards and ends of episodes",
+        "delays of fewer than one in 16 steps",
+        "a memory that acts after more than 512 steps",
+    ]
 
 
 def test_a_memory_of_the_environment_itself_is_found():
@@ -325,6 +329,28 @@ def test_a_filter_of_the_environment_itself_is_found_though_it_forgets_slowly(pa
         assert report.hidden_latency[0]["late_steps"] == pytest.approx((1 - part) / part, rel=1e-6)
     else:
         assert {"hidden-state", "not-reproducible"} & set(kinds(report))
+
+
+class Worn(Slider):
+    """The same mass with a counter of its own: its damping falls, its spring stiffens, or its action ends."""
+
+    def __init__(self, what):
+        super().__init__()
+        self.what, self.count, self.used = what, 0, 0.0
+
+    def step(self, action):
+        self.count, self.used = self.count + 1, self.used + abs(float(action[0]))
+        result = super().step(np.zeros(1) if self.what == "action" and self.count > 60 else action)
+        before = {"damping": self.state[1] * self.count, "use": self.state[1] * self.used, "spring": -self.state[0] * self.count}
+        self.state = self.state + np.array([0.0, 1e-3 * before.get(self.what, 0.0)])
+        return (self.state, *result[1:])
+
+
+@pytest.mark.parametrize("what", ["damping", "spring", "use", "action"])
+def test_a_counter_of_the_environment_itself_is_never_no_fault(what):
+    report = probe.gymnasium(Worn(what))
+    assert report.verdict["outcome"] in ("fault", "unknown"), report.answer
+    assert probe.gymnasium(Worn("nothing")).verdict["outcome"] == "no-fault"
 
 
 class Queued(Slider):

@@ -102,6 +102,14 @@ fn falls(sizes: &[(f64, Estimate)]) -> bool {
     matches!(class(local_exponent(bounded(first), bounded(last))), Class::Falls)
 }
 
+/// Whether sizes fall more slowly towards the shortest steps, beyond their intervals and by more than half an order: as the sum of one
+/// that falls and one that does not, or of two orders, where no single law holds. Steps near a limit of stability change it by less.
+fn levels_off(sizes: &[(f64, Estimate)]) -> bool {
+    let [first, second, third, ..] = sizes else { return false };
+    let (short, long) = (local_exponent(*first, *second), local_exponent(*second, *third));
+    long.low > short.high && long.value > short.value + MIDDLE
+}
+
 impl DriftCause {
     /// The cause in runs with the shortest step first.
     pub(crate) fn of(runs: &[Run]) -> Self {
@@ -177,6 +185,7 @@ impl OscillationCause {
         match (sizes.len(), class_of(&sizes)) {
             (0 | 1, _) if is_of_longest => OscillationCause::Unresolved,
             (0 | 1, _) => OscillationCause::Unclear,
+            (_, Class::Falls) if levels_off(&sizes) => OscillationCause::Unclear,
             (_, Class::Falls) => OscillationCause::Truncation,
             (_, Class::Stays | Class::Grows) => OscillationCause::StepIndependent,
             (_, Class::Unclear) if falls(&sizes) => OscillationCause::Truncation,

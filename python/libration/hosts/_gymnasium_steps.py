@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 
 # Calls after which an environment should have forgotten what was before, as in the audit of a step.
 CALLS = 64
+# Calls with the same values, among which a memory that counts them shows.
+ALIKE = 512
 # Changes of one call from which its effect on later ones shows, also of wrappers that draw random numbers.
 IMPULSES = 16
 # Calls without a change: a result that differs among them does so by itself.
@@ -203,27 +205,35 @@ class Steps:
         return responses
 
     def remembers(self, state: Array, action: Array, changes: Sequence[tuple[Array, Array, Any]], dt: float) -> bool:
-        """Whether attributes that live on change calls after a changed one: each sequence of calls begins with the attributes as they were.
+        """Whether attributes that live on change calls of the same values, or calls after a changed one.
 
-        A memory that only fades, such as a filter of actions, is found by this too: it never is what it was before.
+        Each sequence of calls begins with the attributes as they were. So a memory that only fades, such as a filter of actions, is found,
+        which never is what it was before, and so is one that grows, such as a counter.
         """
         base_fixed = self.fixed
 
-        def sequence(x: Array, u: Array, fixed: Any) -> list[tuple[bytes, bytes]]:
+        def sequence(first: tuple[Array, Array, Any], then: tuple[Array, Array, Any], calls: int) -> list[tuple[bytes, bytes]]:
             self._restore()
             found = []
-            for call in range(1 + CALLS):
-                first = call == 0
-                self.fixed = fixed if first else base_fixed
-                after = self._one(x if first else state, u if first else action, dt)
+            for call in range(1 + calls):
+                x, u, self.fixed = then if call else first
+                after = self._one(x, u, dt)
                 found.append((after.tobytes(), b"" if self.observation is None else self.observation.tobytes()))
             self.fixed = base_fixed
             return found[1:]
 
+        point = (state, action, base_fixed)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            base, again = (sequence(state, action, base_fixed) for _ in range(2))
-            return base == again and any(sequence(*changed) != base for changed in changes)
+            # Where a state is at rest, a force that depends on it is not seen.
+            for own in (point, *changes):
+                base, again = (sequence(own, own, ALIKE) for _ in range(2))
+                if base != again:
+                    continue
+                others = (other for other in (point, *changes) if other is not own)
+                if any(one != base[0] for one in base) or any(sequence(other, own, CALLS) != base[:CALLS] for other in others):
+                    return True
+        return False
 
     def other_actions(self) -> list[int]:
         """Return the discrete actions besides the one that is fixed."""

@@ -19,8 +19,8 @@ REACH = 1e-5
 """Deviation of a position or velocity within which a force must not meet its limit: the derivative of the force is measured on it."""
 
 
-def idle_servos(model: Any, moments: Array, servos: list[int]) -> list[str]:
-    """Return why each servo that does not act does not; moments are servos × velocities."""
+def idle_servos(model: Any, moments: Array, servos: list[int], forces: Array) -> list[str]:
+    """Return why each servo that does not act does not; moments are servos × velocities, and forces those at the point."""
     found = []
     is_off = bool(model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_ACTUATION))
     for place, k in enumerate(servos):
@@ -32,6 +32,9 @@ def idle_servos(model: Any, moments: Array, servos: list[int]) -> list[str]:
             why = f"its group {group} is disabled by actuatorgroupdisable"
         elif not moments[place].any():
             why = "it moves no joint at the point"
+            if forces[place]:
+                # A taut tendon has a stiffness that grows with its force.
+                why += f", where only its force of {forces[place]:.3g} acts, by its direction"
         if why:
             found.append(f"`{name_of(model, 'actuator', k)}` does not act: {why}")
     return found

@@ -51,6 +51,7 @@ class ServoGains:
         self.bias = np.array(model.actuator_biasprm)
         self.lengths = np.array([forward.actuator_length[outputs[k]] for k in self.servos])
         self.rates = np.array([forward.actuator_velocity[outputs[k]] for k in self.servos])
+        self.forces = np.array([forward.actuator_force[outputs[k]] for k in self.servos])
         self.moments = _moments(model, point, [int(outputs[k]) for k in self.servos])
         self.forward = forward
 
@@ -132,7 +133,7 @@ def mujoco_gains(
     saturated, of_limits = free_forces(own, point)
     gains = ServoGains(own, point)
     described = mujoco_servos(own, point)
-    described.update(saturated=saturated, idle=idle_servos(own, gains.moments, gains.servos))
+    described.update(saturated=saturated, idle=idle_servos(own, gains.moments, gains.servos, gains.forces))
     others = other_forces(own, gains.forward, gains.servos)
     others["friction"] = friction
     others["undecided"] += growth_of_free_motion(own, host, gains.forward)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from .._keywords import check_keywords
 from .._settings import nearest, positive
-from ._gymnasium_steps import IMPULSES, Responses, Steps
+from ._gymnasium_steps import ALIKE, IMPULSES, Responses, Steps
 from ._gymnasium_wrappers import unwrapped_copy
 from .host import Host
 from .measured_delay import MeasuredDelay, StrayResults, measured_delay
@@ -178,7 +178,7 @@ def _reset_once(outer: Any, name: str) -> None:
 
 def _unexamined(simulation: Steps, kept: Sequence[str], left_out: Sequence[str]) -> list[str]:
     """Return what an audit does not examine, apart from the lateness of actions."""
-    names = ["rewards and ends of episodes", f"delays of fewer than one in {IMPULSES} steps"]
+    names = ["rewards and ends of episodes", f"delays of fewer than one in {IMPULSES} steps", f"a memory that acts after more than {ALIKE} steps"]
     if left_out:
         what = "wrapper" if len(left_out) == 1 else "wrappers"
         names.insert(0, f"{len(left_out)} {what} ({', '.join(left_out)})")

@@ -132,7 +132,8 @@ pub(super) fn describe(head: &str, statistics: &Statistics) -> String {
     );
     line("jitter, relative rms", jitter_words(statistics));
     if statistics.gaps > 0 && statistics.heavy_tailed() {
-        line("", "a few long gaps dominate the rms; help: replay the time stamps instead".into());
+        let few = if statistics.gaps * 10 < statistics.intervals { "a few" } else { "many" };
+        line("", format!("{few} long gaps dominate the rms; help: replay the time stamps instead"));
     }
     line("gaps above 1.5 periods", statistics.gaps.to_string());
     if statistics.repeats > 0 {
@@ -142,7 +143,7 @@ pub(super) fn describe(head: &str, statistics: &Statistics) -> String {
         let shown: Vec<String> =
             statistics.correlation.iter().map(|c| format!("{c:+.2}")).collect();
         line("correlation, 1 apart on", shown.join(" "));
-        line("", meaning(statistics.correlation[0]).into());
+        line("", meaning(&statistics.correlation).into());
     }
     if let Some(spectrum) = &statistics.spectrum {
         line(
@@ -178,8 +179,9 @@ const INDEPENDENT: f64 = 0.1;
 pub(super) fn jitter_words(statistics: &Statistics) -> String {
     let rms = statistics.jitter_rms;
     // `--jitter` has independent intervals.
+    let correlation = &statistics.correlation;
     let is_independent =
-        statistics.correlation.first().is_none_or(|first| first.abs() < INDEPENDENT);
+        correlation.first().is_none_or(|first| first.abs() < INDEPENDENT) && !repeats(correlation);
     match statistics.equal_up_to {
         Some(resolution) => format!(
             "{rms:.3e}: intervals are equal up to the resolution of the time stamps, {}",
@@ -190,9 +192,20 @@ pub(super) fn jitter_words(statistics: &Statistics) -> String {
     }
 }
 
-/// Returns the likely cause of the first correlation.
-fn meaning(first: f64) -> &'static str {
-    match first {
+/// Correlation of intervals further apart from which they repeat: the noise of some tens of them is smaller.
+const REPEATING: f64 = 0.35;
+
+/// Whether intervals that are not neighbours are alike or opposite.
+fn repeats(correlation: &[f64]) -> bool {
+    correlation.iter().skip(1).any(|c| c.abs() > REPEATING)
+}
+
+/// Returns the likely cause of the correlations.
+fn meaning(correlation: &[f64]) -> &'static str {
+    match correlation[0] {
+        c if repeats(correlation) && c < REPEATING => {
+            "intervals repeat in a pattern: replay the record (--jitter-file)"
+        }
         c if c < -0.35 => "the latenesses of wake-ups are independent; the time does not drift",
         c if c > 0.35 => "the rate varies slowly; neighbouring intervals are similar",
         c if c.abs() < INDEPENDENT => "intervals are independent",

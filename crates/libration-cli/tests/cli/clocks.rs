@@ -122,3 +122,23 @@ fn the_rounding_of_stamps_is_no_jitter() {
             .and(predicate::str::contains("1000 of 1001 messages")),
     );
 }
+
+#[test]
+fn intervals_that_repeat_in_a_pattern_are_not_called_independent() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("clock.csv");
+    // Long and short intervals in turn, and a short one after two of the mean: correlations of ±1 in both.
+    for lengths in [&[5, 15][..], &[10, 10, 4]] {
+        let mut at = 0;
+        let stamps = (0..3000).map(|k| {
+            at += lengths[k % lengths.len()];
+            format!("{}.{:03}", at / 1000, at % 1000)
+        });
+        let stamps: Vec<String> = stamps.collect();
+        fs::write(&file, format!("t\n{}\n", stamps.join("\n"))).unwrap();
+        let found = libration(&["clock", file.to_str().unwrap()]);
+        let text = String::from_utf8(found.get_output().stdout.clone()).unwrap();
+        assert!(text.contains("intervals repeat in a pattern: replay the record"), "{text}");
+        assert!(!text.contains("are independent") && !text.contains("--jitter gaussian"), "{text}");
+    }
+}

@@ -1,7 +1,11 @@
 //! Slow changes of the energy by the system, beside the oscillation of the step.
 
+use std::cell::RefCell;
+
 use libration_energy::{EnergyReport, EnergyTrace, FindingKind, Requirement, audit};
 use libration_report::verdict::Outcome;
+
+use super::programs::Noise;
 
 const STEPS: [f64; 3] = [0.04, 0.02, 0.01];
 const DURATION: f64 = 100.0;
@@ -121,4 +125,22 @@ fn slow_changes_that_fall_with_the_step_are_no_fault() {
             assert!(order == 1 || found.verdict.outcome != Outcome::Fault, "{}", found.answer);
         }
     }
+}
+
+#[test]
+fn a_fast_part_that_no_step_removes_leaves_the_order_and_the_largest_step_unknown() {
+    // Standard deviations h²/√2, and 2·10⁻⁴/√2 of a sine or 2·10⁻⁴ of noise: local orders of 1.0 and 1.85, or of 0.7 and 1.7.
+    let noise = RefCell::new(Noise(7));
+    let parts: [&Law<'_>; 2] =
+        [&|t, _| 2e-4 * (40.0 * t).sin(), &|_, _| 2e-4 * noise.borrow_mut().normal()];
+    for part in parts {
+        let found = audited(&STEPS, &|t, h| of_step(t, h) + part(t, h));
+        assert_eq!(found.verdict.outcome, Outcome::Unknown, "{}", found.answer);
+        assert!(found.answer.contains("the runs do not tell"), "{}", found.answer);
+    }
+    // Two orders have no single law; the second order of Verlet near its limit, h²/(1 − z²/4) with z up to 1.2, has one.
+    let two = audited(&STEPS, &|t, h| 1.0 + (1e-2 * h + h * h) * (2.0 * t).cos());
+    assert_eq!(two.verdict.outcome, Outcome::NoFault, "{}", two.answer);
+    let verlet = audited(&STEPS, &|t, h| 1.0 + h * h / (1.0 - 225.0 * h * h) * (2.0 * t).cos());
+    assert_eq!(verlet.verdict.outcome, Outcome::NoFault, "{}", verlet.answer);
 }

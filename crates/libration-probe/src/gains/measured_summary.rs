@@ -65,6 +65,10 @@ impl MeasuredGains {
         } else {
             Verdict::new(Outcome::Stable, format!("spectral radius {radius} of the measured step"))
         };
+        let verdict = match &self.negative_gain {
+            Some(servo) => verdict.without(format!("how far the negative kp of {servo} may fall")),
+            None => verdict,
+        };
         match &self.not_searched[..] {
             [] => verdict,
             some => verdict.without(format!("limits of the gains of {}", some.join(", "))),
@@ -142,6 +146,9 @@ impl MeasuredGains {
     /// The sentence about a step that is unstable without gains of servos.
     fn unstable_by_itself(&self, report: &GainReport) -> String {
         let without = match (report.others.remaining(), self.has_servos()) {
+            (None, _) if !report.idle.is_empty() => {
+                "without gains of the servos, with their forces at the point as they are".to_owned()
+            }
             (None, _) => "without any servo".to_owned(),
             (Some(names), true) => {
                 format!("without gains of the servos, with other actuators as they are ({names})")
@@ -198,8 +205,12 @@ impl MeasuredGains {
             let tightest = limited.min_by(|a, b| margin(a).total_cmp(&margin(b)));
             if let Some(servo) = tightest {
                 let (largest, given) = gain(servo);
+                let of = match name == "kp" && self.negative_gain.is_some() {
+                    true => "positive kp",
+                    false => name,
+                };
                 found.push(format!(
-                    "The least margin of {name} has {}: at most {}, given {}, with all others as they are.",
+                    "The least margin of {of} has {}: at most {}, given {}, with all others as they are.",
                     servo.name,
                     number(cut_off(largest, 5), 5),
                     number(given, 5)

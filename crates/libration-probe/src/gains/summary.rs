@@ -74,7 +74,7 @@ impl GainReport {
         match self.largest_factor {
             _ if self.is_at_limit && self.measured.is_none() => ".".to_owned(),
             x if x.is_nan() => ".".to_owned(),
-            f64::INFINITY if self.holds && self.has_kp => {
+            f64::INFINITY if self.holds && self.has_kp && !self.has_negative_kp() => {
                 "; no larger gain of position was found that does not hold.".to_owned()
             }
             f64::INFINITY => ".".to_owned(),
@@ -85,6 +85,10 @@ impl GainReport {
                 format!("; the largest gains of position are {factor} times the given ones.")
             }
         }
+    }
+
+    fn has_negative_kp(&self) -> bool {
+        self.measured.as_ref().is_some_and(|measured| measured.negative_gain.is_some())
     }
 
     pub(super) fn summary(&self) -> String {
