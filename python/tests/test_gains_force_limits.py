@@ -130,7 +130,7 @@ def test_a_tendon_that_is_taut_acts_by_its_force_and_no_servo_is_called_innocent
     assert slack.verdict["outcome"] == "unknown" and "only its force of -700 acts" in slack.answer
     taut = gains.mujoco(mujoco.MjModel.from_xml_string(text.format(300_000)))
     assert taut.verdict["outcome"] == "unstable" and "without any servo" not in taut.answer
-    assert "with their forces at the point as they are" in taut.answer
+    assert "without gains of the servos, with other actuators as they are (`s`)" in taut.answer
 
 
 def test_a_group_that_is_not_disabled_acts():

@@ -136,6 +136,9 @@ def mujoco_gains(
     described.update(saturated=saturated, idle=idle_servos(own, gains.moments, gains.servos, gains.forces))
     others = other_forces(own, gains.forward, gains.servos)
     others["friction"] = friction
+    # A taut tendon without a moment arm has a stiffness all the same, which grows with its force.
+    taut = [k for k, moments, force in zip(gains.servos, gains.moments, gains.forces) if force and not moments.any()]
+    others["actuators"] += [name_of(own, "actuator", k) for k in taut]
     others["undecided"] += growth_of_free_motion(own, host, gains.forward)
     if growth is not None:
         others["undecided"].append(f"while friction loss holds, a mode grows by a factor {growth:.4g} per step")

@@ -146,9 +146,6 @@ impl MeasuredGains {
     /// The sentence about a step that is unstable without gains of servos.
     fn unstable_by_itself(&self, report: &GainReport) -> String {
         let without = match (report.others.remaining(), self.has_servos()) {
-            (None, _) if !report.idle.is_empty() => {
-                "without gains of the servos, with their forces at the point as they are".to_owned()
-            }
             (None, _) => "without any servo".to_owned(),
             (Some(names), true) => {
                 format!("without gains of the servos, with other actuators as they are ({names})")
