@@ -42,7 +42,7 @@ impl Linearisation {
 
     /// Exact steps of `dt` seconds of a linear system, by the exponential of the generator.
     pub fn exact(dynamics: &Dynamics, at: &[f64], dt: f64) -> Self {
-        let generator = LinearMap::of_rates(dynamics, at);
+        let generator = rates(dynamics, &wide(at));
         let dt = Wide::from_f64(dt);
         let flow = |t: Wide| LinearMap::of_rows(&exponential(&generator.rows(), t));
         Linearisation { step: flow(dt), back: flow(-dt), generator, dt }
@@ -51,13 +51,6 @@ impl Linearisation {
     /// `‖M(−Δt)·M(Δt) − 1‖` in the Frobenius norm: zero for a time-reversible method.
     pub fn reversibility_defect(&self) -> Wide {
         self.back.after(&self.step).distance_from_identity()
-    }
-}
-
-impl LinearMap {
-    /// The Jacobian of the rate of change `(q̇, v̇)` at a state: positions, velocities and inputs.
-    pub fn of_rates(dynamics: &Dynamics, at: &[f64]) -> Self {
-        rates(dynamics, &wide(at))
     }
 }
 

@@ -11,7 +11,7 @@ use serde::Deserialize;
 
 use crate::results::SCHEMA;
 
-/// What a comparison needs of a file with results.
+/// The part of a file with results that a comparison needs.
 #[derive(Clone, Debug, Deserialize)]
 pub struct ComparedResults {
     #[serde(default = "yes")]

@@ -21,7 +21,7 @@ pub(crate) fn equations((text, file, set): &EquationText) -> PyResult<EquationSy
     EquationSystem::parse(text, file, set).map_err(located)
 }
 
-/// What describes a system: its equations, or its name in the catalogue.
+/// The description of a system: its equations, or its name in the catalogue.
 #[derive(FromPyObject)]
 pub(crate) enum Description {
     Equations(EquationText),

@@ -49,10 +49,11 @@ def gymnasium_host(
 ) -> Host:
     """Return a Gymnasium environment as a step of its internal state.
 
-    An environment that was never reset is reset first, and keeps its state. The state is that of the environment without wrappers, in the precision that it has inside, not its observation. Actions go through the
-    wrappers, and observations are those that ``step`` returns. Wrappers of rewards, records and time limits are left out; those whose
-    observations are no function of a state, too, and the audit names these. Each call sets all plain attributes of the environment to what
-    they were, unless they are a memory of earlier calls. The environment itself is never changed: the host has a copy.
+    An environment that was never reset is reset first, and keeps its state. The state is that of the environment without wrappers, in the
+    precision that it has inside, not its observation. Actions go through the wrappers, and observations are those that ``step``
+    returns. Wrappers of rewards, records and time limits are left out; those whose observations are no function of a state, too, and the
+    audit names these. Each call sets all plain attributes of the environment to what they were, unless they are a memory of earlier calls.
+    The environment itself is never changed: the host has a copy.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ pub(super) fn hidden_change(
     }
     let field = Field::new(bodies, centre_velocity(bodies));
     let masses = bodies.masses();
-    // Of the orbits the fastest is the first to break, of the bodies that with the least energy.
+    // The fastest orbit is the first to break, and of single bodies the one with the least energy.
     let candidates = parts(bodies, &field).into_iter().filter_map(|part| {
         let per_mass = part.read(bodies, &field).size();
         let (energy, most, rank) = match part {

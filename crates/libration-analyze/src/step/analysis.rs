@@ -106,7 +106,7 @@ impl RequestSummary {
     }
 }
 
-/// Those of a compiled system have its mass and stiffness where they are given.
+/// The parameters of the system; those of a compiled one include its mass and stiffness where they are given.
 fn parameters(request: &Request) -> BTreeMap<String, f64> {
     let owned = |(name, value): (&'static str, f64)| (name.to_owned(), value);
     match request.compiled() {

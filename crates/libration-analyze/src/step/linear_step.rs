@@ -47,7 +47,7 @@ impl LinearStep {
     }
 }
 
-/// What the Newton steps leave in the motion of a nonlinear system; none without an iteration.
+/// The residual that Newton steps leave in the motion of a nonlinear system; none without an iteration.
 pub(super) fn newton_residual(request: &Request, stop: &AtomicBool) -> Option<NewtonResidual> {
     let Stepping::Implicit(method) = request.stepping else { return None };
     if request.system.is_linear() {

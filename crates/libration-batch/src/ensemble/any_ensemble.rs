@@ -39,7 +39,7 @@ pub trait AnyEnsemble<T>: Debug + Send {
         steps: u64,
     ) -> Result<(), EnsembleError>;
 
-    /// Goes on elsewhere, which changes no result.
+    /// Runs the next steps on other threads or with other instructions, which changes no result.
     fn execute(&mut self, execution: Execution);
 
     /// Position `i` of every trajectory, if there is one.

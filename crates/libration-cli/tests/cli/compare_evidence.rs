@@ -1,4 +1,4 @@
-//! What `libration compare` did not compare is no success.
+//! A result of `libration compare` that was not compared is no success.
 
 use std::fs;
 use std::path::Path;
@@ -165,7 +165,7 @@ fn a_finding_that_is_judged_and_undecided_is_misstated_in_either_file() {
         let reason = format!("fault: judged and undecided at once: {id};");
         assert!(said.starts_with(&reason), "{said}");
     }
-    // What a run writes.
+    // This is the file that a run writes.
     let keys = json!({ "undecided": "too noisy", "verdict": "measured", "predicted": null });
     let said = edited([&kept, &first_with(keys)], 0);
     assert!(said.contains("1 finding that the second run left undecided"), "{said}");

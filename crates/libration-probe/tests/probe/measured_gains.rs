@@ -183,7 +183,7 @@ fn growth_too_slow_for_the_differences_of_a_step_is_never_a_gain_that_holds() {
     let held = measured(Sliders::new(&[2.0], &[-1.0], &[1.0]), DT);
     assert!(held.holds && held.verdict.not_examined[0].contains("negative kp of servo 0"));
     close(held.largest_factor, 2.0);
-    // Of a neutral mode the verdict names the growth that it cannot tell from none.
+    // The verdict names the growth of a neutral mode that it cannot tell from none.
     let free = measured(Sliders::new(&[0.0], &[0.0], &[1.0]), DT);
     assert!(free.holds && free.answer.contains("Not examined: growth of neutral modes below"));
 }
