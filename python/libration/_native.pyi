@@ -19,7 +19,6 @@ __all__ = [
     "_advise",
     "_advise_equations",
     "_analyze",
-    "_analyze_equations",
     "_analyze_linear",
     "_check_bodies",
     "_analyze_temperature",
@@ -89,12 +88,11 @@ def _simulate(
     system: _SystemAtStart, step: tuple[str, float], looped: Mapping[str, Any], rows: Mapping[str, Any]
 ) -> tuple[_Columns, dict[str, str], dict[str, Any]]: ...
 def _equation_summary(system: _Equations) -> str: ...
-def _analyze_equations(system: _Equations, integrator: str, dt: float, steps: int) -> str: ...
 def _equation_plant(
     system: _Equations,
 ) -> tuple[list[list[list[float]]], list[list[tuple[str, str]]], list[list[float]], float]: ...
 def _analyze(
-    step: Mapping[str, Any], looped: Mapping[str, Any], options: Mapping[str, Any]
+    system: _SystemAtStart, step: tuple[str, float], looped: Mapping[str, Any], options: Mapping[str, Any]
 ) -> str: ...
 def _analyze_linear(config: str, dt: float | None, integrator: str | None) -> str: ...
 def _analyze_temperature(

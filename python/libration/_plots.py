@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING, Any, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -112,20 +112,28 @@ def _grows(values: NDArray[Any]) -> bool:
     return len(sizes) > 0 and float(sizes.max()) > MOST_GROWTH * max(float(sizes[0]), 1.0)
 
 
-def plot_step(analysis: Mapping[str, Any]) -> Panels:
-    """Draw the eigenvalues of a step of the catalogue, its stable time steps, and the stable latencies of its loop."""
-    dt, name = analysis["dt"], analysis["integrator"]
-    ranges = [("stability_windows", 1.0, "Stable time steps", "time step (s)", dt, f"dt = {dt:.6g} s")]
+def plot_steps(analysis: Mapping[str, Any]) -> Panels:
+    """Draw a step: its eigenvalues, stable time steps, stable latencies of its loop, errors, and the modes of its plant."""
+    dt, late = analysis["dt"], analysis.get("latency_steps", 0.0) * analysis["dt"]
+    linear = analysis.get("linear")
+    drawn: list[Callable[[Axes], None]] = []
+    if "eigenvalues" in analysis:
+        drawn.append(lambda axis: _eigenvalues(axis, analysis))
+    if "stability_windows" in analysis:
+        named = ("Stable time steps", "time step (s)", f"dt = {dt:.6g} s")
+        drawn.append(lambda axis: _windows(axis, analysis["stability_windows"], dt, named))
     if "latency_windows" in analysis:
-        late = analysis["latency_steps"] * dt
-        ranges.append(("latency_windows", dt, "Stable latencies of the loop", "latency (s)", late, f"latency = {late:.6g} s"))
-    ranges = [entry for entry in ranges if entry[0] in analysis]
-    axes = panels(1, 1 + len(ranges), 4.5, 4.2)
-    _eigenvalues(axes[0], analysis["eigenvalues"])
-    axes[0].set_title(f"Eigenvalues of a step of {name} without feedback\ndt = {dt:.6g} s, spectral radius {_radius(analysis['spectral_radius_minus_one'])}")
-    for axis, (key, scale, title, label, at, named) in zip(axes[1:], ranges):
-        _windows(axis, [[None if end is None else end * scale for end in window] for window in analysis[key]], at, named)
-        axis.set(title=title, xlabel=label)
+        windows = [[None if end is None else end * dt for end in window] for window in analysis["latency_windows"]]
+        of_loop = ("Stable latencies of the loop", "latency (s)", f"latency = {late:.6g} s")
+        drawn.append(lambda axis: _windows(axis, windows, late, of_loop))
+    if "motion" in analysis:
+        drawn.append(lambda axis: _errors(axis, analysis["motion"]))
+    # An oscillator has one mode.
+    if linear and "stability_windows" not in analysis:
+        drawn.append(lambda axis: _modes(axis, linear["modes"], linear["loop"], "Modes at the equilibrium;\nthose on the left of the line decay"))
+    axes = panels(1, len(drawn), 4.5, 4.2)
+    for axis, draw in zip(axes, drawn):
+        draw(axis)
     return axes
 
 
@@ -137,8 +145,10 @@ def _radius(minus_one: float | None) -> str:
     return f"1 {'+' if minus_one > 0 else '−'} {abs(minus_one):.3g}"
 
 
-def _eigenvalues(axis: Axes, eigenvalues: Sequence[Sequence[float]]) -> None:
+def _eigenvalues(axis: Axes, analysis: Mapping[str, Any]) -> None:
     """Draw eigenvalues of a step with the unit circle."""
+    eigenvalues, radius = analysis["eigenvalues"], _radius(analysis["spectral_radius_minus_one"])
+    axis.set_title(f"A step of {analysis['integrator']} without feedback\ndt = {analysis['dt']:.6g} s, spectral radius {radius}")
     angle = np.linspace(0, 2 * np.pi, 361)
     axis.plot(np.cos(angle), np.sin(angle), color="0.6", linewidth=1, label="unit circle")
     points = np.array(eigenvalues, dtype=float).reshape(-1, 2)
@@ -148,8 +158,10 @@ def _eigenvalues(axis: Axes, eigenvalues: Sequence[Sequence[float]]) -> None:
     axis.legend(loc="lower left")
 
 
-def _windows(axis: Axes, windows: Sequence[Sequence[float | None]], at: float, named: str) -> None:
-    """Draw stable ranges of a quantity, and its value."""
+def _windows(axis: Axes, windows: Sequence[Sequence[float | None]], at: float, words: tuple[str, str, str]) -> None:
+    """Draw stable ranges of a quantity, and its value; the words are title, label of the axis, and name of the value."""
+    title, label, named = words
+    axis.set(title=title, xlabel=label)
     ends = [end for window in windows for end in window if end is not None] + [at]
     right = 1.15 * max(ends) or 1.0
     for low, high in windows:
@@ -173,7 +185,12 @@ def plot_plant(analysis: Mapping[str, Any]) -> Panels:
     return axes
 
 
-def _modes(axis: Axes, modes: Sequence[Mapping[str, Any]], loop: Mapping[str, Any] | None) -> None:
+def _modes(
+    axis: Axes,
+    modes: Sequence[Mapping[str, Any]],
+    loop: Mapping[str, Any] | None,
+    title: str = "Modes; those on the left of the line decay",
+) -> None:
     drawn = [("plant", "x", "C0", modes)] + ([("closed loop", "o", "C1", loop["modes"])] if loop else [])
     sizes: list[float] = []
     for label, marker, colour, found in drawn:
@@ -193,7 +210,7 @@ def _modes(axis: Axes, modes: Sequence[Mapping[str, Any]], loop: Mapping[str, An
             locator: Any = scaled.get_major_locator()
             locator.set_params(numticks=MOST_TICKS)
     axis.axvline(0, color="0.6", linewidth=1)
-    axis.set(xlabel="growth rate (1/s)", ylabel="frequency (rad/s)", title="Modes; those on the left of the line decay")
+    axis.set(xlabel="growth rate (1/s)", ylabel="frequency (rad/s)", title=title)
     axis.grid(alpha=0.3)
     axis.legend(loc="best")
 
@@ -216,11 +233,9 @@ def _largest_steps(axis: Axes, steps: Sequence[Mapping[str, Any]], dt: float | N
         axis.legend(loc="lower right")
 
 
-def plot_equations(analysis: Mapping[str, Any]) -> Panels:
-    """Draw the errors of an integrator on a system by equations, and the modes of its plant."""
-    motion, linear = analysis["motion"], analysis["linear"]
-    axes = panels(1, 2 if linear else 1, 5.2, 4.0)
-    axis, errors = axes[0], motion["errors"]
+def _errors(axis: Axes, motion: Mapping[str, Any]) -> None:
+    """Draw the errors of an integrator on a motion."""
+    errors = motion["errors"]
     for row, error in enumerate(errors):
         if error["error"] > 0 and math.isfinite(error["error"]):
             axis.plot(error["error"], row, "o", color="C0")
@@ -232,11 +247,7 @@ def plot_equations(analysis: Mapping[str, Any]) -> Panels:
     axis.set_yticks(range(len(errors)), [with_unit(error["name"], error["unit"]) for error in errors])
     axis.invert_yaxis()
     axis.set_xlabel("error, in the unit of the state")
-    axis.set_title(f"Errors of {motion['integrator']} after {motion['error_steps']} steps of {motion['dt']:.6g} s")
-    if linear:
-        _modes(axes[1], linear["modes"], linear["loop"])
-        axes[1].set_title("Modes at the equilibrium;\nthose on the left of the line decay")
-    return axes
+    axis.set_title(f"Errors of {motion['integrator']}\nafter {motion['error_steps']} steps of {motion['dt']:.6g} s")
 
 
 def share_of_allowed(finding: Finding) -> float | None:

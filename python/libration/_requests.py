@@ -27,17 +27,6 @@ def integrator_name(integrator: Any) -> str:
     return str(integrator)
 
 
-def step_request(system: System, integrator: Any, dt: Any, q: Any, v: Any) -> dict[str, Any]:
-    """Return a system, its start and its step in the format of the engine."""
-    return {
-        "system": system._request(),
-        "q": coordinates("q", q),
-        "v": coordinates("v", v),
-        "integrator": integrator_name(integrator),
-        "dt": number("dt", dt, "finite and greater than 0"),
-    }
-
-
 def system_request(system: Any, q: Any, v: Any) -> tuple[Any, list[float] | None, list[float] | None]:
     """Return a system of the catalogue or by equations and its start in the format of the engine."""
     system = known(system)

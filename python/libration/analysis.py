@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Mapping
 
 from . import _native
-from ._requests import coordinates, loop_request, step_request, text, whole
+from ._requests import coordinates, integrator_name, loop_request, system_request, whole
 from ._keywords import check_keywords
 from ._html import pairs, table
-from ._plots import Panels, plot_equations, plot_plant, plot_step
+from ._plots import Panels, plot_plant, plot_steps
 from ._progress import Progress, ProgressDisplay
 from ._settings import number
 from ._toml import text_of
@@ -63,15 +63,16 @@ class Answer(Mapping[str, Any]):
 
 
 class Analysis(Answer):
-    """Analysis of one step, with the keys of ``libration analyze --json``; of a linear plant with those of ``docs/plants.md``.
+    """Analysis of steps on a system, with the keys of ``libration analyze --json``; of a linear plant with those of ``docs/plants.md``.
 
-    ``spectral_radius`` and all keys without ``closed_loop`` belong to one step of the plant without feedback. The loop has
-    ``closed_loop_spectral_radius``, and with jitter or losses ``mean_square_growth``. ``note`` is a restriction of the numbers,
-    if there is one. An analysis has the attributes of its kind only: ``dir(analysis)`` and ``list(analysis)`` have their names.
-    A number that is not finite, since a step overflows, is None.
+    ``spectral_radius`` and all keys without ``closed_loop`` belong to one step from the start without feedback. The loop has
+    ``closed_loop_spectral_radius``, and with jitter or losses ``mean_square_growth``. An analysis has the attributes of its kind only:
+    ``dir(analysis)`` and ``list(analysis)`` have their names. A number that is not finite, since a step overflows, is None.
     """
 
-    # Of one step, and of a linear plant.
+    # Of a system, and of a linear plant.
+    schema: str
+    """Version of the keys."""
     dt: float
     """Time step in s; of a linear plant None without one."""
     note: str
@@ -79,21 +80,16 @@ class Analysis(Answer):
     verdicts: dict[str, dict[str, Any]]
     """What is stable or resolved: ``plant``, ``step``, ``motion`` and ``loop`` with ``outcome`` and ``evidence``, as far as they apply."""
 
-    # Of one step.
-    system: Any
-    """Name of the system; of a system by equations its description."""
-    parameters: dict[str, float]
+    # Of a system.
+    system: dict[str, Any]
+    """Its ``name``, ``states`` with their start, ``parameters`` and what follows from its equations."""
     integrator: str
-    q: list[float]
-    """Positions, around which the step is linearised."""
-    v: list[float]
     steps: Any
-    """Number of steps of the energy drift; of a linear plant the steps of each integrator, a list."""
-    linear: Any
-    """Whether the system is linear; of a system by equations the analysis of its plant at an equilibrium, a dictionary or None."""
+    """Number of steps of the motion; of a linear plant the steps of each integrator, a list."""
     update_matrix: list[list[float]]
+    """The derivative of one step from the start."""
     update_matrix_in_z: list[list[str]]
-    """Its entries as polynomials of ``z = ω·dt``."""
+    """Of an oscillator: its entries as polynomials of ``z = ω·dt``."""
     determinant: float
     determinant_minus_one: float
     trace: float
@@ -107,9 +103,9 @@ class Analysis(Answer):
     bounded: bool | None
     """Whether all trajectories stay bounded; None if the system is not linear."""
     stability_windows: list[list[float | None]]
-    """Ranges of stable time steps in s; an end without limit is None."""
+    """Of an oscillator: ranges of stable time steps in s; an end without limit is None."""
     largest_dt: dict[str, float | None]
-    """Largest time step in s for each criterion."""
+    """Of an oscillator: largest time step in s for each criterion."""
     modified_hamiltonian: dict[str, float]
     order_of_word: dict[str, Any]
     symplecticity_defect: float
@@ -118,15 +114,21 @@ class Analysis(Answer):
     """Phase error in rad per step."""
     force_evaluations_per_step: int
     max_energy_drift: float
-    """Largest relative energy drift within ``steps`` steps."""
+    """Of an oscillator: largest relative energy drift within ``steps`` steps, without simulation."""
     log10_max_energy_drift: float | None
     max_energy_drift_step: int
-    max_energy_drift_method: str
-    stopped_at_step: int
-    """First step whose state is not finite, if there is one."""
-
+    motion: dict[str, Any]
+    """Order, errors and energy of the integrator on the motion from the start; its ``examination`` is beside the exact motion."""
     newton_residual: dict[str, Any]
     """Of an implicit integrator that iterates: what its Newton steps leave in the motion, and in which step."""
+    operating_point: dict[str, Any] | None
+    """The equilibrium near the start."""
+    linear: dict[str, Any] | None
+    """The analysis of the plant at this equilibrium."""
+    no_modes: str | None
+    """Reason for a missing ``linear``."""
+    steps_along_motion: dict[str, Any]
+    """The largest stable step along the motion, an estimate."""
 
     # Of a loop around a system of the catalogue.
     command: str
@@ -155,9 +157,7 @@ class Analysis(Answer):
     cost_increase: float | None
     """Relative increase of the cost by latency, jitter and losses."""
 
-    # Of a linear plant, or of a system by equations.
-    schema: str
-    """Version of the keys."""
+    # Of a linear plant.
     states: list[dict[str, str]]
     """``name`` and ``unit`` of each state."""
     inputs: list[dict[str, str]]
@@ -175,30 +175,19 @@ class Analysis(Answer):
     """Integrators that do not apply to the plant."""
     loop: dict[str, Any] | Any
     """The closed loop; None without a controller."""
-    motion: dict[str, Any]
-    """Of a system by equations: order, errors and energy of the integrator. Of a nonlinear one of the catalogue: its motion beside the exact one."""
-    operating_point: dict[str, Any] | None
-    """Of a system by equations: the equilibrium of its plant."""
-    steps_along_motion: dict[str, Any]
-    """Of a system by equations: the largest stable step along its motion, an estimate."""
-    no_modes: str | None
-    """Reason for a missing ``linear``."""
-
 
     def plot(self) -> Panels:
         """Draw the analysis by matplotlib, and return the axes of the panels.
 
-        Of one step: eigenvalues, stable time steps, and stable latencies of the loop. Of a linear plant: modes of plant and loop, and
-        the stable time steps of integrators. Of a system by equations: errors of the integrator, and modes at the equilibrium.
+        Of a system: eigenvalues of a step, stable time steps of an oscillator, stable latencies of a loop, errors of the integrator, and
+        modes at the equilibrium. Of a linear plant: modes of plant and loop, and the stable time steps of integrators.
 
         Raises
         ------
         ImportError
             Without matplotlib: ``pip install 'libration[plots]'``.
         """
-        if "operating_point" in self:
-            return plot_equations(self)
-        return plot_plant(self) if "modes" in self else plot_step(self)
+        return plot_plant(self) if "modes" in self else plot_steps(self)
 
 
 class Advice(Answer):
@@ -328,10 +317,6 @@ def _limit(budget: Mapping[str, Any]) -> Any:
     return f"beyond {budget['tried_up_to']:.6g}" if budget["stable_up_to"] is None else budget["stable_up_to"]
 
 
-_MOTION_STEPS = 1000
-"""Default number of steps of a motion by equations."""
-
-
 @check_keywords
 def analyze(
     system: Any,
@@ -362,8 +347,8 @@ def analyze(
     Parameters
     ----------
     system:
-        A name or a :class:`~libration.System`, which requires ``integrator`` and ``dt``; an :class:`~libration.EquationSystem`; or a
-        linear plant, as in :func:`~libration.advise`. With a controller a system by equations is its plant at an equilibrium.
+        A name or a :class:`~libration.System`, which requires ``integrator`` and ``dt``; or a linear plant, as in
+        :func:`~libration.advise`. With a controller a system by equations is its plant at an equilibrium.
     controller:
         Of a linear plant: as in :func:`~libration.advise`; without one its commands are zero.
     integrator, dt:
@@ -408,18 +393,12 @@ def analyze(
         "measurement_noise": measurement_noise,
         "clock": clock,
     }
-    if isinstance(system, EquationSystem) and controller is None and integrator is not None and dt is not None:
-        for name, value in (of_catalogue | of_loop | of_linear).items():
-            if value is not None and name != "steps":
+    is_stepped = isinstance(system, EquationSystem) and controller is None and integrator is not None and dt is not None
+    if is_stepped:
+        for name, value in ({"feedback": feedback} | of_loop | of_linear).items():
+            if value is not None:
                 raise TypeError(f"{name} cannot be combined with a system by equations")
-        answer = _native._analyze_equations(
-            system._text,
-            text("integrator", integrator),
-            number("dt", dt, "finite and greater than 0"),
-            whole("steps", _MOTION_STEPS if steps is None else steps),
-        )
-        return Analysis(json.loads(answer))
-    if (plant := plant_of(system)) is not None:
+    elif (plant := plant_of(system)) is not None:
         for name, value in of_catalogue.items():
             if value is not None:
                 raise TypeError(f"{name} cannot be combined with a linear plant")
@@ -437,10 +416,10 @@ def analyze(
             raise TypeError(f"{name} requires a linear plant")
     if integrator is None or dt is None:
         raise TypeError(f"{'integrator' if integrator is None else 'dt'} is missing")
-    system = _of_catalogue(system)
     criteria = {"max_drift": max_drift, "max_amplitude": max_amplitude, "max_error": max_error}
     answer = _native._analyze(
-        step_request(system, integrator, dt, q, v),
+        system_request(system, q, v),
+        (integrator_name(integrator), number("dt", dt, "finite and greater than 0")),
         loop_request(feedback, latency, jitter, skew, loss, cost_weights),
         {
             "steps": None if steps is None else whole("steps", steps),

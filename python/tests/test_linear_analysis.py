@@ -32,7 +32,7 @@ def test_steps_of_a_plant_are_those_of_numpy():
     for value in (found["predicted_spectral_radius"], found["spectral_radius"], found["simulated"]["growth"]):
         assert value == pytest.approx(radius, abs=1e-14)
     of_catalogue = analyze("damped-oscillator", integrator="suzuki4", dt=dt)
-    assert set(of_catalogue) & set(analysis) <= {"dt", "steps", "verdicts"}
+    assert set(of_catalogue) & set(analysis) <= {"schema", "dt", "steps", "verdicts"}
     one = analyze(types.SimpleNamespace(A=A, B=B, C=np.eye(2), D=np.zeros((2, 1)), dt=0), dt=dt, integrator="rk4")
     assert one.steps[0]["spectral_radius"] == found["spectral_radius"]
     assert one.steps[0]["modes"][0]["simulated"]["steps"] > 100

@@ -72,7 +72,7 @@ def test_a_trajectory_that_overflows_is_drawn_on_a_logarithmic_axis_and_its_head
 
 def test_an_analysis_of_a_step_shows_eigenvalues_stable_steps_and_stable_latencies():
     axes = drawn(libration.analyze(SPRING, integrator="velocity-verlet", dt=0.1).plot())
-    assert [axis.get_xlabel() for axis in axes] == ["real part", "time step (s)"]
+    assert [axis.get_xlabel() for axis in axes] == ["real part", "time step (s)", "error, in the unit of the state"]
     assert "velocity-verlet" in axes[0].get_title() and "spectral radius 1" in axes[0].get_title()
     assert axes[1].texts[0].get_text() == "0.6325"
     loop = libration.analyze(SPRING, integrator="exact", dt=0.01, feedback=(10.0, 2.0), latency=0.02)
@@ -102,9 +102,10 @@ def test_an_analysis_of_a_plant_shows_modes_of_plant_and_loop_and_the_limits_of_
 
 
 def test_an_analysis_of_equations_shows_errors_with_units_and_modes():
-    axes = drawn(libration.analyze(CART, integrator="rk4", dt=0.01, steps=100).plot())
-    assert [tick.get_text() for tick in axes[0].get_yticklabels()] == ["x (m)", "y (rad)", "x' (m/s)", "y' (rad/s)"]
-    assert "rk4" in axes[0].get_title() and "equilibrium" in axes[1].get_title()
+    step, errors, modes = drawn(libration.analyze(CART, integrator="rk4", dt=0.01, steps=100).plot())
+    assert "rk4" in step.get_title() and step.get_xlabel() == "real part"
+    assert [tick.get_text() for tick in errors.get_yticklabels()] == ["x (m)", "y (rad)", "x' (m/s)", "y' (rad/s)"]
+    assert "rk4" in errors.get_title() and "equilibrium" in modes.get_title()
 
 
 def test_a_finding_that_disagrees_is_right_of_the_line_and_named(results):

@@ -7,17 +7,18 @@ pub mod bodies;
 pub mod comparison;
 mod digits;
 mod energy_growth;
-pub mod equation_analysis;
 pub mod export;
 pub mod linear_analysis;
 pub mod linear_trajectory;
 pub mod motion;
 pub mod newton_residual;
+mod oscillator;
 mod recording;
 pub mod reference_flow;
 mod stable_steps;
 mod step;
 mod step_verdict;
+pub mod system_summary;
 pub mod temperature;
 pub mod trajectory;
 
@@ -25,7 +26,9 @@ pub use digits::{beside_one, change_per_step};
 pub use motion::DEFAULT_STEPS;
 pub use stable_steps::{is_at_limit, is_within};
 pub use step::{
-    Analysis, AnalyzeError, Criteria, Drift, LargestDt, LatencyOption, LoopAnalysis, LoopCost,
-    LoopGrowth, ModifiedHamiltonian, OrderOfWord, Request, RequestSummary, StableLatencies,
-    StepMatrix, StepVerdicts, Stepping, Timing, analyze, analyze_until, loop_growth,
+    AboutEquilibrium, Analysis, AnalyzeError, Criteria, Drift, LargestDt, LatencyOption,
+    LoopAnalysis, LoopCost, LoopGrowth, ModifiedHamiltonian, MotionSteps, OrderOfWord, Request,
+    StableLatencies, StateError, StepMatrix, StepVerdicts, SteppedMotion, Stepping, Timing,
+    analyze, analyze_until, loop_growth, spectral_radius, step_order,
 };
+pub use system_summary::SystemSummary;

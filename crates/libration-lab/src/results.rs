@@ -1,7 +1,7 @@
 //! Results of a run, as in `results.json`.
 
 use libration::live::Setting;
-use libration_analyze::equation_analysis::EquationSummary;
+use libration_analyze::SystemSummary;
 use libration_report::Record;
 use libration_study::{Config, Machine, UnjudgedClaim};
 use serde::Serialize;
@@ -46,7 +46,7 @@ pub struct Results {
 pub struct StudiedSystem {
     /// Its properties.
     #[serde(flatten)]
-    pub summary: EquationSummary,
+    pub summary: SystemSummary,
     /// Its turn in s, of which time steps are fractions.
     pub turn: f64,
     /// The number of studies that apply to it.

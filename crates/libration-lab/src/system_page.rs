@@ -1,6 +1,6 @@
 //! The parts of a report about a system of equations around its chapters.
 
-use libration_analyze::equation_analysis::{EquationSummary, SummaryParameter, SummaryState};
+use libration_analyze::system_summary::{SummaryParameter, SummaryState, SystemSummary};
 use libration_report::notation::{number, seconds};
 use libration_report::report::{SCOPE_ID, scroll_container};
 use libration_report::text::{escape, render_html};
@@ -9,7 +9,7 @@ use crate::results::StudiedSystem;
 use crate::system_studies::NotApplicable;
 
 /// The system in a line of text.
-pub(crate) fn subject(system: &EquationSummary) -> String {
+pub(crate) fn subject(system: &SystemSummary) -> String {
     match system.description.as_str() {
         "" => system.name.clone(),
         description => description.to_owned(),

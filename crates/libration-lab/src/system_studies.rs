@@ -1,6 +1,6 @@
 //! The studies of a system of equations.
 
-use libration_analyze::equation_analysis::EquationSummary;
+use libration_analyze::SystemSummary;
 use libration_settings::equations::EquationSystem;
 use libration_settings::linear_loop::linearised_equations;
 use libration_settings::{ConfigCommand, live_settings};
@@ -92,7 +92,7 @@ impl<'a> SystemStudies<'a> {
 
     /// The system as results show it.
     pub(crate) fn studied(&self) -> StudiedSystem {
-        let summary = EquationSummary::new(self.system);
+        let summary = SystemSummary::new(self.system);
         StudiedSystem {
             summary,
             turn: self.problem.turn(),

@@ -1,18 +1,15 @@
 //! Systems by equations in Python.
 
-use std::sync::atomic::AtomicBool;
-
-use libration_analyze::equation_analysis::{self, EquationSummary};
+use libration_analyze::SystemSummary;
 use libration_settings::SettingsError;
 use libration_settings::equations::{EquationSystem, EquationTask};
 use libration_settings::linear_loop::{OperatingPoint, linearised_equations};
 use pyo3::prelude::*;
 use serde_json::json;
 
-use crate::background::run_in_background;
-use crate::error::{Raised, keywords, value_error};
+use crate::error::{keywords, value_error};
 use crate::linear_plant::{Names, Rows as MatrixRows, names, rows as rows_of};
-use crate::request::{SystemRequest, any_method, problem};
+use crate::request::{SystemRequest, problem};
 
 /// The text of a file of equations, its name in messages, and other values of parameters.
 pub(crate) type EquationText = (String, String, Vec<(String, f64)>);
@@ -66,22 +63,7 @@ fn located(error: SettingsError) -> PyErr {
 /// Returns what is known of a system, as JSON.
 #[pyfunction]
 pub(crate) fn _equation_summary(system: EquationText) -> PyResult<String> {
-    Ok(json!(EquationSummary::new(&equations(&system)?)).to_string())
-}
-
-/// Analyses steps. Gives JSON.
-#[pyfunction]
-pub(crate) fn _analyze_equations(
-    py: Python<'_>,
-    system: EquationText,
-    integrator: &str,
-    dt: f64,
-    steps: u64,
-) -> PyResult<String> {
-    let (system, method) = (equations(&system)?, any_method(integrator)?);
-    let analyze = |stop: &AtomicBool| equation_analysis::analyze(&system, method, dt, steps, stop);
-    let done = run_in_background(py, analyze, |_| Ok(()))?;
-    Ok(json!(done.map_err(Raised::raised)?).to_string())
+    Ok(json!(SystemSummary::new(&equations(&system)?)).to_string())
 }
 
 /// Matrices and names of a plant, the states and commands of its equilibrium, and the acceleration that is left there.

@@ -59,7 +59,7 @@ mod _native {
     #[pymodule_export]
     use crate::energy::_audit_energy;
     #[pymodule_export]
-    use crate::equations::{_analyze_equations, _equation_plant, _equation_summary};
+    use crate::equations::{_equation_plant, _equation_summary};
     #[pymodule_export]
     use crate::identify::_identify;
     #[pymodule_export]

@@ -9,7 +9,7 @@ use libration::{AnyMethod, AnySystem, Method, catalog};
 use libration_analyze::{LatencyOption, Stepping, Timing};
 use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::limits::{MOST_GAIN, MOST_RMS};
-use libration_settings::{limits, suggestions};
+use libration_settings::suggestions;
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 
@@ -17,17 +17,6 @@ use crate::error::{Raised, unknown, value_error};
 
 /// The name of a system, and those of its parameters that are not the default.
 pub(crate) type SystemRequest = (String, Vec<(String, f64)>);
-
-/// A system, where it starts and how it steps.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
-pub(crate) struct Step {
-    system: SystemRequest,
-    q: Option<Vec<f64>>,
-    v: Option<Vec<f64>>,
-    integrator: String,
-    dt: f64,
-}
 
 /// A loop and its imperfections.
 #[derive(FromPyObject)]
@@ -56,7 +45,7 @@ pub(crate) fn stepping(name: &str) -> PyResult<Stepping> {
 /// The integrator of that name, explicit or implicit.
 pub(crate) fn any_method(name: &str) -> PyResult<AnyMethod> {
     if name == Stepping::EXACT {
-        let what = "are those of simulate and analyze only, of linear systems of the catalogue";
+        let what = "are those of simulate and analyze only, of linear systems";
         return Err(value_error(format!("integrator is `{name}`, but exact steps {what}")));
     }
     AnyMethod::from_name(name).ok_or_else(|| unknown_integrator(name, false))
@@ -115,20 +104,6 @@ pub(crate) fn problem(
     }
     let [q, v] = [q, v].map(|given| given.map(<[f64]>::to_vec));
     InitialValueProblem::new(system, q, v).map_err(Raised::raised)
-}
-
-impl Step {
-    pub(crate) fn setting(&self) -> PyResult<InitialValueProblem> {
-        problem(&self.system, self.q.as_deref(), self.v.as_deref())
-    }
-
-    pub(crate) fn stepping(&self) -> PyResult<Stepping> {
-        stepping(&self.integrator)
-    }
-
-    pub(crate) fn dt(&self) -> PyResult<f64> {
-        limits::within(limits::TIME_STEP, "dt", self.dt).map_err(value_error)
-    }
 }
 
 impl Loop {

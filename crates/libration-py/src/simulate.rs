@@ -16,7 +16,7 @@ use pyo3::types::PyDict;
 use crate::background::run_in_background;
 use crate::equations::{AnySystem, any_system};
 use crate::error::{Raised, keywords, unknown, value_error};
-use crate::request::{Loop, Step, stepping, warn_of};
+use crate::request::{Loop, stepping, warn_of};
 
 /// Options of the rows of a trajectory.
 #[derive(FromPyObject)]
@@ -166,15 +166,16 @@ fn ended<'py>(py: Python<'py>, outcome: &Outcome) -> PyResult<Bound<'py, PyDict>
     Ok(dict)
 }
 
-/// Analyses one step. Gives JSON.
+/// Analyses steps. Gives JSON.
 #[pyfunction]
 pub(crate) fn _analyze(
     py: Python<'_>,
-    step: Step,
+    system: AnySystem,
+    step: (String, f64),
     looped: Loop,
     options: AnalysisOptions,
 ) -> PyResult<String> {
-    let setting = step.setting()?;
+    let (system, (integrator, dt)) = (any_system(&system)?, step);
     let AnalysisOptions { steps, max_drift, max_amplitude, max_error } = options;
     let criteria =
         [("max_drift", max_drift), ("max_amplitude", max_amplitude), ("max_error", max_error)];
@@ -183,19 +184,16 @@ pub(crate) fn _analyze(
             crate::request::within(name, &[value], &limits::CRITERION)?;
         }
     }
-    let steps = match setting.system.is_linear() {
-        true => limits::forecast_steps("steps", steps.unwrap_or(1_000_000).into()),
+    let steps = steps.map_or(libration_analyze::DEFAULT_STEPS.into(), i128::from);
+    let steps = match system.is_linear() {
+        true => limits::forecast_steps("steps", steps),
         // What cannot be forecast is simulated.
-        false => {
-            let steps = steps.map_or(libration_analyze::DEFAULT_STEPS.into(), i128::from);
-            limits::steps("steps", steps)
-        }
+        false => limits::steps("steps", steps),
     };
     let request = libration_analyze::Request {
-        system: EquationSystem::of_catalogue(setting)
-            .map_err(|error| value_error(error.to_string()))?,
-        stepping: step.stepping()?,
-        dt: step.dt()?,
+        system,
+        stepping: stepping(&integrator)?,
+        dt,
         steps: steps.map_err(value_error)?,
         criteria: Criteria { max_drift, max_amplitude, max_error },
         timing: looped.timing()?,

@@ -30,9 +30,9 @@ fn an_inverted_pendulum_of_the_catalogue_is_its_matrices_and_its_operating_point
     assert!(
         (point.states[0].value - core::f64::consts::PI).abs() < 1e-15 && point.residual < 4e-15
     );
-    let stated = "The plant is the system pendulum linearised at q0 = 3.141593 rad under acceleration = 0 rad/s²";
+    let stated = "The plant is the system pendulum linearised at q = 3.141593 rad under acceleration = 0 rad/s²";
     assert!(found.answer.contains(stated), "{}", found.answer);
-    assert!(linear::page(&found).contains("linearised at q0 = 3.141593 rad"));
+    assert!(linear::page(&found).contains("linearised at q = 3.141593 rad"));
     assert!(by_hand.operating_point.is_none() && !by_hand.answer.contains("linearised"));
 }
 

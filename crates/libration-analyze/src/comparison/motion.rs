@@ -7,8 +7,8 @@ use libration_work::Work;
 
 use super::dense_reference::DenseReference;
 use super::{ComparisonError, ComparisonRequest};
-use crate::equation_analysis::step_order;
 use crate::reference_flow::Rates;
+use crate::step::step_order;
 
 /// Steps up to which errors are taken after each of them; of more, after as many that are evenly spread, and after those at the nodes of the
 /// reference, which are dense where the motion is fast.

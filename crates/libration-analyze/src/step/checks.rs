@@ -1,10 +1,12 @@
 //! Checks of a request before any work.
 
+use libration::Float;
+use libration::equations::StepProgram;
 use libration::simulation::SimulationError;
-use libration::{AnySystem, Float};
 use libration_settings::limits::{MOST_TURN, find_out_of_range};
 
 use super::{AnalyzeError, Request, Stepping};
+use crate::oscillator::CommonOscillator;
 
 /// Fails if the time step or a number of the start is none that a simulation has.
 pub(super) fn check_start(request: &Request) -> Result<(), SimulationError> {
@@ -20,14 +22,15 @@ pub(super) fn check_start(request: &Request) -> Result<(), SimulationError> {
 }
 
 /// Fails if the motion turns by more than [`MOST_TURN`] in an exact step.
-pub(super) fn check_turn(request: &Request) -> Result<(), AnalyzeError> {
-    let rate = match request.compiled() {
-        _ if request.stepping != Stepping::Exact => return Ok(()),
-        Some(AnySystem::Oscillator(model)) => model.omega2.sqrt(),
-        Some(AnySystem::DampedOscillator(model)) => model.omega2.sqrt().max(model.gamma),
-        _ => return Ok(()),
-    };
-    let (dt, turn) = (request.dt, rate * request.dt);
+pub(super) fn check_turn(
+    request: &Request,
+    oscillator: Option<CommonOscillator>,
+) -> Result<(), AnalyzeError> {
+    let Some(CommonOscillator { omega2, gamma }) = oscillator else { return Ok(()) };
+    if request.stepping != Stepping::Exact {
+        return Ok(());
+    }
+    let (dt, turn) = (request.dt, omega2.abs().sqrt().max(gamma.abs()) * request.dt);
     if turn > MOST_TURN { Err(AnalyzeError::Turn { dt, turn }) } else { Ok(()) }
 }
 
@@ -55,9 +58,14 @@ pub(super) fn check_exact(request: &Request) -> Result<(), AnalyzeError> {
     }
 }
 
-/// Fails if the request asks implicit steps for a criterion, or for a loop.
+/// Fails if the request asks implicit steps for a criterion, for a loop, or for more degrees of freedom than they have.
 pub(super) fn check_implicit(request: &Request) -> Result<(), AnalyzeError> {
     let Stepping::Implicit(method) = request.stepping else { return Ok(()) };
+    let degrees = request.system.equations.degrees().len();
+    let most = StepProgram::most_degrees(method);
+    if degrees > most {
+        return Err(AnalyzeError::ImplicitDegrees { integrator: method.name(), most, degrees });
+    }
     match request.criteria.first().or(request.timing.first()) {
         Some(flag) => Err(AnalyzeError::Implicit { flag, integrator: method.name() }),
         None => Ok(()),

@@ -2,14 +2,13 @@
 
 use libration::analysis::{
     Criterion, LargestStep, Letter, OrbitStart, OrderCertificate, SplittingCertificate,
-    SymbolicStep, oscillator_windows,
+    SymbolicStep,
 };
-use libration::number::Wide;
-use libration::system::DampedOscillator;
-use libration::{AnyMethod, AnySystem, Elementary, Method, Scalar};
+use libration::{Elementary, Method};
 use serde::Serialize;
 
 use super::Request;
+use crate::oscillator::CommonOscillator;
 
 /// The largest time steps, in s, up to which every step meets a criterion over the horizon of the request.
 /// `null` if every step meets it; absent without the criterion, or if its polynomials exceed exact
@@ -85,58 +84,20 @@ impl OrderOfWord {
     }
 }
 
-/// The stability windows of a linear system, in s: those in which no motion grows that does not grow in exact steps. Each step moves a
-/// free mass exactly.
-pub(crate) fn stability_windows(
-    method: AnyMethod,
-    system: AnySystem,
-) -> Option<Vec<[Option<f64>; 2]>> {
-    if is_free(system) {
-        return Some(vec![[Some(0.0), None]]);
-    }
-    // In powers of z for an oscillator of any stiffness, and of Δt where there is damping.
-    let (damped, unit) = match system {
-        AnySystem::Oscillator(model) if model.omega2 > 0.0 => {
-            (DampedOscillator { omega2: 1.0, gamma: 0.0 }, period(model.omega2))
-        }
-        AnySystem::Oscillator(model) => {
-            (DampedOscillator { omega2: model.omega2, gamma: 0.0 }, Wide::one())
-        }
-        AnySystem::DampedOscillator(model) => (model, Wide::one()),
-        _ => return None,
-    };
-    let in_seconds = |z: Wide| (z * unit).to_f64();
-    let windows = oscillator_windows(method, &damped)?;
-    let ends = windows.iter().map(|w| [Some(in_seconds(w.from)), w.to.map(in_seconds)]);
-    // A window between two neighbouring floats holds no time step.
-    Some(ends.filter(|[from, to]| from != to).collect())
-}
-
-/// Whether a system is a mass on which no force acts, so that exact motions grow in proportion to time.
-pub(super) fn is_free(system: AnySystem) -> bool {
-    match system {
-        AnySystem::Oscillator(model) => model.omega2 == 0.0,
-        AnySystem::DampedOscillator(model) => model.omega2 == 0.0 && model.gamma == 0.0,
-        _ => false,
-    }
-}
-
-/// `1/ω`, in s.
-fn period(omega2: f64) -> Wide {
-    Wide::from_f64(omega2).sqrt().recip()
-}
-
 /// The largest steps of an oscillator from its polynomials.
-pub(super) fn largest_dt(step: Option<&SymbolicStep>, request: &Request) -> Option<LargestDt> {
-    let Some(AnySystem::Oscillator(model)) = request.compiled() else { return None };
-    let (step, unit) = (step?, period(model.omega2));
+pub(super) fn largest_dt(
+    step: Option<&SymbolicStep>,
+    oscillator: CommonOscillator,
+    request: &Request,
+) -> Option<LargestDt> {
+    let (step, unit) = (step?, oscillator.frequency()?.recip());
     let in_seconds = |z: LargestStep| match z {
         LargestStep::Limit(z) => Some((z * unit).to_f64()),
         LargestStep::Unlimited => None,
     };
     let (criteria, steps) = (&request.criteria, request.steps);
     let largest = |criterion: &Criterion| step.largest_step(criterion).map(in_seconds);
-    let omega = model.omega2.sqrt();
+    let omega = oscillator.omega2.sqrt();
     let turning: Vec<f64> = request.system.v.iter().map(|v| v / omega).collect();
     let start = OrbitStart::new(&request.system.q, &turning);
     let drift = |start| {

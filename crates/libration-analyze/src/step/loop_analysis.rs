@@ -71,7 +71,7 @@ pub struct StableLatencies {
 ///
 /// # Errors
 /// If the system has more than one degree of freedom, or the latency is invalid.
-pub(super) fn answer(request: &Request) -> Result<Option<LoopAnalysis>, AnalyzeError> {
+pub(crate) fn answer(request: &Request) -> Result<Option<LoopAnalysis>, AnalyzeError> {
     Ok(ClosedLoop::new(request)?.map(|looped| looped.answer(request)))
 }
 

@@ -1,23 +1,30 @@
-//! Analysis of one step of an integrator, and of the control loop around it.
+//! Analysis of steps of an integrator on a system, and of the control loop around it.
 
+mod about_equilibrium;
 mod analysis;
 mod checks;
 mod cost;
 mod criteria;
 mod error;
 mod growth;
+mod growth_verdict;
 mod limits;
-mod linear_step;
 mod loop_analysis;
 mod modes;
+mod motion;
+mod motion_steps;
+mod order;
 mod request;
+mod start_step;
 mod step_matrix;
 mod timing;
 mod verdicts;
 
 use std::sync::atomic::AtomicBool;
 
-pub use analysis::{Analysis, Drift, ModifiedHamiltonian, RequestSummary};
+pub use about_equilibrium::AboutEquilibrium;
+use analysis::SCHEMA;
+pub use analysis::{Analysis, Drift, ModifiedHamiltonian};
 use checks::{check_exact, check_implicit, check_sizes, check_start, check_turn};
 pub use cost::LoopCost;
 pub use criteria::Criteria;
@@ -25,19 +32,25 @@ pub use error::AnalyzeError;
 pub use growth::LoopGrowth;
 use libration::analysis::{RationalStep, Spectrum, SymbolicStep};
 use libration::number::Wide;
-use libration::{AnySystem, Elementary, Scalar};
-pub(crate) use limits::stability_windows;
+use libration::{AnyMethod, AnySystem, Elementary, Scalar};
 pub use limits::{LargestDt, OrderOfWord};
-use linear_step::LinearStep;
+pub(crate) use loop_analysis::answer as loop_answer;
 pub use loop_analysis::{LoopAnalysis, StableLatencies, loop_growth};
 use modes::Modes;
+pub use motion::{StateError, SteppedMotion};
+pub use motion_steps::MotionSteps;
+pub use order::{spectral_radius, step_order};
 pub use request::{Request, Stepping};
+use start_step::StartStep;
 pub use step_matrix::StepMatrix;
 pub use timing::{LatencyOption, Timing};
 pub use verdicts::StepVerdicts;
-pub(crate) use verdicts::of_rest;
 
-/// Analyses one step of the request.
+use crate::newton_residual;
+use crate::oscillator::CommonOscillator;
+use crate::system_summary::SystemSummary;
+
+/// Analyses steps of the request.
 ///
 /// # Errors
 /// If the request does not fit the system, before any work.
@@ -50,70 +63,115 @@ pub fn analyze(request: &Request) -> Result<Analysis, AnalyzeError> {
 /// # Errors
 /// As [`analyze`], and [`AnalyzeError::Interrupted`].
 pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, AnalyzeError> {
-    if let (Some(flag), None) = (request.criteria.first(), omega(request)) {
+    let oscillator = CommonOscillator::of(&request.system);
+    let frequency = oscillator.and_then(CommonOscillator::frequency);
+    if let (Some(flag), None) = (request.criteria.first(), frequency) {
         return Err(AnalyzeError::Criterion { flag, system: request.system.name.clone() });
     }
     if request.stepping == Stepping::Exact {
         check_exact(request)?;
     }
     check_implicit(request)?;
-    check_turn(request)?;
+    check_turn(request, oscillator)?;
     check_sizes(request)?;
-    let timing = loop_analysis::answer(request)?;
+    let timing = loop_answer(request)?;
     check_start(request)?;
-    let step = LinearStep::new(request, stop)?;
-    let mut analysis = answer(step, timing, request);
-    analysis.motion = verdicts::motion(request, stop)?;
-    analysis.verdicts = StepVerdicts::new(&analysis, request).of_clocks(request, stop)?;
-    analysis.newton_residual = linear_step::newton_residual(request, stop);
+    let step = StartStep::new(request)?;
+    let mut analysis = of_start(step.as_ref(), oscillator, request);
+    analysis.timing = timing;
+    if request.timing.feedback.is_none() {
+        follow_motion(&mut analysis, request, stop)?;
+    }
+    analysis.verdicts =
+        StepVerdicts::new(&analysis, oscillator, request).of_clocks(request, stop)?;
     Ok(analysis)
 }
 
-fn answer(step: LinearStep, timing: Option<LoopAnalysis>, request: &Request) -> Analysis {
-    let LinearStep { linear, evaluations, drift } = step;
-    let method = request.stepping.method();
+/// The properties of a step at the start, which is that of a linear system everywhere.
+fn of_start(
+    step: Option<&StartStep>,
+    oscillator: Option<CommonOscillator>,
+    request: &Request,
+) -> Analysis {
+    let Request { system, stepping, dt, steps, .. } = request;
+    let method = stepping.method();
     // A free mass has no frequency, so `z` is undefined.
-    let polynomials = method.filter(|_| omega(request).is_some()).and_then(SymbolicStep::new);
-    let exact = polynomials.as_ref().zip(omega(request));
-    let modes = Modes::new(
-        &linear,
-        exact.and_then(|(step, omega)| Spectrum::of_polynomials(step, omega * linear.dt)),
-    );
-    let reversibility = exact
-        .and_then(|(step, omega)| {
-            reversibility_defect(step, omega, linear.dt, request.system.q.len())
-        })
-        .unwrap_or_else(|| linear.reversibility_defect());
-    let update_matrix_in_z = match request.stepping {
-        Stepping::Implicit(method) => omega(request)
-            .and_then(|_| RationalStep::new(method))
-            .map(|step| texts(&step.matrix.rows())),
+    let omega = oscillator.and_then(CommonOscillator::frequency);
+    let polynomials = method.filter(|_| omega.is_some()).and_then(SymbolicStep::new);
+    let exact = polynomials.as_ref().zip(omega);
+    let modes = step.map(|StartStep { linear, .. }| {
+        let spectrum =
+            exact.and_then(|(step, omega)| Spectrum::of_polynomials(step, omega * linear.dt));
+        Modes::new(linear, spectrum)
+    });
+    let own = step.zip(modes.as_ref());
+    let matrix = own.map(|(StartStep { linear, evaluations }, modes)| {
+        let reversibility = exact
+            .and_then(|(step, omega)| reversibility_defect(step, omega, linear.dt, system.q.len()))
+            .unwrap_or_else(|| linear.reversibility_defect());
+        StepMatrix::new(linear, modes, reversibility, *evaluations, exact.is_some())
+    });
+    let update_matrix_in_z = match (omega, stepping) {
+        (Some(_), Stepping::Implicit(method)) => {
+            RationalStep::new(*method).map(|step| texts(&step.matrix.rows()))
+        }
         _ => polynomials.as_ref().map(|step| texts(&step.matrix.rows())),
     };
-    let linear_system = request.system.is_linear();
+    let of_oscillator = own.zip(oscillator);
     Analysis {
-        request: RequestSummary::new(request),
-        matrix: StepMatrix::new(&linear, &modes, reversibility, evaluations, exact.is_some()),
+        schema: SCHEMA,
+        system: SystemSummary::new(system),
+        integrator: stepping.name(),
+        dt: *dt,
+        steps: *steps,
+        note: method.and_then(|method| system.caveat(method)),
+        matrix,
         update_matrix_in_z,
-        bounded: modes.bounded.filter(|_| linear_system),
-        stability_windows: request
-            .stepping
+        bounded: modes.as_ref().and_then(|modes| modes.bounded).filter(|_| system.is_linear()),
+        stability_windows: stepping
             .any_method()
-            .zip(request.compiled())
-            .and_then(|(method, system)| stability_windows(method, system)),
-        largest_dt: method.and_then(|_| limits::largest_dt(polynomials.as_ref(), request)),
-        modified_hamiltonian: linear_system
-            .then(|| ModifiedHamiltonian::of(&linear.step, modes.determinant_minus_one.is_zero()))
-            .flatten(),
+            .zip(oscillator)
+            .and_then(|(method, oscillator)| oscillator.stability_windows(method)),
+        largest_dt: oscillator
+            .and_then(|own| limits::largest_dt(polynomials.as_ref(), own, request)),
+        modified_hamiltonian: of_oscillator.and_then(|((step, modes), _)| {
+            ModifiedHamiltonian::of(&step.linear.step, modes.determinant_minus_one.is_zero())
+        }),
         order_of_word: method
-            .filter(|_| request.system.equations.dynamics().is_positional())
+            .filter(|_| system.equations.dynamics().is_positional())
             .and_then(OrderOfWord::of),
-        drift,
+        drift: of_oscillator.and_then(|((step, _), _)| step.drift(request)),
         motion: None,
-        verdicts: StepVerdicts::default(),
         newton_residual: None,
-        timing,
+        equilibrium: None,
+        steps_along_motion: None,
+        verdicts: StepVerdicts::default(),
+        timing: None,
     }
+}
+
+/// Adds the motion from the start and the system about the equilibrium near it.
+fn follow_motion(
+    analysis: &mut Analysis,
+    request: &Request,
+    stop: &AtomicBool,
+) -> Result<(), AnalyzeError> {
+    let Request { system, stepping, dt, steps, .. } = request;
+    let about = AboutEquilibrium::new(request, stop)?;
+    let point = about.operating_point.as_ref().map(|point| point.state_of(system));
+    analysis.equilibrium = Some(about);
+    let Some(method) = stepping.any_method() else { return Ok(()) };
+    let motion = SteppedMotion::new(system, method, *dt, *steps, point.as_deref(), stop)?;
+    let horizon = motion.error_steps as f64 * dt;
+    analysis.motion = Some(motion);
+    analysis.steps_along_motion = Some(MotionSteps::new(system, method, horizon, stop)?);
+    if let AnyMethod::Implicit(_) = method {
+        let places = system.states.iter().map(|state| state.place).collect();
+        let (dynamics, start) = (system.equations.dynamics(), system.start());
+        analysis.newton_residual =
+            newton_residual::of_run(method, dynamics, &start, places, (*dt, *steps), stop);
+    }
+    Ok(())
 }
 
 /// The starts at which the force of a system has a derivative, in words.
@@ -126,16 +184,6 @@ fn regular_starts(system: Option<AnySystem>) -> &'static str {
             "coordinates must stay so small that angles are below 10¹⁵⁴ rad"
         }
         _ => "coordinates must stay within the range of floats",
-    }
-}
-
-/// The angular frequency of an oscillator, in rad/s; none of a free mass.
-fn omega(request: &Request) -> Option<Wide> {
-    match request.compiled() {
-        Some(AnySystem::Oscillator(model)) if model.omega2 > 0.0 => {
-            Some(Wide::from_f64(model.omega2).sqrt())
-        }
-        _ => None,
     }
 }
 

@@ -1,9 +1,7 @@
 //! One step as a matrix about a state, in 1024 bits.
 
 use libration::analysis::{LinearMap, Linearisation};
-use libration::equations::{Degree, StepProgram};
 use libration::number::Wide;
-use libration_settings::equations::EquationSystem;
 use serde::Serialize;
 
 use super::modes::{Modes, flow_radius_minus_one};
@@ -40,29 +38,7 @@ pub struct StepMatrix {
     pub force_evaluations_per_step: u64,
 }
 
-/// Most degrees of freedom: the time of the eigenvalues grows with the fourth power.
-const MOST_DEGREES: usize = 8;
-
 impl StepMatrix {
-    /// The matrix of a step of `dt` seconds from the start of a system. None of systems with states of first order, of more than eight
-    /// degrees of freedom, and where the step has no derivative.
-    pub(crate) fn at_start(system: &EquationSystem, step: &StepProgram, dt: f64) -> Option<Self> {
-        let degrees = system.equations.degrees();
-        let is_second_order =
-            degrees.iter().all(|degree| matches!(degree, Degree::Coordinate(_) | Degree::Time));
-        if !is_second_order || degrees.len() > MOST_DEGREES {
-            return None;
-        }
-        let dynamics = system.equations.dynamics();
-        let linear = Linearisation::new(step, dynamics, &system.start(), dt);
-        if [&linear.generator, &linear.step, &linear.back].into_iter().any(is_undefined) {
-            return None;
-        }
-        let modes = Modes::new(&linear, None);
-        let reversibility = linear.reversibility_defect();
-        Some(StepMatrix::new(&linear, &modes, reversibility, step.evaluations() as u64, false))
-    }
-
     /// Defects that are not exact carry the rounding of 1024 bits.
     pub(super) fn new(
         linear: &Linearisation,

@@ -1,51 +1,61 @@
-//! Verdicts on a step of a system of the catalogue.
+//! Verdicts on steps, on the motion and on the loop.
 
 use std::sync::atomic::AtomicBool;
 
-use libration::AnySystem;
 use libration::control::Jitter;
-use libration::equations::StepProgram;
-use libration::linear::GROWTH_ROUNDING;
-use libration_report::verdict::{FOLLOWED, Outcome, Verdict};
+use libration_report::verdict::{Outcome, Verdict};
 use serde::Serialize;
 
-use super::limits::is_free;
+use super::growth_verdict::{growing_moments, of_step};
 use super::{Analysis, AnalyzeError, LoopAnalysis, Request, analyze_until};
 use crate::digits::{change_per_step, significant};
-use crate::motion::{MotionExamination, MotionState, MotionSubject, examine};
-use crate::step_verdict::StepGrowth;
+use crate::oscillator::CommonOscillator;
 
-/// The verdicts on a step of a system of the catalogue. Of a loop there is that of the loop alone.
-#[derive(Clone, Debug, Default, Serialize)]
+/// The verdicts on a step and a motion. Of a loop there is that of the loop alone.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct StepVerdicts {
     /// Whether the loop is stable; none without a loop.
     #[serde(rename = "loop", skip_serializing_if = "Option::is_none")]
     pub closed_loop: Option<Verdict>,
-    /// Whether the step lets deviations grow more than exact steps do; of nonlinear systems only at an equilibrium at which they rest.
+    /// Whether the step lets deviations from the equilibrium, or of a linear system from any motion, grow more than exact steps do. None
+    /// without an equilibrium near the motion, where rounding hides the growth, and where the step is stable along a motion that stays away
+    /// from the equilibrium.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub step: Option<Verdict>,
-    /// Whether the steps resolve the motion of a nonlinear system.
+    /// Whether the steps resolve the motion; none of a system that rests at its start, if the step has a verdict.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<Verdict>,
 }
 
 impl StepVerdicts {
-    pub(super) fn new(analysis: &Analysis, request: &Request) -> Self {
-        let closed_loop = analysis.timing.as_ref().and_then(of_loop);
-        let is_loop = closed_loop.is_some();
-        let is_at_rest = analysis.motion.as_ref().is_some_and(MotionExamination::is_at_rest);
-        let motion = analysis.motion.as_ref().filter(|_| !is_at_rest);
-        StepVerdicts {
-            closed_loop: closed_loop.map(|own| at_start(own, request)),
-            step: match (is_loop, request.system.is_linear()) {
-                (true, _) => None,
-                (false, true) => Some(of_step(analysis, request)),
-                (false, false) => is_at_rest.then(|| {
-                    of_rest(&growing_moments(analysis).unwrap_or_else(|| at_rest(analysis)))
-                }),
-            },
-            motion: motion.map(|motion| under_clocks(motion.verdict.clone(), request)),
+    pub(super) fn new(
+        analysis: &Analysis,
+        oscillator: Option<CommonOscillator>,
+        request: &Request,
+    ) -> Self {
+        if let Some(own) = analysis.timing.as_ref().and_then(of_loop) {
+            let closed_loop = Some(at_start(own, request));
+            return StepVerdicts { closed_loop, ..StepVerdicts::default() };
         }
+        let step = of_step(analysis, oscillator, request);
+        let examination = analysis.motion.as_ref().map(|motion| &motion.examination);
+        let is_at_rest = examination.is_some_and(|examination| examination.is_at_rest());
+        if let (Some(step), true) = (&step, is_at_rest) {
+            let step = growing_moments(analysis).unwrap_or_else(|| step.clone());
+            return StepVerdicts { step: Some(of_rest(&step)), ..StepVerdicts::default() };
+        }
+        // The motion shows what rounding hides at the equilibrium, and whether steps follow a growing mode for as long as it is asked for.
+        let is_decided =
+            |own: &Verdict| !matches!(own.outcome, Outcome::Unknown | Outcome::NotResolved);
+        let step =
+            step.filter(|own| oscillator.is_some() || examination.is_none() || is_decided(own));
+        let motion = examination.map(|own| under_clocks(own.verdict.clone(), request));
+        StepVerdicts { closed_loop: None, step, motion }
+    }
+
+    /// Whether an instability of the step is known.
+    pub fn is_unstable(&self) -> bool {
+        self.step.as_ref().is_some_and(|verdict| verdict.outcome == Outcome::Unstable)
     }
 
     /// The same for the clocks of an ensemble: a good verdict is that of the worst of nine clocks, and names the others as not examined.
@@ -106,7 +116,7 @@ fn clock_errors(law: Jitter) -> impl Iterator<Item = f64> {
 }
 
 /// A verdict on deviations from a system that rests at its start.
-pub(crate) fn of_rest(step: &Verdict) -> Verdict {
+fn of_rest(step: &Verdict) -> Verdict {
     let evidence = format!("the system rests at its start; {}", step.evidence);
     Verdict { evidence, ..step.clone() }.without("a motion")
 }
@@ -145,90 +155,6 @@ fn at_start(own: Verdict, request: &Request) -> Verdict {
     }
 }
 
-/// The step at an equilibrium of a nonlinear system, by the rule of systems by equations.
-fn at_rest(analysis: &Analysis) -> Verdict {
-    let dt = analysis.request.dt;
-    let growth = StepGrowth {
-        dt,
-        radius: Some(1.0 + analysis.matrix.spectral_radius_minus_one),
-        exact_rate: analysis.matrix.flow_spectral_radius_minus_one.ln_1p() / dt,
-        has_parted: false,
-        stable_dt: None,
-        has_stability_function: false,
-        modes: Vec::new(),
-    };
-    growth.verdict()
-}
-
-/// The verdict on steps of random length whose second moments grow; none if they do not.
-fn growing_moments(analysis: &Analysis) -> Option<Verdict> {
-    let growth = analysis.timing.as_ref()?.growth?.mean_square_growth?;
-    let moments = change_per_step(growth);
-    (growth > GROWTH_ROUNDING).then(|| {
-        Verdict::new(
-            Outcome::Unstable,
-            format!("second moments {moments} under the stated time steps"),
-        )
-    })
-}
-
-fn of_step(analysis: &Analysis, request: &Request) -> Verdict {
-    let excess = analysis.matrix.spectral_radius_minus_one;
-    let exact = analysis.matrix.flow_spectral_radius_minus_one;
-    // What rounded parameters change in the growth of exact steps.
-    let rounding = 0.5 * f64::EPSILON * exact.abs();
-    let motions = format!("motions {}", change_per_step(excess));
-    if let Some(unstable) = growing_moments(analysis) {
-        return unstable;
-    }
-    if excess != 0.0 && excess.abs() <= rounding {
-        return Verdict::unknown(
-            "at the limit of stability, motions neither grow nor decay beyond the rounding of its parameters",
-        );
-    }
-    let turn = match request.compiled() {
-        Some(AnySystem::Oscillator(model)) => model.omega2 * request.dt * request.dt,
-        _ => 0.0,
-    };
-    if excess > 0.0 && excess <= COEFFICIENTS * turn {
-        return Verdict::unknown(
-            "motions grow by less than the rounding of the coefficients of the integrator",
-        );
-    }
-    if exact > GROWTH_ROUNDING && FOLLOWED * excess.ln_1p() < exact.ln_1p() {
-        return Verdict::new(
-            Outcome::NotResolved,
-            format!("{motions}, and those of exact steps {}", change_per_step(exact)),
-        );
-    }
-    match analysis.bounded {
-        Some(true) if excess < 0.0 => Verdict::new(Outcome::Stable, motions),
-        Some(true) => Verdict::new(Outcome::Stable, "every motion stays bounded"),
-        Some(false) if excess == 0.0 && request.compiled().is_some_and(is_free) => Verdict::new(
-            Outcome::Stable,
-            "motions grow in proportion to time, as those of exact steps do",
-        ),
-        Some(false) if excess == 0.0 => {
-            Verdict::new(Outcome::Unstable, "motions grow without bound, but not exponentially")
-        }
-        Some(false) if exact > 0.0 => {
-            let outcome =
-                if excess <= FASTER * exact { Outcome::Stable } else { Outcome::Unstable };
-            let evidence =
-                format!("{motions}, and those of exact steps {}", change_per_step(exact));
-            Verdict::new(outcome, evidence)
-        }
-        Some(false) => Verdict::new(Outcome::Unstable, motions),
-        None => Verdict::unknown("its coupled modes neither grow nor decay"),
-    }
-}
-
-/// Growth per step, for each squared radian of it, that roundings of a dozen coefficients of an integrator may cause.
-const COEFFICIENTS: f64 = 8.0 * f64::EPSILON;
-
-/// A motion that grows in exact steps may grow by this part faster: the step is inaccurate then, not unstable.
-const FASTER: f64 = 1.5;
-
 /// None without feedback.
 fn of_loop(analysis: &LoopAnalysis) -> Option<Verdict> {
     let excess = analysis.closed_loop_spectral_radius_minus_one?;
@@ -247,31 +173,4 @@ fn of_loop(analysis: &LoopAnalysis) -> Option<Verdict> {
         (_, true) => Verdict::new(Outcome::Stable, evidence),
         _ => Verdict::unknown(format!("at the limit of stability: {evidence}")),
     })
-}
-
-/// The motion of a nonlinear system; none of linear ones, and with a loop.
-///
-/// # Errors
-/// [`AnalyzeError::Interrupted`].
-pub(super) fn motion(
-    request: &Request,
-    stop: &AtomicBool,
-) -> Result<Option<MotionExamination>, AnalyzeError> {
-    let (Some(method), false) = (request.stepping.any_method(), request.system.is_linear()) else {
-        return Ok(None);
-    };
-    if request.timing.feedback.is_some() {
-        return Ok(None);
-    }
-    let system = &request.system;
-    let (start, states) = (system.start(), MotionState::all(system));
-    let subject = MotionSubject {
-        dynamics: system.equations.dynamics(),
-        start: &start,
-        states: &states,
-        is_affine: false,
-        energy_unit: &system.energy_unit,
-    };
-    let step = StepProgram::of(method, subject.dynamics);
-    Ok(Some(examine(&subject, &step, request.dt, request.steps, stop)?))
 }

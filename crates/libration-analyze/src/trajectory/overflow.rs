@@ -1,17 +1,17 @@
 //! Causes of overflows by the stability of a step.
 
 use libration::analysis::jacobian;
-use libration::equations::{Degree, StepProgram};
+use libration::equations::StepProgram;
 use libration::linear::eigenvalues;
-use libration::system::{DampedOscillator, Oscillator};
 use libration::{AnyMethod, AnySystem, Float};
 use libration_settings::equations::{EquationSystem, Twin};
 
 use super::three_digits::{short, short_above, short_below};
 use super::{FloatType, Request};
 use crate::motion::undefined_function;
-use crate::step::stability_windows;
-use crate::{Criteria, StableLatencies, analyze};
+use crate::oscillator::CommonOscillator;
+use crate::step::loop_answer;
+use crate::{Criteria, StableLatencies};
 
 /// Distance from a limit, in unit roundoffs, within which rounding decides.
 const MARGIN: f64 = 16.0;
@@ -30,7 +30,7 @@ pub(super) fn cause<S: Float>(request: &Request, last: Option<&[f64]>) -> Option
         Some(why.trim_end_matches(',').to_owned())
     };
     match request.loop_option() {
-        Some(_) => loop_cause(request, request.system.twin?.system),
+        Some(_) => loop_cause(request),
         None => step_cause::<S>(request).or_else(undefined),
     }
 }
@@ -46,7 +46,7 @@ fn step_cause<S: Float>(request: &Request) -> Option<String> {
         Some(system) => linear_cause(method, system, dt, roundoff, request.float),
         None => {
             let omega = start_frequency(&request.system)?;
-            let near = AnySystem::Oscillator(Oscillator { omega2: omega * omega });
+            let near = CommonOscillator { omega2: omega * omega, gamma: 0.0 };
             let why = instability_cause(method, near, [dt, 1.0])?;
             Some(format!("linearised at the start, {why}"))
         }
@@ -54,34 +54,26 @@ fn step_cause<S: Float>(request: &Request) -> Option<String> {
 }
 
 /// The oscillator whose coordinates all those of a linear system are, with the numbers of the float type; none of other systems.
-fn oscillator_of(system: &EquationSystem, rounded: impl Fn(f64) -> f64) -> Option<AnySystem> {
-    let of = |omega2: f64, gamma: f64| match gamma == 0.0 {
-        true => AnySystem::Oscillator(Oscillator { omega2 }),
-        false => AnySystem::DampedOscillator(DampedOscillator { omega2, gamma }),
+fn oscillator_of(
+    system: &EquationSystem,
+    rounded: impl Fn(f64) -> f64,
+) -> Option<CommonOscillator> {
+    let is_decaying = |own: &CommonOscillator| own.omega2 >= 0.0 && own.gamma >= 0.0;
+    let own = match system.twin {
+        // A drive adds a bounded force.
+        Some(Twin { system: AnySystem::DrivenOscillator(driven), .. }) => {
+            CommonOscillator { omega2: driven.omega2, gamma: driven.gamma }
+        }
+        _ => CommonOscillator::of(system).filter(is_decaying)?,
     };
-    // A drive adds a bounded force.
-    if let Some(Twin { system: AnySystem::DrivenOscillator(driven), .. }) = system.twin {
-        return Some(of(rounded(driven.omega2), rounded(driven.gamma)));
-    }
-    let is_coordinate = |degree: &Degree| matches!(degree, Degree::Coordinate(_));
-    if !(system.is_linear() && system.equations.degrees().iter().all(is_coordinate)) {
-        return None;
-    }
-    let jacobian = jacobian(system.equations.dynamics(), &system.start());
-    let n = system.equations.degrees().len();
-    let [omega2, gamma] = [-jacobian[(0, 0)], -jacobian[(0, n)]];
-    let is_own = |i: usize, j: usize| {
-        let own = if i == j { [omega2, gamma] } else { [0.0; 2] };
-        [-jacobian[(i, j)], -jacobian[(i, n + j)]] == own
-    };
-    let is_isotropic = (0..n).all(|i| (0..n).all(|j| is_own(i, j)));
-    (is_isotropic && omega2 >= 0.0 && gamma >= 0.0).then(|| of(rounded(omega2), rounded(gamma)))
+    Some(CommonOscillator { omega2: rounded(own.omega2), gamma: rounded(own.gamma) })
 }
 
 /// The cause of an overflow of a loop or an uneven clock: it is unstable, or unstable in the mean square.
-fn loop_cause(request: &Request, system: AnySystem) -> Option<String> {
+fn loop_cause(request: &Request) -> Option<String> {
     let Request { stepping, dt, timing, .. } = *request;
-    if let (None, Some(method)) = (timing.feedback, stepping.any_method()) {
+    let system = oscillator_of(&request.system, |x| x);
+    if let (None, Some(method), Some(system)) = (timing.feedback, stepping.any_method(), system) {
         let why = instability_cause(method, system, [dt, 1.0])
             .or_else(|| uneven_clock_cause(method, request, system));
         if why.is_some() {
@@ -90,9 +82,8 @@ fn loop_cause(request: &Request, system: AnySystem) -> Option<String> {
     }
     let (whole, criteria) = (request.system.clone(), Criteria::default());
     let step = crate::Request { system: whole, stepping, dt, steps: 1, criteria, timing };
-    let analysis = analyze(&step).ok()?;
-    let about = if system.is_linear() { "" } else { "linearised at the start, " };
-    let answer = analysis.timing?;
+    let answer = loop_answer(&step).ok()??;
+    let about = if step.system.is_linear() { "" } else { "linearised at the start, " };
     if let Some(excess) = answer.closed_loop_spectral_radius_minus_one.filter(|x| *x > 0.0) {
         let way_out = answer.critical.as_ref().map_or_else(String::new, stable_latency_help);
         // Three digits do not distinguish a radius near 1 from 1.
@@ -130,7 +121,11 @@ fn stable_latency_help(critical: &StableLatencies) -> String {
 }
 
 /// The cause of instability under a clock whose mean or slowest steps are longer than `dt`.
-fn uneven_clock_cause(method: AnyMethod, request: &Request, system: AnySystem) -> Option<String> {
+fn uneven_clock_cause(
+    method: AnyMethod,
+    request: &Request,
+    system: CommonOscillator,
+) -> Option<String> {
     let Request { dt, timing, record, .. } = request;
     if let Some(record) = record {
         let mean = record.iter().sum::<f64>() / record.len() as f64;
@@ -146,19 +141,17 @@ fn uneven_clock_cause(method: AnyMethod, request: &Request, system: AnySystem) -
 /// The cause of an overflow of a linear system: an unstable step, or the range of the float type.
 fn linear_cause(
     method: AnyMethod,
-    system: AnySystem,
+    system: CommonOscillator,
     dt: f64,
     roundoff: f64,
     float: FloatType,
 ) -> Option<String> {
-    if let AnySystem::Oscillator(Oscillator { omega2: 0.0 })
-    | AnySystem::DampedOscillator(DampedOscillator { omega2: 0.0, gamma: 0.0 }) = system
-    {
+    if system.is_free() {
         // A free mass exceeds every range; each method steps it exactly.
         return Some(range_cause(float, "the step"));
     }
     let margin = MARGIN * roundoff;
-    let windows = stability_windows(method, system)?;
+    let windows = system.stability_windows(method)?;
     let is_stable = windows.iter().any(|&[from, to]| {
         from.is_none_or(|from| dt >= from * (1.0 + margin))
             && to.is_none_or(|to| dt <= to * (1.0 - margin))
@@ -184,11 +177,11 @@ fn range_cause(float: FloatType, step: &str) -> String {
 /// The cause of instability of an oscillator in steps of `dt` seconds times a factor; none if the step is stable, or unknown.
 fn instability_cause(
     method: AnyMethod,
-    system: AnySystem,
+    system: CommonOscillator,
     [dt, stretch]: [f64; 2],
 ) -> Option<String> {
     let dt = dt * stretch;
-    let windows = stability_windows(method, system)?;
+    let windows = system.stability_windows(method)?;
     let name = method.name();
     let within = |&&[from, to]: &&[Option<f64>; 2]| {
         from.is_none_or(|from| from < dt) && to.is_none_or(|to| dt < to)
@@ -206,9 +199,9 @@ fn instability_cause(
         ));
     };
     // Without damping the limit depends on the method alone.
-    let (symbol, unit, omega) = match system {
-        AnySystem::Oscillator(model) => ("ωΔt", "", model.omega2.sqrt()),
-        _ => ("Δt", " s", 1.0),
+    let (symbol, unit, omega) = match system.gamma == 0.0 {
+        true => ("ωΔt", "", system.omega2.sqrt()),
+        false => ("Δt", " s", 1.0),
     };
     let (from, to) = (from.unwrap_or(0.0), to.unwrap_or(f64::INFINITY));
     let is = format!("{symbol} = {}{unit}", short(omega * dt));

@@ -135,6 +135,8 @@ fn beyond_half_a_turn_the_phase_error_is_that_of_the_map() {
         analyze(&request("oscillator", method, dt, &[1.0], &[0.0]))
             .unwrap()
             .matrix
+            .as_ref()
+            .unwrap()
             .phase_error_per_step
     };
     // RK4 at z = 2.7 is c + s·J with c = −0.4307, s = −0.5805; Suzuki 4 at 4.1 is in its second
@@ -198,20 +200,19 @@ fn a_nonlinear_step_is_symplectic_about_every_state_if_the_method_is() {
         ("henon-heiles", &[0.3, -0.2], &[0.1, 0.25]),
         ("kepler", &[0.4, 0.1], &[0.2, 2.0]),
     ] {
-        let defect =
-            |m| analyze(&request(system, m, 0.05, q, v)).unwrap().matrix.symplecticity_defect;
+        let defect = |m| {
+            analyze(&request(system, m, 0.05, q, v))
+                .unwrap()
+                .matrix
+                .as_ref()
+                .unwrap()
+                .symplecticity_defect
+        };
         assert_eq!(defect(Method::VelocityVerlet), 0.0, "{system}");
         assert_eq!(defect(Method::Yoshida4), 0.0, "{system}");
         assert!(defect(Method::Rk4) > 1e-12, "{system}");
         assert!(defect(Method::ExplicitEuler) > 1e-4, "{system}");
     }
-}
-
-#[test]
-fn a_nonlinear_answer_says_that_it_is_a_linearisation() {
-    let answer = analyze(&request("pendulum", Method::Rk4, 0.01, &[1.0], &[0.0])).unwrap();
-    assert!(!answer.request.linear);
-    assert!(json(&answer)["note"].as_str().unwrap().contains("linearisation"));
 }
 
 #[test]
@@ -223,7 +224,10 @@ fn small_swings_of_the_pendulum_turn_as_the_oscillator_does() {
         ..request("oscillator", Method::VelocityVerlet, 0.1, &[1.0], &[0.0])
     };
     let (a, b) = (pendulum.unwrap(), analyze(&oscillator).unwrap());
-    let (a, b) = (a.matrix.phase_error_per_step.unwrap(), b.matrix.phase_error_per_step.unwrap());
+    let (a, b) = (
+        a.matrix.as_ref().unwrap().phase_error_per_step.unwrap(),
+        b.matrix.as_ref().unwrap().phase_error_per_step.unwrap(),
+    );
     assert!((a / b - 1.0).abs() < 1e-12, "{a:e} {b:e}");
 }
 
@@ -234,7 +238,7 @@ fn coupled_modes_are_compared_frequency_by_frequency() {
     let answer =
         analyze(&request("henon-heiles", Method::VelocityVerlet, 0.1, &[1e-9, 1e-9], &[0.0, 0.0]));
     let expected = 2.0 * (0.05_f64).asin() - 0.1;
-    let got = answer.unwrap().matrix.phase_error_per_step.unwrap();
+    let got = answer.unwrap().matrix.as_ref().unwrap().phase_error_per_step.unwrap();
     // The coupling shifts the frequencies by about q = 10⁻⁹, which turns 10⁻¹⁰ rad in a step.
     assert!((got - expected).abs() < 1e-12, "{got:e}, not {expected:e}");
 }
@@ -255,33 +259,46 @@ fn nothing_cancels_at_tiny_and_huge_steps() {
     let close = |got: f64, want: f64| assert!((got / want - 1.0).abs() < 1e-14, "{got:e} {want:e}");
     // ω² = 10. The next terms of the expansions are smaller by z².
     let verlet = oscillator(Method::VelocityVerlet, 10.0, 1e-80);
-    close(verlet.matrix.phase_error_per_step.unwrap(), 10_f64.powf(1.5) * 1e-240 / 24.0);
+    close(
+        verlet.matrix.as_ref().unwrap().phase_error_per_step.unwrap(),
+        10_f64.powf(1.5) * 1e-240 / 24.0,
+    );
     let rk4 = oscillator(Method::Rk4, 10.0, 1e-50);
-    close(rk4.matrix.determinant_minus_one, -1e3 * 1e-300 / 72.0);
-    close(oscillator(Method::ExplicitEuler, 10.0, 1e-140).matrix.determinant_minus_one, 1e-279);
+    close(rk4.matrix.as_ref().unwrap().determinant_minus_one, -1e3 * 1e-300 / 72.0);
+    close(
+        oscillator(Method::ExplicitEuler, 10.0, 1e-140)
+            .matrix
+            .as_ref()
+            .unwrap()
+            .determinant_minus_one,
+        1e-279,
+    );
     for dt in [1e-65, 1e-140] {
         let answer = oscillator(Method::SymplecticEuler, 10.0, dt);
-        close(answer.matrix.eigenvalues[0][1], 10_f64.sqrt() * dt);
+        close(answer.matrix.as_ref().unwrap().eigenvalues[0][1], 10_f64.sqrt() * dt);
         assert_eq!(answer.bounded, Some(true), "{dt}");
     }
     // −z⁵/120 and z⁶/72 of z = 3·10⁻⁶⁵ are below every f64.
     let tiny = oscillator(Method::Rk4, 10.0, 1e-65);
-    assert_eq!(tiny.matrix.phase_error_per_step, Some(0.0));
+    assert_eq!(tiny.matrix.as_ref().unwrap().phase_error_per_step, Some(0.0));
     assert_eq!(json(&tiny)["max_energy_drift"], 0.0);
     // z = 10⁸⁰.
     let huge = oscillator(Method::VelocityVerlet, 1e100, 1e30);
-    assert_eq!((huge.matrix.determinant, huge.matrix.determinant_minus_one), (1.0, 0.0));
-    assert_eq!((huge.matrix.symplecticity_defect, huge.matrix.reversibility_defect), (0.0, 0.0));
+    assert_eq!(
+        (
+            huge.matrix.as_ref().unwrap().determinant,
+            huge.matrix.as_ref().unwrap().determinant_minus_one
+        ),
+        (1.0, 0.0)
+    );
+    assert_eq!(
+        (
+            huge.matrix.as_ref().unwrap().symplecticity_defect,
+            huge.matrix.as_ref().unwrap().reversibility_defect
+        ),
+        (0.0, 0.0)
+    );
     assert_eq!(huge.bounded, Some(false));
-}
-
-#[test]
-fn a_drift_that_is_undefined_keeps_its_keys() {
-    let at_rest = analyze(&request("oscillator", Method::Rk4, 0.1, &[0.0], &[0.0])).unwrap();
-    let json = json(&at_rest);
-    for key in ["max_energy_drift", "log10_max_energy_drift", "max_energy_drift_step"] {
-        assert!(json.as_object().unwrap().get(key).is_some_and(|value| value.is_null()), "{key}");
-    }
 }
 
 #[test]

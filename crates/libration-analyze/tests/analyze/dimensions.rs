@@ -51,6 +51,7 @@ fn the_matrix_of_an_oscillator_in_three_dimensions_has_that_of_one_in_each() {
             libration_analyze::analyze(&requests::request("oscillator", method, 0.1, q, v))
                 .unwrap()
                 .matrix
+                .unwrap()
                 .update_matrix
         };
         let (one, three) = (of(&[1.0], &[0.0]), of(&[1.0, 2.0, 3.0], &[0.0; 3]));

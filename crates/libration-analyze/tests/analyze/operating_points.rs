@@ -1,36 +1,31 @@
 //! Tests of modes and stable steps of systems by equations at their operating points, and along their motion.
 
-use std::sync::atomic::AtomicBool;
-
 use libration::{AnyMethod, ImplicitMethod, Method};
-use libration_analyze::equation_analysis::{EquationAnalysis, analyze};
 use libration_analyze::linear_analysis::StepAnalysis;
+use libration_analyze::{Analysis, Criteria, Request, Timing, analyze};
 use libration_report::verdict::Outcome;
 use libration_settings::equations::EquationSystem;
 
 /// The analysis of `steps` steps of `dt` seconds on the equations of a file.
-fn analysis(
-    equations: &str,
-    method: impl Into<AnyMethod>,
-    dt: f64,
-    steps: u64,
-) -> EquationAnalysis {
+fn analysis(equations: &str, method: impl Into<AnyMethod>, dt: f64, steps: u64) -> Analysis {
     let text = format!("[system]\nname = \"own\"\n{equations}\n");
     let system = EquationSystem::parse(&text, "own.toml", &[]).unwrap();
-    analyze(&system, method, dt, steps, &AtomicBool::new(false)).unwrap()
+    let (stepping, criteria, timing) =
+        (method.into().into(), Criteria::default(), Timing::default());
+    analyze(&Request { system, stepping, dt, steps, criteria, timing }).unwrap()
 }
 
 /// The growth of the fastest mode in 1/s.
-fn growth(found: &EquationAnalysis) -> f64 {
-    found.linear.as_ref().unwrap().modes[0].growth_rate
+fn growth(found: &Analysis) -> f64 {
+    found.linear().unwrap().modes[0].growth_rate
 }
 
-fn outcome(found: &EquationAnalysis) -> Outcome {
-    found.linear.as_ref().unwrap().verdicts.plant.outcome
+fn outcome(found: &Analysis) -> Outcome {
+    found.linear().unwrap().verdicts.plant.outcome
 }
 
-fn step<'a>(found: &'a EquationAnalysis, method: &str) -> &'a StepAnalysis {
-    let linear = found.linear.as_ref().unwrap();
+fn step<'a>(found: &'a Analysis, method: &str) -> &'a StepAnalysis {
+    let linear = found.linear().unwrap();
     linear.steps.iter().find(|step| step.integrator == method).unwrap()
 }
 
@@ -45,7 +40,7 @@ const PAIR: &str = "rate.a = \"-1000*a*b\"\nrate.b = \"1000*a*b\"\nstart = { a =
 #[test]
 fn a_rotation_about_the_middle_axis_grows_at_its_rate_by_euler() {
     let found = analysis(BODY, Method::Rk4, 0.01, 100);
-    let point = found.operating_point.as_ref().unwrap();
+    let point = found.operating_point().unwrap();
     let b = point.states[1].value;
     // By hand: b √((I₂ − I₁)(I₃ − I₂)/(I₁I₃)) with moments 1, 2 and 3.
     assert!((growth(&found) - b / 3.0_f64.sqrt()).abs() < 1e-12, "{point:?}");
@@ -67,7 +62,7 @@ fn growth_and_decay_at_rounding_level_are_none_and_a_linearisation_of_zero_decid
         ),
     ] {
         let found = analysis(equations, method, 0.01, 50);
-        let linear = found.linear.as_ref().unwrap();
+        let linear = found.linear().unwrap();
         assert_eq!(outcome(&found), Outcome::Unknown, "{equations}");
         assert!(linear.modes.iter().all(|mode| mode.eigenvalue == [0.0, 0.0]), "{linear:?}");
         let own = step(&found, method.name());
@@ -82,28 +77,28 @@ fn growth_and_decay_at_rounding_level_are_none_and_a_linearisation_of_zero_decid
     let friction = "coordinates = [\"x\"]\nacceleration.x = \"-x^3 - 0.1*x'\"\nstart = { x = 0.5 }";
     let found = analysis(friction, Method::Rk4, 0.01, 50);
     assert_eq!((outcome(&found), growth(&found)), (Outcome::Unknown, 0.0));
-    assert_eq!(found.linear.as_ref().unwrap().verdicts.plant.not_examined.len(), 1);
-    assert_eq!(found.operating_point.as_ref().unwrap().undecided, 1);
+    assert_eq!(found.linear().unwrap().verdicts.plant.not_examined.len(), 1);
+    assert_eq!(found.operating_point().unwrap().undecided, 1);
 }
 
 #[test]
 fn conserved_sums_of_the_start_hold_at_the_operating_point() {
     let found = analysis(PAIR, Method::Rk4, 0.001, 100);
-    let point = found.operating_point.as_ref().unwrap();
+    let point = found.operating_point().unwrap();
     assert_eq!(point.conserved[0].sum, "a + b");
     assert!(point.conserved[0].equal && point.continuum == 1, "{point:?}");
     assert!((growth(&found) - 1001.0).abs() < 1e-6);
     let epidemic = "rate.s = \"-0.5*s*i\"\nrate.i = \"0.5*s*i - 0.1*i\"\nrate.r = \"0.1*i\"\n\
                     start = { s = 0.99, i = 0.01, r = 0 }";
     let found = analysis(epidemic, Method::Rk4, 0.01, 100);
-    let point = found.operating_point.as_ref().unwrap();
+    let point = found.operating_point().unwrap();
     let [s, i, r] = [0, 1, 2].map(|k| point.states[k].value);
     assert!(i == 0.0 && (s + r - 1.0).abs() < 1e-9 && point.continuum == 2, "{point:?}");
     assert!((growth(&found) - (0.5 * s - 0.1)).abs() < 1e-12);
     // A mass that moves freely has no equilibrium with its momentum, so the point is out of its reach.
     let moving = "coordinates = [\"x\"]\nacceleration.x = \"0*x\"\nstart = { x = 1, \"x'\" = 2 }";
     let found = analysis(moving, Method::Leapfrog, 0.01, 50);
-    let sentence = found.operating_point.as_ref().unwrap().sentence();
+    let sentence = found.operating_point().unwrap().sentence();
     assert!(sentence.contains("it conserves x', which is 2 at the start and 0 here"), "{sentence}");
 }
 
@@ -130,14 +125,14 @@ fn stable_steps_along_the_motion_are_those_of_its_fastest_part() {
         ),
     ] {
         let found = analysis(equations, method, horizon / 50.0, 50);
-        let steps = found.steps_along_motion;
+        let steps = found.steps_along_motion.unwrap();
         assert!(steps.until == horizon && steps.unknown_states == 0, "{steps:?}");
         let dt = steps.largest_stable_dt.unwrap();
         assert!((dt - wanted).abs() <= tolerance * wanted, "{equations} {method:?} {steps:?}");
     }
     // Implicit steps have no limit.
     let found = analysis(PAIR, ImplicitMethod::BackwardEuler, 0.001, 100);
-    assert_eq!(found.steps_along_motion.largest_stable_dt, None);
+    assert_eq!(found.steps_along_motion.as_ref().unwrap().largest_stable_dt, None);
 }
 
 #[test]
@@ -193,7 +188,7 @@ fn modes_are_those_of_the_jacobian_by_hand_at_well_known_equilibria() {
     ] {
         let found = analysis(equations, Method::Rk4, 0.01, 20);
         assert!((growth(&found) - wanted).abs() < 1e-9, "{equations} {}", growth(&found));
-        let point = found.operating_point.as_ref().unwrap();
+        let point = found.operating_point().unwrap();
         assert!((point.distance - distance).abs() < 1e-9, "{point:?}");
         assert_eq!((point.continuum, point.undecided), (0, 0));
     }

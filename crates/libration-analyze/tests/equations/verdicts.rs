@@ -1,9 +1,7 @@
 //! Verdicts on steps and motions, against closed forms and SciPy.
 
-use std::sync::atomic::AtomicBool;
-
 use libration::AnyMethod;
-use libration_analyze::equation_analysis::{EquationAnalysis, analyze};
+use libration_analyze::{Analysis, Criteria, Request, Timing, analyze};
 use libration_report::verdict::{Outcome, exit_code};
 use libration_settings::equations::EquationSystem;
 
@@ -15,14 +13,11 @@ pub(crate) fn system(lines: &str) -> EquationSystem {
     EquationSystem::parse(&text, "case", &[]).unwrap_or_else(|error| panic!("{error}"))
 }
 
-pub(crate) fn examined(
-    system: &EquationSystem,
-    method: &str,
-    dt: f64,
-    steps: u64,
-) -> EquationAnalysis {
+pub(crate) fn examined(system: &EquationSystem, method: &str, dt: f64, steps: u64) -> Analysis {
     let method = AnyMethod::from_name(method).unwrap();
-    analyze(system, method, dt, steps, &AtomicBool::new(false)).unwrap()
+    let (system, stepping) = (system.clone(), method.into());
+    let (criteria, timing) = (Criteria::default(), Timing::default());
+    analyze(&Request { system, stepping, dt, steps, criteria, timing }).unwrap()
 }
 
 /// One coordinate `q0` from 1 at rest.
@@ -73,7 +68,7 @@ fn a_step_that_is_unstable_says_so_whatever_three_halved_steps_agree_on() {
         let found = examined(&system, method, dt, 3000);
         let step = found.verdicts.step.as_ref().unwrap();
         assert_eq!(step.outcome, Outcome::Unstable, "{method} {dt}: {step}");
-        let own = found.motion.spectral_radius.unwrap();
+        let own = found.motion.as_ref().unwrap().spectral_radius.unwrap();
         // Eigenvalues of matrices of two rows.
         assert!((own - radius).abs() < 1e-12 * radius, "{method} {dt}: {own} {radius}");
         assert_eq!(exit_code(found.verdicts.all()), 1);
@@ -130,7 +125,7 @@ fn a_motion_with_errors_as_large_as_itself_is_not_resolved_over_all_steps() {
         (plane(["-x+0.1*y", "-y+0.1*x"], "x = 1.0", ""), "leapfrog", 0.4, 2000),
     ] {
         let found = examined(&system, method, dt, steps);
-        let motion = &found.motion.examination.verdict;
+        let motion = &found.motion.as_ref().unwrap().examination.verdict;
         assert_eq!(motion.outcome, Outcome::NotResolved, "{method} {dt}: {motion}");
         assert_eq!(exit_code(found.verdicts.all()), 1);
     }
@@ -140,7 +135,7 @@ fn a_motion_with_errors_as_large_as_itself_is_not_resolved_over_all_steps() {
 fn an_energy_that_grows_beyond_all_bounds_belongs_to_no_resolved_motion() {
     // A kick takes the velocity from before it, so that gyroscopic forces add energy at each step.
     let found = examined(&foucault(), "velocity-verlet", 0.3, 20_000);
-    let energy = found.motion.energy.as_ref().unwrap();
+    let energy = found.motion.as_ref().unwrap().energy.as_ref().unwrap();
     // The exact motion conserves ½, of which all is exchanged.
     assert!((energy.scale.unwrap() - 0.5).abs() < 0.01, "{energy:?}");
     assert!(energy.exact_change.unwrap() < 1e-9, "{energy:?}");
@@ -162,10 +157,10 @@ fn small_errors_are_resolved_whatever_ratio_they_have() {
     ] {
         let found = examined(&system, method, dt, steps);
         assert_eq!(
-            found.motion.examination.verdict.outcome,
+            found.motion.as_ref().unwrap().examination.verdict.outcome,
             Outcome::Resolved,
             "{method}: {}",
-            found.motion.examination.verdict
+            found.motion.as_ref().unwrap().examination.verdict
         );
         assert_eq!(exit_code(found.verdicts.all()), 0, "{method}: {:?}", found.verdicts);
     }
@@ -180,13 +175,17 @@ fn what_the_reference_cannot_reach_is_unknown_and_no_success() {
         (&lorenz, "dormand-prince-8", 0.002, 50_000),
     ] {
         let found = examined(system, method, dt, steps);
-        let motion = &found.motion.examination.verdict;
+        let motion = &found.motion.as_ref().unwrap().examination.verdict;
         assert!(!motion.is_good(), "{method}: {motion}");
         assert_eq!(exit_code(found.verdicts.all()), 1);
     }
     // A motion that ends: x = 1/(1 − t).
     let found = examined(&rate("x^2", 1.0), "backward-euler", 0.1, 20);
-    assert!(!found.motion.examination.verdict.is_good(), "{}", found.motion.examination.verdict);
+    assert!(
+        !found.motion.as_ref().unwrap().examination.verdict.is_good(),
+        "{}",
+        found.motion.as_ref().unwrap().examination.verdict
+    );
 }
 
 #[test]
@@ -198,7 +197,7 @@ fn the_scale_of_the_energy_has_no_arbitrary_constant() {
     };
     let of = |constant: &str| {
         let found = examined(&pendulum(constant), "velocity-verlet", 0.01, 1000);
-        let energy = found.motion.energy.unwrap();
+        let energy = found.motion.unwrap().energy.unwrap();
         energy.error.unwrap() / energy.scale.unwrap()
     };
     let level = of("0");
@@ -213,7 +212,7 @@ fn the_scale_of_the_energy_has_no_arbitrary_constant() {
 fn stable_steps_along_a_damped_motion_are_known_for_steps_of_many_stages() {
     let damped = force("-7.0*q0/(1 + q0^2) - 0.08*q0'*abs(q0')");
     let found = examined(&damped, "blanes-moan-s10-6-kdk", 0.87, 60);
-    let along = &found.steps_along_motion;
+    let along = found.steps_along_motion.unwrap();
     assert!(along.states > 16 && along.unknown_states == 0, "{along:?}");
     // The stiffness is at most 7 s⁻², and the undamped limit of the method more than one stage of Verlet, 2/√7 s.
     let limit = along.largest_stable_dt.unwrap();

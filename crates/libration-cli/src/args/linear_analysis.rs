@@ -78,15 +78,12 @@ impl AnalyzeArgs {
         Some(request.and_then(|request| self.analysis(&request, &contents.borrow())))
     }
 
-    /// The first option that is not about steps of a system by equations.
-    pub(crate) fn unsupported_for_equations(&self) -> Option<&'static str> {
+    /// The first option of a loop, in words.
+    pub(crate) fn loop_option(&self) -> Option<&'static str> {
         let given = [
             ("a control loop", self.timing.timing() != Timing::default()),
             ("--loss", self.cost.loss.is_some()),
             ("--cost-weights", self.cost.cost_weights.is_some()),
-            ("--max-drift", self.max_drift.is_some()),
-            ("--max-amplitude", self.max_amplitude.is_some()),
-            ("--max-error", self.max_error.is_some()),
         ];
         given.into_iter().find(|(_, given)| *given).map(|(flag, _)| flag)
     }

@@ -3,24 +3,24 @@
 use std::fmt::Write as _;
 
 use libration_analyze::{
-    Analysis, Criteria, DEFAULT_STEPS, ModifiedHamiltonian, OrderOfWord, Request, Stepping, Timing,
-    analyze,
+    AboutEquilibrium, Analysis, AnalyzeError, Criteria, DEFAULT_STEPS, ModifiedHamiltonian,
+    OrderOfWord, Request, StepMatrix, Timing, analyze_until,
 };
 use libration_report::notation::plural;
 use libration_report::verdict::{self, exit_code};
-use libration_settings::equations::EquationSystem;
 use libration_settings::limits;
 
 use super::closed_loop::{dephasing, describe_loop};
 use super::digits::{UNKNOWN, exact, short, sum};
+use super::motion_text::order_in_words;
 use super::simulate::linear_file;
 use super::{
-    analyze_equations, analyze_linear, compare_integrators, equation_file, step_matrix, summary,
+    analyze_linear, compare_integrators, equation_file, motion_text, step_matrix, summary,
     temperature,
 };
 use crate::args::{AnalyzeArgs, CostArgs};
 use crate::error::Failure;
-use crate::terminal;
+use crate::{interrupt, terminal};
 
 /// Analyzes one step and prints the result.
 pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
@@ -43,20 +43,18 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
         let (text, code) = analyze_linear::run(&request?, args)?;
         return judged(&text, code, None);
     }
-    if let Some(system) = args.system.as_ref().and_then(equation_file::system) {
-        let (text, code, error) = analyze_equations::run(args, &system?)?;
-        return judged(&text, code, error);
-    }
-    let (Some(system), Some(stepping), Some(dt)) = (&args.system, args.integrator, args.dt) else {
+    let (Some(options), Some(stepping), Some(dt)) = (&args.system, args.integrator, args.dt) else {
         return Err(Failure::usage("--system is required without --plant and --config"));
     };
-    let system = EquationSystem::of_catalogue(system.resolve()?).map_err(Failure::run)?;
+    let system = equation_file::any_system(options)?;
+    if let (None, Some(flag)) = (system.twin, args.loop_option()) {
+        return Err(Failure::usage(format!(
+            "{flag} requires a system of the catalogue; a loop around equations is that of their plant: --plant FILE with --lqr or --gain"
+        )));
+    }
     let CostArgs { loss, cost_weights: weights } = args.cost;
     let timing = Timing { loss, weights, ..args.timing.timing() };
-    let steps = args.steps.unwrap_or(match system.is_linear() {
-        true => AnalyzeArgs::FORECAST_STEPS,
-        false => DEFAULT_STEPS,
-    });
+    let steps = args.steps.unwrap_or(DEFAULT_STEPS);
     if !system.is_linear() {
         // What cannot be forecast is simulated.
         limits::steps("--steps", steps.into()).map_err(Failure::usage)?;
@@ -67,11 +65,17 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
         max_error: args.max_error,
     };
     let request = Request { system, stepping, dt, steps, criteria, timing };
-    let analysis = analyze(&request).map_err(Failure::usage)?;
+    let analysis = interrupt::compute(|stop| analyze_until(&request, stop));
+    let analysis = analysis.map_err(|error| match error {
+        AnalyzeError::Interrupted => Failure::Interrupted(error.to_string()),
+        error => Failure::usage(error),
+    })?;
+    let order = |motion| order_in_words(motion, analysis.system.smooth);
+    let order = analysis.motion.as_ref().map(order);
     let text = match (args.json, args.verbose) {
         (true, _) => serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n",
         (false, true) => describe(&analysis, &request),
-        (false, false) => summary::of_step(&analysis, &request),
+        (false, false) => summary::of_analysis(&analysis, &request, order.as_deref()),
     };
     let residual = analysis.newton_residual.and_then(|residual| residual.error());
     judged(&text, exit_code(analysis.verdicts.all()), residual)
@@ -109,19 +113,8 @@ fn print(text: &str) -> Result<(), Failure> {
 
 /// Returns the analysis as text.
 fn describe(analysis: &Analysis, request: &Request) -> String {
-    let (about, criteria) = (&analysis.request, &request.criteria);
-    let parameters: Vec<String> =
-        about.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
-    let mut text = format!(
-        "{} ({}), {} with dt = {} s\n",
-        about.system,
-        parameters.join(", "),
-        about.integrator,
-        about.dt
-    );
-    if analysis.timing.is_some() {
-        text += "Open loop: one step of the plant\n";
-    }
+    let of_system = summary::named(&analysis.system);
+    let mut text = format!("{of_system}, {} with dt = {} s\n", analysis.integrator, analysis.dt);
     for (what, own) in [
         ("verdict on the step", &analysis.verdicts.step),
         ("verdict on the motion", &analysis.verdicts.motion),
@@ -131,11 +124,38 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
             text += &format!("  {what:<22} {own}\n");
         }
     }
+    if let Some(note) = &analysis.note {
+        text += &format!("note: {note}\n");
+    }
+    if let Some(motion) = &analysis.motion {
+        motion_text::describe(motion, analysis.system.smooth, &mut text);
+    }
+    if let Some(matrix) = &analysis.matrix {
+        describe_step(matrix, analysis, request, &mut text);
+    }
+    if let Some(timing) = &analysis.timing {
+        if let Some(steps) = timing.dephasing_steps {
+            text += &format!("  {:<22} {}\n", "mean falls to 1/e in", dephasing(steps));
+        }
+        describe_loop(timing, &request.timing, &mut text);
+    }
+    if let (Some(motion), Some(steps)) = (&analysis.motion, &analysis.steps_along_motion) {
+        text += &format!("\nalong the motion: {}\n", summary::along_motion(steps, motion));
+    }
+    if let Some(about) = &analysis.equilibrium {
+        describe_equilibrium(about, &mut text);
+    }
+    text
+}
+
+/// Appends the step from the start without feedback.
+fn describe_step(matrix: &StepMatrix, analysis: &Analysis, request: &Request, text: &mut String) {
+    text.push_str("\none step from the start, as a matrix\n");
     // Writing into a string cannot fail.
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "  {name:<22} {value}");
     };
-    step_matrix::describe(&analysis.matrix, analysis.update_matrix_in_z.as_deref(), &mut line);
+    step_matrix::describe(matrix, analysis.update_matrix_in_z.as_deref(), &mut line);
     if let Some(bounded) = analysis.bounded {
         line("orbits", if bounded { "bounded" } else { "unbounded" }.into());
     }
@@ -146,17 +166,13 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
         let shown = if shown.is_empty() { "none".into() } else { shown.join(", ") };
         line("stable for dt in s", shown);
     }
-    let one_mode = matches!(&*about.system, "oscillator" | "damped-oscillator");
-    let derived = about.integrator != Stepping::EXACT;
-    if analysis.stability_windows.is_none() && one_mode && derived {
-        line("stable for dt in s", UNKNOWN.into());
-    }
     let mut largest = |what: &str, limit: Option<f64>, dt: Option<Option<f64>>| {
         if let Some(limit) = limit {
             line("largest dt in s", format!("{} for {what} {}", known(dt), short(limit)));
         }
     };
     if let Some(dt) = &analysis.largest_dt {
+        let criteria = &request.criteria;
         largest("drift", criteria.max_drift, dt.energy_drift);
         largest("drift from the worst start", criteria.max_drift, dt.energy_drift_worst_start);
         largest("amplitude", criteria.max_amplitude, dt.amplitude);
@@ -170,38 +186,30 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
         line("splitting", format!("order {}: {}", word.order, word.word.join(", ")));
         line("", certified(word));
     }
-    step_matrix::describe_defects(&analysis.matrix, &mut line);
-    let energy = analysis.motion.as_ref().and_then(|motion| motion.energy.as_ref());
-    line(
-        "largest energy drift",
-        match (energy, &analysis.drift) {
-            (Some(energy), _) => summary::energy_change(energy),
-            (None, Some(drift)) => {
-                let stopped = drift.stopped_at_step.map_or_else(String::new, |step| {
-                    format!("; the state leaves the range of f64 at step {step}")
-                });
-                let size = match drift.max_energy_drift.get() {
-                    "null" => "beyond the range of f64; more than any part",
-                    size => size,
-                };
-                format!(
-                    "{size} of the start, at step {} of {} ({}{stopped})",
-                    drift.max_energy_drift_step, about.steps, drift.max_energy_drift_method
-                )
-            }
-            (None, None) => "undefined: the energy at the start is zero".into(),
-        },
-    );
-    if let Some(timing) = &analysis.timing {
-        if let Some(steps) = timing.dephasing_steps {
-            line("mean falls to 1/e in", dephasing(steps));
-        }
-        describe_loop(timing, &request.timing, &mut text);
+    step_matrix::describe_defects(matrix, &mut line);
+    if let Some(drift) = &analysis.drift {
+        line(
+            "largest energy drift",
+            format!(
+                "{} of the start, at step {} of {} (exact)",
+                drift.max_energy_drift, drift.max_energy_drift_step, analysis.steps
+            ),
+        );
     }
-    if let Some(note) = &about.note {
-        let _ = writeln!(text, "note: {note}");
+}
+
+/// Appends the equilibrium near the start and the system about it.
+fn describe_equilibrium(about: &AboutEquilibrium, text: &mut String) {
+    text.push('\n');
+    if let Some(point) = &about.operating_point {
+        *text += &format!("{}\n", point.sentence());
     }
-    text
+    if let Some(linear) = &about.linear {
+        *text += &analyze_linear::describe(linear, false);
+    }
+    if let Some(reason) = &about.no_modes {
+        *text += &format!("No modes: {reason}.\n");
+    }
 }
 
 /// Returns a largest time step as text.

@@ -3,7 +3,7 @@
 use libration::AnyMethod;
 use libration::catalog::{ENTRIES, Entry};
 use libration::integrator::Exact;
-use libration_analyze::equation_analysis::{EquationSummary, SummaryTask};
+use libration_analyze::system_summary::{SummaryTask, SystemSummary};
 use libration_lab::STUDIES;
 use libration_report::printable::printable;
 use libration_settings::EquationExample;
@@ -19,7 +19,7 @@ use crate::terminal;
 /// Lists studies, systems and integrators.
 pub(crate) fn run(args: &ListArgs) -> Result<(), Failure> {
     if let Some(file) = &args.file {
-        let summary = EquationSummary::new(&equation_file::read(file, &[])?);
+        let summary = SystemSummary::new(&equation_file::read(file, &[])?);
         let text = match args.json {
             true => format!("{:#}\n", json!(summary)),
             false => summary_text(&summary),
@@ -159,8 +159,8 @@ fn widest<'a>(names: impl Iterator<Item = &'a str>) -> usize {
 const COLUMN: usize = 60;
 
 /// Returns the properties of a system by equations.
-fn summary_text(summary: &EquationSummary) -> String {
-    let EquationSummary { name, description, states, parameters, inputs, .. } = summary;
+fn summary_text(summary: &SystemSummary) -> String {
+    let SystemSummary { name, description, states, parameters, inputs, .. } = summary;
     let mut text = match description.is_empty() {
         true => format!("{}\n", printable(name)),
         false => line(&format!("{}: ", printable(name)), description),

@@ -138,14 +138,23 @@ impl OperatingPoint {
                 " Its equations have kinks or jumps: the linearisation does not hold at or beyond them."
             }
         };
+        // An acceleration that was added to a system without inputs is zero wherever it rests.
+        let is_input =
+            |command: &OperatingValue| !(command.name.ends_with(ADDED) && command.value == 0.0);
+        let commands: Vec<OperatingValue> =
+            self.commands.iter().filter(|own| is_input(own)).cloned().collect();
+        let under =
+            if commands.is_empty() { String::new() } else { format!(" under {}", list(&commands)) };
         format!(
-            "The plant is the system {} linearised at {} under {}{residual}{distance}.{kinks}",
+            "The plant is the system {} linearised at {}{under}{residual}{distance}.{kinks}",
             self.system,
             list(&self.states),
-            list(&self.commands)
         )
     }
 }
+
+/// The end of the name of an acceleration that was added as an input.
+pub(super) const ADDED: &str = " added";
 
 /// Largest number of values in a sentence about modes.
 const MOST: usize = 6;

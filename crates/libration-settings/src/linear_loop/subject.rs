@@ -5,9 +5,11 @@ use std::path::Path;
 use libration::analysis::{ConservedSum, conserved_sums};
 use libration::equations::{Degree, Dynamics};
 use libration::linear::Signal;
-use libration::{AnySystem, catalog, with_system};
+use libration::{AnySystem, catalog};
 
+use super::operating_point::ADDED;
 use crate::equations::EquationSystem;
+use crate::initial_value_problem::InitialValueProblem;
 use crate::{Fault, suggestions, units};
 
 /// Whether a name is that of a file of equations.
@@ -50,37 +52,25 @@ impl Subject {
             };
             Fault::new(key, format!("{error}{}{help}", suggestions::catalog_help(&error)))
         })?;
-        let entry = system.entry();
         if matches!(system, AnySystem::DrivenOscillator(_)) {
             return Err(depends_on_time(name));
         }
-        let dimension = dimension.unwrap_or(*entry.dimensions.start());
-        let dynamics =
-            with_system!(system, dimension, |model, D| Dynamics::of::<D>(&model, Some(1.0)), {
-                let message = entry.wrong_dimension(dimension).to_string();
-                return Err(Fault::new("system.linear.at", message));
-            });
-        let units = units::of(system, actuation);
-        let named = |letter: &'static str, unit| {
-            (0..dimension).map(move |i| Signal::new(&format!("{letter}{i}"), unit))
-        };
-        let mut signals: Vec<Signal> =
-            named("q", units.position).chain(named("v", units.velocity)).collect();
-        match dimension {
-            1 => signals.push(Signal::new(actuation.name(), units.command)),
-            _ => signals.extend(named(actuation.name(), units.command)),
+        let origin = vec![0.0; dimension.unwrap_or(*system.entry().dimensions.start())];
+        let at_origin =
+            InitialValueProblem::new((system, actuation), Some(origin.clone()), Some(origin))
+                .map_err(|error| Fault::new("system.linear.at", error.to_string()))?;
+        let of_equations = EquationSystem::of_catalogue(at_origin)
+            .map_err(|error| Fault::new("system.linear.of", error.to_string()))?;
+        let mut subject = Subject::of_equations(&of_equations)?;
+        let states = subject.signals.len() - subject.dynamics.degrees();
+        let commands = subject.signals[states..].iter_mut().enumerate();
+        for (i, command) in commands {
+            let number = if subject.unknowns.len() == 1 { String::new() } else { i.to_string() };
+            let unit = units::of(system, actuation).command;
+            *command = Signal::new(&format!("{}{number}", actuation.name()), unit);
         }
-        Ok(Subject {
-            name: entry.name.to_owned(),
-            dynamics,
-            start: vec![0.0; signals.len()],
-            sums: Vec::new(),
-            signals,
-            unknowns: (0..dimension).collect(),
-            states: (0..2 * dimension).collect(),
-            has_first_order_states: false,
-            mass: actuation.mass(),
-        })
+        // The search covers all equilibria, not those that a motion reaches.
+        Ok(Subject { sums: Vec::new(), mass: actuation.mass(), ..subject })
     }
 
     pub(super) fn of_file(path: &str, parameters: &[(String, f64)]) -> Result<Self, Fault> {
@@ -124,8 +114,8 @@ impl Subject {
                     unit => format!("{unit}/s"),
                 };
                 match degree {
-                    Degree::Coordinate(name) => Signal::new(&format!("{name}'' added"), &unit),
-                    Degree::State(name) => Signal::new(&format!("{name}' added"), &unit),
+                    Degree::Coordinate(name) => Signal::new(&format!("{name}''{ADDED}"), &unit),
+                    Degree::State(name) => Signal::new(&format!("{name}'{ADDED}"), &unit),
                     Degree::Time => Signal::new("", ""),
                 }
             });

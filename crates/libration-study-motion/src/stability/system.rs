@@ -4,8 +4,8 @@ use std::sync::atomic::AtomicBool;
 
 use libration::Method;
 use libration::equations::StepProgram;
-use libration_analyze::equation_analysis::spectral_radius;
 use libration_analyze::linear_analysis::{self, LinearRequest, StepAnalysis};
+use libration_analyze::spectral_radius;
 use libration_report::Record;
 use libration_report::notation::seconds;
 use libration_report::page::Page;

@@ -4,8 +4,8 @@ use libration::analysis::jacobian;
 use libration::ensemble::Execution;
 use libration::linear::Matrix;
 use libration::{Float, Method};
-use libration_analyze::equation_analysis::step_order;
 use libration_analyze::reference_flow::{Rates, size};
+use libration_analyze::step_order;
 use libration_study::StudyError;
 
 use super::{

@@ -93,7 +93,7 @@ pub(super) fn append_steps(analysis: &LinearAnalysis, is_one: bool, summary: &mu
 const AGREES: [f64; 2] = [1e-12, 1e-4];
 
 /// Appends the largest difference of the growth in simulations from predictions.
-fn append_predictions(steps: &[StepAnalysis], summary: &mut Summary) {
+pub(super) fn append_predictions(steps: &[StepAnalysis], summary: &mut Summary) {
     let largest = |of: fn(&StepAnalysis) -> Option<f64>| {
         let own = steps.iter().filter_map(|step| {
             let (measured, predicted) = (of(step)?, step.predicted_spectral_radius?);

@@ -2,23 +2,22 @@
 
 mod advice;
 mod comparison;
-mod equations;
 mod linear_advice;
 mod linear_plant;
 mod linear_steps;
 mod loop_limits;
 mod motion;
+mod next_step;
 mod step;
 mod step_loop;
 mod temperature;
 
 pub(super) use advice::of_advice;
 pub(super) use comparison::of_comparison;
-pub(super) use equations::{along_motion, of_equations};
 pub(super) use linear_advice::of_linear_advice;
 pub(super) use linear_plant::of_plant;
 pub(super) use motion::energy_change;
-pub(super) use step::{no_phase_error, of_step};
+pub(super) use step::{along_motion, named, no_phase_error, of_analysis};
 pub(super) use temperature::of_temperatures;
 
 use libration_report::printable::printable;

@@ -1,6 +1,6 @@
 //! A motion beside the exact one.
 
-use libration_analyze::equation_analysis::{EnergyChange, MotionExamination};
+use libration_analyze::motion::{EnergyChange, MotionExamination};
 use libration_report::verdict::{Outcome, Verdict};
 
 use super::super::digits::significant;

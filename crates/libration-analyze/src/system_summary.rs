@@ -1,4 +1,4 @@
-//! Summaries of systems by equations.
+//! Summaries of systems.
 
 use std::collections::BTreeMap;
 
@@ -10,14 +10,14 @@ use serde::Serialize;
 
 /// The properties of a system that follow from its equations.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct EquationSummary {
+pub struct SystemSummary {
     /// The name.
     pub name: String,
     /// The description; empty without one.
     pub description: String,
     /// The states with their values at the start.
     pub states: Vec<SummaryState>,
-    /// The parameters.
+    /// The parameters in the order of their names.
     pub parameters: Vec<SummaryParameter>,
     /// The names of the inputs.
     pub inputs: Vec<String>,
@@ -108,7 +108,7 @@ pub struct SummaryParameter {
     pub unit: String,
 }
 
-impl EquationSummary {
+impl SystemSummary {
     /// The summary of a system.
     pub fn new(system: &EquationSystem) -> Self {
         let equations = &system.equations;
@@ -124,13 +124,15 @@ impl EquationSummary {
             value: *value,
             unit: unit.clone(),
         };
+        let mut parameters: Vec<SummaryParameter> = parameters.map(parameter).collect();
+        parameters.sort_by(|a, b| a.name.cmp(&b.name));
         let rates: Vec<f64> =
             equations.dynamics().accelerations().on::<f64>().run(&system.start()).collect();
-        EquationSummary {
+        SystemSummary {
             name: system.name.clone(),
             description: system.description.clone(),
             states: states.collect(),
-            parameters: parameters.map(parameter).collect(),
+            parameters,
             inputs: equations.inputs().to_vec(),
             positional: equations.dynamics().is_positional(),
             time_dependent: degrees.contains(&Degree::Time),

@@ -1,4 +1,4 @@
-//! Stable steps along the motion of a system by equations.
+//! Stable steps along the motion of a system.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 

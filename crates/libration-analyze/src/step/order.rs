@@ -1,4 +1,4 @@
-//! The order and the eigenvalues of a step of a system by equations.
+//! The order and the eigenvalues of a step of a system.
 
 use libration::equations::StepProgram;
 use libration::linear::{Matrix, eigenvalues};

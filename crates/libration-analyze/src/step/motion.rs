@@ -1,4 +1,4 @@
-//! The motion of a system by equations under steps of an integrator: order, errors and energy, predicted and measured.
+//! The motion of a system under steps of an integrator: order, errors and energy, predicted and measured.
 
 use std::sync::atomic::AtomicBool;
 
@@ -7,7 +7,7 @@ use libration::{AnyMethod, Float};
 use libration_settings::equations::{EquationSystem, NamedState};
 use serde::Serialize;
 
-use super::step::{lost_order, spectral_radius, step_order};
+use super::order::{lost_order, spectral_radius, step_order};
 use crate::AnalyzeError;
 use crate::motion::{
     EnergyChange, MotionExamination, MotionState, MotionSubject, StepRun, examine, most_steps,
@@ -15,7 +15,7 @@ use crate::motion::{
 
 /// The motion from the start of a system.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct EquationMotion {
+pub struct SteppedMotion {
     /// The name of the integrator.
     pub integrator: &'static str,
     /// The time step in s.
@@ -65,7 +65,7 @@ const ERROR_STEPS: u64 = 1000;
 /// Changes below this many roundings of a value are rounding: each of up to 4000 steps rounds a state two times or more.
 const ROUNDINGS: f64 = 1e4;
 
-impl EquationMotion {
+impl SteppedMotion {
     /// Follows the motion for `steps` steps of `dt` seconds, or fewer if they take long. `equilibrium` has positions, velocities and
     /// inputs.
     ///
@@ -111,7 +111,7 @@ impl EquationMotion {
             dynamics: system.equations.dynamics(),
             start: &start,
             states: &states,
-            is_affine: is_affine(system),
+            is_affine: system.is_linear(),
             energy_unit: &system.energy_unit,
         };
         let mut examination = examine(&subject, &step, dt, steps, stop)?;
@@ -122,7 +122,7 @@ impl EquationMotion {
             let rounding = ROUNDINGS * f64::UNIT_ROUNDOFF * size;
             change.reduction = (fine > rounding).then(|| change.largest / fine);
         }
-        Ok(EquationMotion {
+        Ok(SteppedMotion {
             integrator: method.name(),
             dt,
             classical_order: method.order(),
@@ -138,11 +138,6 @@ impl EquationMotion {
             energy,
         })
     }
-}
-
-/// Whether the rates of all states are sums of constants times states, and of constants.
-pub(super) fn is_affine(system: &EquationSystem) -> bool {
-    system.equations.polynomial_degree().is_some_and(|degree| degree <= 1)
 }
 
 /// The states after steps, and what two and four steps in their place change, in the largest sizes over all steps.
