@@ -30,8 +30,9 @@ pub(super) fn of_step(
         let is_allowed = analysis.steps_along_motion.as_ref().is_some_and(allows);
         let point = about.operating_point.as_ref().map(|point| point.state_of(system));
         let is_near = |at: &Vec<f64>| motion.examination.is_near(at, places.clone());
+        let is_examined = is_allowed && !motion.examination.is_at_rest();
         let is_relevant =
-            point.is_some_and(|at| system.is_linear() || (is_near(&at) && !is_allowed));
+            point.is_some_and(|at| system.is_linear() || (is_near(&at) && !is_examined));
         if let (true, Some(linear)) = (is_relevant, &about.linear) {
             return about_equilibrium(motion, linear);
         }

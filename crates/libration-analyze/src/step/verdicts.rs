@@ -45,10 +45,15 @@ impl StepVerdicts {
             return StepVerdicts { step: Some(of_rest(&step)), ..StepVerdicts::default() };
         }
         // The motion shows what rounding hides at the equilibrium, and whether steps follow a growing mode for as long as it is asked for.
-        let is_decided =
-            |own: &Verdict| !matches!(own.outcome, Outcome::Unknown | Outcome::NotResolved);
-        let step =
-            step.filter(|own| oscillator.is_some() || examination.is_none() || is_decided(own));
+        let is_decided = |own: &Verdict| match own.outcome {
+            Outcome::NotResolved => false,
+            Outcome::Unknown => oscillator.is_some(),
+            _ => true,
+        };
+        let step = step.filter(|own| examination.is_none() || is_decided(own));
+        // Second moments are those of the random steps of an oscillator.
+        let is_random = request.timing.jitter.is_some() || request.timing.skew.is_some();
+        let examination = examination.filter(|_| !(is_random && oscillator.is_some()));
         let motion = examination.map(|own| under_clocks(own.verdict.clone(), request));
         StepVerdicts { closed_loop: None, step, motion }
     }

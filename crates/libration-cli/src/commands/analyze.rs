@@ -150,7 +150,10 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
 
 /// Appends the step from the start without feedback.
 fn describe_step(matrix: &StepMatrix, analysis: &Analysis, request: &Request, text: &mut String) {
-    text.push_str("\none step from the start, as a matrix\n");
+    text.push_str(match analysis.timing {
+        Some(_) => "Open loop: one step of the plant\n",
+        None => "\none step from the start, as a matrix\n",
+    });
     // Writing into a string cannot fail.
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "  {name:<22} {value}");

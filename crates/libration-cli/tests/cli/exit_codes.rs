@@ -12,7 +12,7 @@ use predicates::str::{contains, is_empty};
 
 use crate::interrupt::{interrupt, wait_until};
 
-const ANALYZE: &str = "analyze --system oscillator --integrator rk4 --dt 0.1";
+const ANALYZE: &str = "analyze --system oscillator --integrator rk4 --dt 0.01";
 
 /// Commands that print at once, one for each way in which they do.
 const PRINTING: [&str; 12] = [

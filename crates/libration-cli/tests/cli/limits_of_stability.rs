@@ -15,7 +15,9 @@ fn answer(command: &str) -> (String, i32) {
 /// The outcome of a verdict in JSON, by its key. Some numbers there are beyond those of a parser.
 fn outcome(command: &str, verdict: &str) -> String {
     let (text, _) = answer(&format!("{command} --json"));
-    let own = text.split(&format!("\"{verdict}\": {{")).nth(1).unwrap_or_else(|| panic!("{text}"));
+    // Those at the equilibrium stand before.
+    let (_, own) =
+        text.rsplit_once(&format!("\"{verdict}\": {{")).unwrap_or_else(|| panic!("{text}"));
     own.split('"').nth(3).unwrap().to_owned()
 }
 

@@ -49,25 +49,23 @@ pub(crate) fn of_analysis(analysis: &Analysis, request: &Request, order: Option<
         summary.row("order", order);
     }
     if let Some(matrix) = &analysis.matrix {
-        let phase = match matrix.phase_error_per_step {
-            Some(error) => format!("{} rad per step", significant(error, 4)),
-            None => no_phase_error(matrix).to_owned(),
-        };
-        summary.row("phase error", &phase);
+        // That of a nonlinear system belongs to its start alone.
+        if request.system.is_linear() {
+            let phase = match matrix.phase_error_per_step {
+                Some(error) => format!("{} rad per step", significant(error, 4)),
+                None => no_phase_error(matrix).to_owned(),
+            };
+            summary.row("phase error", &phase);
+        }
         let evaluations = matrix.force_evaluations_per_step;
         summary.row("force evaluations", &format!("{evaluations} per step"));
-        if of_loop.is_none() && !request.system.is_linear() {
-            summary.row("at the start", &format!("motions {}", growth(matrix)));
-        }
     }
     append_energy(analysis, &mut summary);
     append_equilibrium(analysis, &mut summary);
     if let Some((purpose, command)) = next(analysis, request) {
         summary.command(purpose, &command);
     }
-    summary.finish(
-        "the matrix of a step with its eigenvalues and defects, all states, the operations of a step, and the modes",
-    )
+    summary.finish("the matrix of a step, its defects and operations, all states, and the modes")
 }
 
 /// A verdict as a sentence about `subject`, which is `inside` of a sentence.
@@ -171,7 +169,8 @@ fn append_energy(analysis: &Analysis, summary: &mut Summary) {
 fn append_equilibrium(analysis: &Analysis, summary: &mut Summary) {
     let Some(about) = &analysis.equilibrium else { return };
     let radius = analysis.motion.as_ref().and_then(|motion| motion.spectral_radius);
-    if let Some(radius) = radius {
+    // The first sentence has that of an oscillator.
+    if let (Some(radius), None) = (radius, &analysis.stability_windows) {
         let excess =
             |x: f64| format!("1 {} {}", if x < 0.0 { "−" } else { "+" }, significant(x.abs(), 5));
         let slowest = about.linear.as_ref().and_then(|linear| linear.modes.first());
