@@ -141,7 +141,7 @@ def _advise(
     config: str, page: bool, redesign: bool, progress: Callable[[str, int, int, str, int, int], Any] | None
 ) -> tuple[str, bool, str | None]: ...
 def _advise_equations(
-    system: _Equations,
+    system: _SystemAtStart,
     tolerance: tuple[str, float],
     horizon: float,
     page: bool,

@@ -487,7 +487,7 @@ def advise(
         :class:`~libration.StateFeedback`, :class:`~libration.StateSpace`, :class:`~libration.Cascade`, or a list of
         ``(output, input, PID)``.
     q, v:
-        Start of a simulation, or operating point of a loop (default: the origin).
+        Start of a simulation (default: that of the equations, or the origin), or operating point of a loop (default: the origin).
     period:
         Sample period in s (default: 0.01).
     latency, jitter, skew, loss:
@@ -608,24 +608,23 @@ class _Repetition:
 
 def _advise_simulation(system: EquationSystem, keywords: dict[str, Any], page: bool, redesign: bool, progress: Progress) -> Advice:
     """Advise on simulations of a system by equations."""
-    for name in ("q", "v"):
-        if keywords[name] is not None:
-            raise TypeError(f"{name} cannot be combined with a system by equations, which has its start")
     loop = {**keywords, "redesign": redesign or None}
     for name, value in loop.items():
-        if value is not None and name not in ("system", "tolerance", "horizon"):
+        if value is not None and name not in ("system", "q", "v", "tolerance", "horizon"):
             raise TypeError(f"{name} requires a controller")
     tolerance, horizon = keywords["tolerance"], keywords["horizon"]
+    request = system_request(system, keywords["q"], keywords["v"])
     kind, most = next(iter(tolerance_table(("trajectory", 1e-3) if tolerance is None else tolerance, "('energy', 1e-6)").items()))
     seconds = number("horizon", 10.0 if horizon is None else horizon, "a number")
     with ProgressDisplay(progress) as display:
         report = (lambda _, __, ___, what, done, total: display.update(done / max(total, 1), what)) if display.enabled else None
-        found = _native._advise_equations(system._text, (kind, most), seconds, bool(page), report)
+        found = _native._advise_equations(request, (kind, most), seconds, bool(page), report)
     answer, holds, html_page = found
     parts = json.loads(answer)
     if "--system FILE" in parts["repeat_command"]:
         # The system has no file.
-        parts["repeat_command"] = f"libration.advise(system, tolerance={(kind, most)!r}, horizon={seconds!r})"
+        start = "".join(f"{name}={value!r}, " for name, value in zip("qv", request[1:]) if value is not None)
+        parts["repeat_command"] = f"libration.advise(system, {start}tolerance={(kind, most)!r}, horizon={seconds!r})"
     return Advice(parts, holds, system._text[0], html_page)
 
 

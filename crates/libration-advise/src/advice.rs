@@ -147,13 +147,10 @@ impl Advice {
             answer: String::new(),
             verdict: Verdict::unknown("not computed"),
             warnings: Vec::new(),
-            system: request.system.name().to_owned(),
-            parameters: {
-                let own = request.system.parameters().into_iter();
-                own.map(|(name, value)| (name.to_owned(), value)).collect()
-            },
-            q: request.q.clone(),
-            v: request.v.clone(),
+            system: request.system.name.clone(),
+            parameters: request.system.definitions.parameters.iter().cloned().collect(),
+            q: request.system.q.clone(),
+            v: request.system.v.clone(),
             tolerance: ToleranceAnswer { of: of.name(), most, scale: None },
             horizon: request.horizon,
             looped: None,
@@ -188,10 +185,10 @@ impl Advice {
 
     /// Sorts the integrators by cost, and sets the runner-up and warnings.
     pub(super) fn choose(&mut self, request: &Request, mut choices: Vec<IntegratorChoice>) {
-        let is_positional = request.system.is_positional(request.q.len());
+        let dynamics = request.system.equations.dynamics();
         for choice in &mut choices {
             let method = Method::from_name(choice.integrator);
-            let each = method.map(|method| evaluations(method, is_positional));
+            let each = method.map(|method| evaluations(method, dynamics));
             choice.evaluations = each.zip(choice.dt).map(|(each, dt)| each as f64 / dt);
         }
         sort_by_cost(&mut choices);

@@ -9,7 +9,6 @@ use libration_analyze::motion::narrow_force;
 use libration_work::Work;
 
 use super::advice::{Advice, FloatChoice, LoopAdvice};
-use super::advised_system::AdvisedSystem;
 use super::combined_effect::CombinedEffect;
 use super::control::Control;
 use super::free_motion::FreeMotion;
@@ -20,14 +19,14 @@ use super::loop_check::UnstableLoop;
 use super::loop_simulation::{LoopSimulation, simulated_horizon};
 use super::loops::{Loop, LoopError, PlantModel};
 use super::request::{Measure, Request, Tolerance};
-use super::simulated_system::SimulatedSystem;
 use super::summary::{describe_integrator, describe_loop, loop_warnings};
+use super::system_programs::SystemPrograms;
 use super::{AdviseError, Budget, Throughput};
 
 /// The advice on a system without a controller.
 pub(super) fn advise_simulation(
     work: &Work<'_>,
-    system: &dyn SimulatedSystem,
+    system: &SystemPrograms<'_>,
     request: &Request,
 ) -> Result<Advice, AdviseError> {
     let free = FreeMotion::new(work, system, request)?;
@@ -97,20 +96,18 @@ pub(super) fn advise_simulation(
     }
     if let Some((choice, dt)) = advice.chosen() {
         let method = Method::from_name(choice.integrator).unwrap_or(Method::Rk4);
-        let narrow = free.lost_in::<f32>(work, method, dt, f64::INFINITY)?;
-        let wide = free.lost_in::<f64>(work, method, dt, f64::INFINITY)?;
+        let narrow = free.lost_in(work, true, method, dt, f64::INFINITY)?;
+        let wide = free.lost_in(work, false, method, dt, f64::INFINITY)?;
         advice.floats = floats(request, method, dt, [narrow, wide]);
         let narrow = advice.float().is_some_and(|float| float.float == f32::NAME);
         advice.throughput = Some(Throughput::measure(work, request, method, dt, narrow)?);
     }
     advice.verdict = advice.judge_integrators();
-    if let AdvisedSystem::Equations { system, .. } = &request.system {
-        let dynamics = system.equations.dynamics();
-        let never = AtomicBool::new(false);
-        let missed = narrow_force(dynamics, &free.start, request.horizon, &never);
-        if let Some(time) = missed.ok().flatten().filter(|_| advice.verdict.is_good()) {
-            advice.verdict = missed_force(time);
-        }
+    let dynamics = request.system.equations.dynamics();
+    let never = AtomicBool::new(false);
+    let missed = narrow_force(dynamics, &free.start, request.horizon, &never);
+    if let Some(time) = missed.ok().flatten().filter(|_| advice.verdict.is_good()) {
+        advice.verdict = missed_force(time);
     }
     let answer = describe_integrator(&advice, request);
     advice.finish(request, answer);
@@ -224,7 +221,7 @@ pub(super) fn advise_loop<M: PlantModel>(
     advice.warnings.splice(0..0, loop_warnings(&one, &combined));
     let looped = LoopAdvice { budgets, fails_first, remedies, ..one.advice(request, combined)? };
     advice.verdict = looped.judged(&advice.tolerance, advice.chosen().is_some());
-    if matches!(&request.system, AdvisedSystem::Catalogued { system, .. } if !system.is_linear()) {
+    if !request.system.is_linear() {
         let part = "motions so large that the linearisation at the start does not hold";
         advice.verdict = advice.verdict.without(part);
     }
@@ -255,9 +252,9 @@ impl<M: PlantModel> Loop<M> {
         request: &Request,
         combined: CombinedEffect,
     ) -> Result<LoopAdvice, AdviseError> {
-        let rest = State { q: [request.q[0]], v: [0.0] };
+        let rest = State { q: [request.system.q[0]], v: [0.0] };
         let [held] = self.model.model.on::<f64>().acceleration(&rest);
-        let (actuation, units) = (request.system.actuation(), request.system.units());
+        let (actuation, units) = (request.actuation(), request.units());
         let gains = self.given_gains();
         Ok(LoopAdvice {
             controller: self.describe_controller(),

@@ -8,7 +8,6 @@ use libration_analyze::{LatencyOption, Stepping, Timing};
 use libration_settings::equations::EquationSystem;
 use libration_settings::initial_value_problem::InitialValueProblem;
 
-use super::advised_system::AdvisedSystem;
 use super::control::{Control, Law};
 use super::loops::{Loop, PlantModel};
 use super::request::{Measure, Request, Tolerance};
@@ -72,17 +71,10 @@ fn random_loop(index: u64) -> Request {
         weights: None,
         deviation: 0.1,
     };
-    Request {
-        system: AdvisedSystem::Catalogued { system, actuation },
-        q: vec![0.0],
-        v: vec![0.0],
-        control: Some(control),
-        tolerance: Tolerance { of: Measure::Trajectory, most: 1e-3 },
-        horizon: 5.0,
-        rollout: [64, 64],
-        map: false,
-        invocation: String::new(),
-    }
+    let problem = InitialValueProblem { system, actuation, q: vec![0.0], v: vec![0.0] };
+    let system = EquationSystem::of_catalogue(problem).unwrap();
+    let tolerance = Tolerance { of: Measure::Trajectory, most: 1e-3 };
+    Request { control: Some(control), rollout: [64, 64], ..Request::new(system, tolerance, 5.0) }
 }
 
 /// The request that a printed `libration analyze` makes.
@@ -154,8 +146,7 @@ fn compare(model: impl PlantModel, request: &Request) {
 fn analyze_and_advise_agree_on_loops_whose_commands_are_lost() {
     for index in 0..LOOPS {
         let request = random_loop(index);
-        let AdvisedSystem::Catalogued { system, .. } = request.system else { unreachable!() };
-        match system {
+        match request.system.twin.unwrap().system {
             AnySystem::Oscillator(model) => compare(model, &request),
             AnySystem::DampedOscillator(model) => compare(model, &request),
             _ => unreachable!(),

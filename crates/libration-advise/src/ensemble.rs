@@ -23,7 +23,7 @@ pub(super) const MOST_PERIODS: f64 = 100_000.0;
 pub(super) const FORGOTTEN: f64 = 0.5;
 
 impl<M: PlantModel> Loop<M> {
-    /// Runs loops with all stated imperfections; none if the latency is too long for losses.
+    /// Runs loops with all stated imperfections; none if the latency is too long for losses, or a step too long for an exact one.
     pub(super) fn run(
         &self,
         work: &Work<'_>,
@@ -32,14 +32,14 @@ impl<M: PlantModel> Loop<M> {
         let stated = self.stated()?;
         let latency = stated.latency;
         if stated.loss == 0.0 {
-            return self.run_with(work, run, Schedule::late(latency)).map(Some);
+            return self.run_with(work, run, Schedule::late(latency));
         }
         let whole = latency.steps().trunc() as usize;
         let mut travels = vec![0.0; whole + 1];
         travels[whole] = 1.0 - stated.loss;
         let Ok(packets) = Packets::new(&travels, Order::NewestActs) else { return Ok(None) };
         let Ok(packets) = packets.longer_by(latency.steps().fract()) else { return Ok(None) };
-        self.run_with(work, run, packets).map(Some)
+        self.run_with(work, run, packets)
     }
 
     fn run_with(
@@ -47,22 +47,21 @@ impl<M: PlantModel> Loop<M> {
         work: &Work<'_>,
         run: EnsembleRun<'_>,
         delay: impl Delay<f64>,
-    ) -> Result<EnsembleResult, AdviseError> {
+    ) -> Result<Option<EnsembleResult>, AdviseError> {
         let varied = match &self.control.record {
             Some(record) => record.iter().copied().fold(1.0, f64::max),
             None => 1.0 + self.control.jitter.largest(),
         };
         let longest = varied * (1.0 + self.control.skew.abs());
-        // Exact steps are compiled for linear models only.
-        if const { M::LINEAR }
-            && let Some(exact) = Exact::new(self.model, self.control.period * longest)
-        {
-            return self.run_by(work, run, delay, exact);
+        // Exact steps are compiled for linear models only, and others for no linear ones.
+        if const { M::LINEAR } {
+            let exact = Exact::new(self.model, self.control.period * longest);
+            return exact.map(|exact| self.run_by(work, run, delay, exact)).transpose();
         }
         // Substeps of 0.05 rad with an error of order four of 10⁻⁶.
         let turn = self.plant().rate() * self.control.period * longest;
         let count = (turn / 0.05).ceil().clamp(4.0, 256.0) as i32;
-        self.run_by(work, run, delay, Substeps { method: Rk4, count })
+        self.run_by(work, run, delay, Substeps { method: Rk4, count }).map(Some)
     }
 
     fn run_by(

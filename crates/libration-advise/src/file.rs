@@ -7,12 +7,13 @@ use libration::analysis::ObserverNoise;
 use libration::control::controller::PidGains;
 use libration::control::{Feedback, Jitter, LqrWeights};
 use libration_logs::{StampOptions, read_time_stamps};
+use libration_settings::equations::EquationSystem;
+use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::{
     ConfigCommand, Coordinates, Count, Document, Fault, Number, SettingsError, suggestions,
 };
 
 use super::AdviseError;
-use super::advised_system::AdvisedSystem;
 use super::control::{Control, Correction, Law, Regulator};
 use super::file_tables::{ControllerTable, LoopTable, ObserverTable, RequestFile};
 use super::request::{Measure, Request, Tolerance};
@@ -50,25 +51,24 @@ impl TryFrom<RequestFile> for Request {
             None => None,
             Some(table) => Some(control(law(table)?, file.looped.unwrap_or_default())?),
         };
-        let request = Request {
-            system: AdvisedSystem::Catalogued { system, actuation },
-            q: coordinates(file.start.q),
-            v: coordinates(file.start.v),
-            control,
-            tolerance: tolerance(file.tolerance)?,
-            horizon: file.request.horizon.0,
-            rollout: file.request.rollout.map(|Count(n)| usize::try_from(n).unwrap_or(0)),
-            map: false,
-            invocation: "libration advise --config FILE".into(),
-        };
-        if !system.entry().dimensions.contains(&request.q.len()) {
-            let message = system.entry().wrong_dimension(request.q.len()).to_string();
+        let (q, v) = (coordinates(file.start.q), coordinates(file.start.v));
+        if !system.entry().dimensions.contains(&q.len()) {
+            let message = system.entry().wrong_dimension(q.len()).to_string();
             return Err(Fault::new("start.q", message));
         }
-        if request.q.len() != request.v.len() {
-            let (q, v) = (request.q.len(), request.v.len());
+        if q.len() != v.len() {
+            let (q, v) = (q.len(), v.len());
             return Err(Fault::new("start.v", format!("`q` has {q} numbers and `v` {v}")));
         }
+        let problem = InitialValueProblem { system, actuation, q, v };
+        let system = EquationSystem::of_catalogue(problem)
+            .map_err(|error| Fault::new("system", error.to_string()))?;
+        let request = Request {
+            control,
+            rollout: file.request.rollout.map(|Count(n)| usize::try_from(n).unwrap_or(0)),
+            invocation: "libration advise --config FILE".into(),
+            ..Request::new(system, tolerance(file.tolerance)?, file.request.horizon.0)
+        };
         request.check().map_err(|error| match error {
             AdviseError::Value { name, value, allowed } => {
                 Fault::new(name, format!("`{name}` is {value:?}, but it must be {allowed}"))
@@ -220,7 +220,7 @@ mod tests {
         let request = |text: &str| parse(text, "mine.toml").unwrap();
         let (number, list) = ("[start]\nq = 0.5\nv = 0", "[start]\nq = [0.5]\nv = [0.0]");
         assert_eq!(request(number), request(list));
-        assert_eq!(request(number).q, [0.5]);
+        assert_eq!(request(number).system.q, [0.5]);
     }
 
     #[test]

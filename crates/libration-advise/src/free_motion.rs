@@ -2,18 +2,18 @@
 
 use std::f64::consts::TAU;
 
-use libration::{Float, Integrator, Method};
+use libration::{Integrator, Method};
 use libration_work::Work;
 
 use super::AdviseError;
 use super::integrator_choice::StepTrial;
 use super::motion_rates::{EnergyKind, MotionRates};
 use super::request::{Measure, Request, steps_over};
-use super::simulated_system::{SimulatedSystem, Steps};
+use super::system_programs::{Steps, SystemPrograms};
 
 /// The motion of a system from its start over a horizon.
 pub(super) struct FreeMotion<'a> {
-    pub(super) system: &'a dyn SimulatedSystem,
+    pub(super) system: &'a SystemPrograms<'a>,
     /// Positions, then velocities.
     pub(super) start: Vec<f64>,
     pub(super) horizon: f64,
@@ -64,10 +64,10 @@ impl<'a> FreeMotion<'a> {
     /// The motion of `request`.
     pub(super) fn new(
         work: &Work<'_>,
-        system: &'a dyn SimulatedSystem,
+        system: &'a SystemPrograms<'a>,
         request: &Request,
     ) -> Result<Self, AdviseError> {
-        let start: Vec<f64> = request.q.iter().chain(&request.v).copied().collect();
+        let start = request.system.initial_state();
         let of = request.tolerance.of;
         let tolerance_error = |why: &str| Err(AdviseError::Tolerance { of, why: why.into() });
         if of == Measure::Cost {
@@ -162,16 +162,16 @@ impl<'a> FreeMotion<'a> {
         (self.system.reference_method(), if is_splitting { 2 * finer } else { finer })
     }
 
-    /// The error in numbers of type `S`.
-    pub(super) fn lost_in<S: Float>(
+    /// The error in `f32` or `f64`.
+    pub(super) fn lost_in(
         &self,
         work: &Work<'_>,
+        is_narrow: bool,
         method: Method,
         dt: f64,
         most: f64,
     ) -> Result<f64, AdviseError> {
         let steps = steps_over(self.horizon, dt);
-        let is_narrow = S::NAME == f32::NAME;
         let trajectory = (self.system.steps(is_narrow, method, dt, &self.start), steps);
         if let (Some(scale), Some(mut energy)) = (self.energy_scale, self.system.energy()) {
             let first = energy(&self.start);
@@ -193,9 +193,9 @@ impl<'a> FreeMotion<'a> {
     fn reference_error(
         &self,
         work: &Work<'_>,
-        trajectory: (Box<dyn Steps + '_>, u64),
+        trajectory: (Box<dyn Steps>, u64),
         most: f64,
-        (mut reference, times): (Box<dyn Steps + '_>, u32),
+        (mut reference, times): (Box<dyn Steps>, u32),
     ) -> Result<f64, AdviseError> {
         let mut size = self.size(&self.start);
         let mut difference = self.start.clone();
@@ -251,7 +251,7 @@ impl StepTrial for FreeMotion<'_> {
         dt: f64,
         most: f64,
     ) -> Result<f64, AdviseError> {
-        self.lost_in::<f64>(work, method, dt, most)
+        self.lost_in(work, false, method, dt, most)
     }
 
     fn resolving_step(&self) -> f64 {
@@ -266,7 +266,7 @@ impl StepTrial for FreeMotion<'_> {
 /// The largest value of `see` after a step, or the first above `most`; infinite if it is not finite.
 fn largest(
     work: &Work<'_>,
-    (mut trajectory, steps): (Box<dyn Steps + '_>, u64),
+    (mut trajectory, steps): (Box<dyn Steps>, u64),
     most: f64,
     see: &mut dyn FnMut(&[f64]) -> f64,
 ) -> Result<f64, AdviseError> {

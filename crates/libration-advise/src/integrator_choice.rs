@@ -1,8 +1,7 @@
 //! The choice of integrator and step: the cheapest that meets a tolerance.
 
-use libration::simulation::Simulator;
-use libration::system::{DampedOscillator, Oscillator};
-use libration::{Method, State, System};
+use libration::Method;
+use libration::equations::{Dynamics, StepProgram};
 use libration_work::Work;
 
 use super::AdviseError;
@@ -81,20 +80,9 @@ pub(super) fn offered_methods(is_positional: bool) -> impl Iterator<Item = Metho
     Method::ALL.into_iter().chain(tables.filter(suits))
 }
 
-/// Counted force evaluations per step. They depend on whether forces depend on positions alone, and on nothing else of a system.
-pub(super) fn evaluations(method: Method, is_positional: bool) -> u64 {
-    fn counted(system: impl System<f64, 1> + Copy, method: Method) -> u64 {
-        let start = State { q: [1.0], v: [0.0] };
-        Simulator::new(system, method, start, 1e-6).map_or(0, |mut one| {
-            // The step is finite.
-            let _ = one.run(1, &mut ());
-            one.evaluations()
-        })
-    }
-    match is_positional {
-        true => counted(Oscillator { omega2: 1.0 }, method),
-        false => counted(DampedOscillator { omega2: 1.0, gamma: 0.1 }, method),
-    }
+/// Force evaluations per step.
+pub(super) fn evaluations(method: Method, dynamics: &Dynamics) -> usize {
+    StepProgram::new(method, dynamics).evaluations()
 }
 
 /// Ratio of neighbouring tried steps.

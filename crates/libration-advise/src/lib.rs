@@ -2,11 +2,11 @@
 
 mod advice;
 mod advice_verdict;
-mod advised_system;
 mod advisor;
 #[cfg(test)]
 mod analyze_agreement;
 mod budget;
+mod catalogue_plant;
 mod combined_effect;
 mod control;
 mod ensemble;
@@ -31,13 +31,12 @@ mod operating_point;
 mod page;
 mod region_of_attraction;
 mod request;
-mod simulated_system;
 mod stabilising_changes;
 mod stability_map;
 mod stability_window;
 mod subject;
 mod summary;
-mod system_by_program;
+mod system_programs;
 mod throughput;
 mod timed_loop;
 mod used_share;
@@ -45,12 +44,10 @@ mod used_share;
 use std::ops::RangeInclusive;
 
 use libration::ensemble::EnsembleError;
-use libration::{AnySystem, with_system};
 use thiserror::Error;
 
 pub use advice::{Advice, FloatChoice, LoopAdvice, ToleranceAnswer};
 pub use advice_verdict::Doubt;
-pub use advised_system::AdvisedSystem;
 pub use budget::{Budget, FirstFailure, rounded};
 pub use combined_effect::{CombinedEffect, SimulatedCost};
 pub use control::{Control, Correction, Law, Regulator};
@@ -70,8 +67,7 @@ pub use throughput::Throughput;
 use libration_settings::duration;
 use libration_settings::limits::SIZE;
 use libration_work::{Interrupted, Work};
-use simulated_system::Compiled;
-use system_by_program::SystemByProgram;
+use system_programs::SystemPrograms;
 
 /// Allowed angles of the fastest motion of a loop per period, in rad. Below, growth per period is lost to rounding; above, second
 /// moments under jitter cannot be derived.
@@ -105,7 +101,7 @@ pub enum AdviseError {
     #[error("{system}: `{name}` is {value:e}; expected 0, or {:e} to {:e} in size", SIZE.start(), SIZE.end())]
     Parameter {
         /// The system.
-        system: &'static str,
+        system: String,
         /// The parameter.
         name: &'static str,
         /// Its value.
@@ -175,71 +171,20 @@ pub enum AdviseError {
 /// [`AdviseError`]; errors of the request are returned before any work.
 pub fn advise(work: &Work<'_>, request: &Request) -> Result<Advice, AdviseError> {
     request.check()?;
-    let system = match &request.system {
-        AdvisedSystem::Catalogued { system, .. } => *system,
-        AdvisedSystem::Equations { .. } if request.control.is_some() => {
-            return dimension_error(request, "a loop requires a system of the catalogue");
-        }
-        AdvisedSystem::Equations { system, .. } => {
-            return advisor::advise_simulation(work, &SystemByProgram::new(system), request);
-        }
-    };
-    match (&request.control, system) {
-        (None, system) => with_system!(
-            system,
-            request.q.len(),
-            |model, D| {
-                if const { D <= 2 } {
-                    advisor::advise_simulation(work, &Compiled::<_, D>::new(model), request)
-                } else {
-                    dimension_error(request, "at most two are supported")
-                }
-            },
-            dimension_error(request, "the system has a different number")
-        ),
-        (Some(control), AnySystem::Oscillator(model)) if request.q.len() == 1 => {
-            advisor::advise_loop(work, model, control, request)
-        }
-        (Some(control), AnySystem::DampedOscillator(model)) => {
-            advisor::advise_loop(work, model, control, request)
-        }
-        (Some(control), AnySystem::Pendulum(model)) => {
-            advisor::advise_loop(work, model, control, request)
-        }
-        (Some(control), AnySystem::Duffing(model)) => {
-            advisor::advise_loop(work, model, control, request)
-        }
-        _ => dimension_error(request, "a loop requires one"),
+    match &request.control {
+        None => advisor::advise_simulation(work, &SystemPrograms::new(&request.system), request),
+        Some(control) => catalogue_plant::advise(work, control, request),
     }
 }
 
-/// The budget of each imperfection of the loop of `request`: the part of [`advise`] without simulations.
+/// The budget of each imperfection of the loop of `request`, none without a loop: the part of [`advise`] without simulations.
 ///
 /// # Errors
 /// As of [`advise`].
 pub fn budgets(work: &Work<'_>, request: &Request) -> Result<Vec<Budget>, AdviseError> {
     request.check()?;
-    let AdvisedSystem::Catalogued { system, .. } = request.system else {
-        return dimension_error(request, "a loop requires a system of the catalogue");
-    };
-    match (&request.control, system) {
-        (Some(control), AnySystem::Oscillator(model)) if request.q.len() == 1 => {
-            advisor::loop_budgets(work, model, control, request)
-        }
-        (Some(control), AnySystem::DampedOscillator(model)) => {
-            advisor::loop_budgets(work, model, control, request)
-        }
-        (Some(control), AnySystem::Pendulum(model)) => {
-            advisor::loop_budgets(work, model, control, request)
-        }
-        (Some(control), AnySystem::Duffing(model)) => {
-            advisor::loop_budgets(work, model, control, request)
-        }
-        _ => dimension_error(request, "a loop requires one"),
+    match &request.control {
+        None => Ok(Vec::new()),
+        Some(control) => catalogue_plant::budgets(work, control, request),
     }
-}
-
-fn dimension_error<T>(request: &Request, allowed: &'static str) -> Result<T, AdviseError> {
-    let (system, dimension) = (request.system.name().to_owned(), request.q.len());
-    Err(AdviseError::Dimension { system, dimension, allowed })
 }

@@ -6,36 +6,21 @@ use libration::live::{Control as LiveControl, Setting, answer};
 use libration_report::live::LiveSetting;
 use libration_report::page::Page;
 use libration_report::verdict::Outcome;
-use libration_settings::equations::EquationSystem;
-use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::live_settings;
 
 use super::advice::Advice;
-use super::advised_system::AdvisedSystem;
 use super::control::{Control, Law};
 use super::request::Request;
 
 /// The system of a request, with its loop; none where the loop is no feedback of position and velocity around an equilibrium.
 pub(super) fn of_request(request: &Request) -> Option<Setting> {
-    let mut setting = match &request.system {
-        AdvisedSystem::Equations { system, .. } => live_settings::of_system(system),
-        AdvisedSystem::Catalogued { system, actuation } => {
-            // Coordinates of an oscillator do not depend on each other: a page has the first.
-            let dimension = *system.entry().dimensions.start();
-            let [q, v] = [&request.q, &request.v].map(|x| x.iter().copied().take(dimension));
-            let (q, v) = (q.collect(), v.collect());
-            let problem = InitialValueProblem { system: *system, actuation: *actuation, q, v };
-            let mut setting =
-                live_settings::of_system(&EquationSystem::of_catalogue(problem).ok()?);
-            setting.horizon = request.horizon;
-            setting
-        }
-    };
+    let mut setting = live_settings::of_system(&request.system);
+    setting.horizon = request.horizon;
     let names = setting.definitions.coordinates.clone();
     let Some(control) = &request.control else { return Some(setting) };
     let Control { law, period, latency, jitter, skew, loss, record, deviation, .. } = control;
     let (Law::Pd(gains), None) = (law, record) else { return None };
-    setting.start = vec![(names.first()?.clone(), request.q.first()? + deviation)];
+    setting.start = vec![(names.first()?.clone(), request.system.q.first()? + deviation)];
     setting.dt = *period;
     setting.control = Some(LiveControl {
         gain: vec![vec![gains.position, gains.velocity]],

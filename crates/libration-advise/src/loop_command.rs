@@ -38,8 +38,8 @@ impl<M: PlantModel> Loop<M> {
         });
         format!(
             "libration analyze {} --q {} --integrator exact --dt {} --feedback {},{}{latency}{jitter}{loss}{weights}",
-            request.system.name_and_parameters(),
-            request.q[0],
+            request.name_and_parameters(),
+            request.system.q[0],
             self.control.period * (1.0 + skew),
             gains.position,
             gains.velocity

@@ -129,8 +129,8 @@ impl<M: Model<1, On<f64>: Send + Sync>> PlantModel for M {}
 impl<M: PlantModel> Loop<M> {
     /// The loop of `request` with its designed gains.
     pub(super) fn new(model: M, request: &Request, control: &Control) -> Result<Self, LoopError> {
-        let at = request.q[0];
-        let (mass, units) = (request.system.actuation().mass(), request.system.units());
+        let at = request.system.q[0];
+        let (mass, units) = (request.actuation().mass(), request.units());
         let model = ModelAtOperatingPoint { model, at: [at] };
         let plant = Plant::exact(model, ORIGIN, control.period);
         let [held] = model.model.on::<f64>().acceleration(&State { q: [at], v: [0.0] });

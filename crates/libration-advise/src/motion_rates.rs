@@ -6,7 +6,7 @@ use libration_work::Work;
 
 use super::AdviseError;
 use super::free_motion::FreeMotion;
-use super::simulated_system::Slopes;
+use super::system_programs::Slopes;
 
 /// What becomes of the energy of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,7 +43,8 @@ impl FreeMotion<'_> {
         if !self.system.depends_on_time() && self.is_at_rest() {
             return Err(self.tolerance_error("nothing moves from this start; choose another start"));
         }
-        if let Some(damped) = self.system.exact_rate() {
+        // Of one oscillation the rates are known.
+        if let (Some(damped), 1) = (self.system.exact_rate(), degrees) {
             let mean = match by_positions > 0.0 {
                 true => by_positions,
                 false => damped.max(self.horizon.recip()),

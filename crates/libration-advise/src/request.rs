@@ -1,22 +1,20 @@
 //! Requests for advice.
 
 use libration::control::LqrWeights;
-use libration_settings::equations::EquationSystem;
+use libration_settings::equations::{EquationSystem, Twin};
 use libration_settings::limits;
 
 use super::AdviseError;
-use super::advised_system::AdvisedSystem;
 use super::control::Control;
 
-/// A plant with its controller, a tolerance and a horizon.
+/// A system, whatever describes it, with its controller, a tolerance and a horizon.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
-    /// The system.
-    pub system: AdvisedSystem,
-    /// Initial positions; for a loop those of the operating point.
-    pub q: Vec<f64>,
-    /// Initial velocities.
-    pub v: Vec<f64>,
+    /// The system with its start, at rest at the operating point for a loop.
+    pub system: EquationSystem,
+    /// The options of the command line that stand for the system and its start, such as `--system mine.toml`; none of a system of the
+    /// catalogue, which its name, parameters and start stand for.
+    pub options: Option<String>,
     /// The loop, if there is one.
     pub control: Option<Control>,
     /// The tolerance.
@@ -85,17 +83,11 @@ pub(super) fn steps_over(horizon: f64, dt: f64) -> u64 {
 }
 
 impl Request {
-    /// A request about a simulation of a system by equations from its start; `options` stand for it in command lines.
-    pub fn of_equations(
-        system: EquationSystem,
-        options: String,
-        tolerance: Tolerance,
-        horizon: f64,
-    ) -> Self {
+    /// A request about a simulation of a system from its start.
+    pub fn new(system: EquationSystem, tolerance: Tolerance, horizon: f64) -> Self {
         Request {
-            q: system.q.clone(),
-            v: system.v.clone(),
-            system: AdvisedSystem::Equations { system: Box::new(system), options },
+            system,
+            options: None,
             control: None,
             tolerance,
             horizon,
@@ -131,11 +123,19 @@ impl Request {
     }
 
     fn steps(&self, integrator: &str, dt: f64) -> String {
-        format!(
-            "{} --integrator {integrator} --dt {dt} --steps {}",
-            self.system.options(&self.q, &self.v),
-            self.steps_of(dt)
-        )
+        let list = |x: &[f64]| x.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+        let options = self.options.clone().unwrap_or_else(|| {
+            let EquationSystem { q, v, .. } = &self.system;
+            format!("{} --q {} --v {}", self.name_and_parameters(), list(q), list(v))
+        });
+        format!("{options} --integrator {integrator} --dt {dt} --steps {}", self.steps_of(dt))
+    }
+
+    /// The options of the command line for a system of the catalogue without its start.
+    pub(super) fn name_and_parameters(&self) -> String {
+        let parameters = self.system.definitions.parameters.iter();
+        let set: String = parameters.map(|(name, x)| format!(" --set {name}={x}")).collect();
+        format!("--system {}{set}", self.system.name)
     }
 
     /// The steps of `dt` seconds that cover the horizon.
@@ -155,10 +155,11 @@ impl Request {
         let positive = |x: f64| x > 0.0 && x.is_finite();
         let above = "a finite number above 0";
         ensure("tolerance", self.tolerance.most, above, positive(self.tolerance.most))?;
-        if let AdvisedSystem::Catalogued { system, actuation } = self.system {
+        if let Some(Twin { system, actuation }) = self.system.twin {
             let parameters = actuation.parameters(system);
             if let Some((name, value)) = limits::find_out_of_range(parameters) {
-                return Err(AdviseError::Parameter { system: system.name(), name, value });
+                let system = self.system.name.clone();
+                return Err(AdviseError::Parameter { system, name, value });
             }
         }
         let time = |x: f64| limits::SIZE.contains(&x);
@@ -172,7 +173,7 @@ impl Request {
                 (1..=1_000_000_000).contains(&count),
             )?;
         }
-        for &x in self.q.iter().chain(&self.v) {
+        for x in self.system.initial_state() {
             ensure("start.q", x, "a finite number", x.is_finite())?;
         }
         let Some(control) = &self.control else { return Ok(()) };
@@ -214,7 +215,7 @@ impl Request {
             (0.0..1.0).contains(&loss),
         )?;
         ensure("loop.deviation", deviation, above, positive(deviation))?;
-        for &v in &self.v {
+        for &v in &self.system.v {
             ensure("start.v", v, "0", v == 0.0)?;
         }
         Ok(())

@@ -2,9 +2,10 @@
 
 use std::time::Instant;
 
-use libration::Method;
 use libration::ensemble::BatchFloat;
 use libration::rl::Plan;
+use libration::{AnyMethod, Method};
+use libration_settings::equations::EquationSystem;
 use libration_work::Work;
 
 use super::AdviseError;
@@ -47,7 +48,7 @@ impl Throughput {
             true => speed::<f32>(work, request, method, dt as f32)?,
             false => speed::<f64>(work, request, method, dt)?,
         };
-        let [seen, commands] = request.system.sizes(request.q.len());
+        let [seen, commands] = sizes(&request.system);
         let bytes = Plan::new(steps, environments).bytes(seen, commands, size_of::<f32>());
         Ok(Throughput {
             environments,
@@ -60,16 +61,25 @@ impl Throughput {
     }
 }
 
+/// The numbers that an environment shows, and its commands: one for each coordinate of a system of the catalogue.
+fn sizes(system: &EquationSystem) -> [usize; 2] {
+    let inputs = system.equations.inputs().len();
+    [system.states.len(), system.twin.map_or(inputs, |_| system.states.len() / 2)]
+}
+
 fn speed<T: BatchFloat>(
     work: &Work<'_>,
     request: &Request,
     method: Method,
     dt: T,
 ) -> Result<f64, AdviseError> {
-    let Request { system, q, v, rollout: [count, _], .. } = request;
+    let Request { system, rollout: [count, _], .. } = request;
     let count = (*count).clamp(1, MOST);
-    let start: Vec<f64> = q.iter().chain(v).copied().collect();
-    let mut all = system.ensemble::<T>(count, work.serial()?, &start)?;
+    let start = system.initial_state();
+    let of = |_: usize, i: usize| T::from_f64(start.get(i).copied().unwrap_or_default());
+    let (dynamics, twin) = (system.equations.dynamics(), system.twin.map(|twin| twin.system));
+    let any_method = AnyMethod::Explicit(method);
+    let mut all = T::ensemble_for(any_method, dynamics, twin, count, work.serial()?, &of)?;
     let mut steps = 16;
     loop {
         let begun = Instant::now();

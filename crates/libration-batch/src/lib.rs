@@ -19,4 +19,4 @@ mod trajectory;
 pub use column_program::{ColumnProgram, Columns};
 pub use ensemble::Ensemble;
 #[cfg(not(test))]
-pub use trajectory::Trajectory;
+pub use trajectory::{Trajectory, TrajectoryProgram};

@@ -24,33 +24,49 @@ pub struct Trajectory<S> {
     before: Vec<S>,
 }
 
-impl<S: Float> Trajectory<S> {
-    /// From positions and velocities, as many as `dynamics` has, in steps of `dt` seconds.
-    pub fn new(method: AnyMethod, dynamics: &Dynamics, start: &[S], dt: S) -> Self {
-        let step = MachineStep::new(method, dynamics, true);
-        Trajectory::of_parts(&step, dynamics, start, dt, 1)
+/// The program of a step, by which trajectories of a system begin anywhere, in steps of any length, in any float type.
+#[derive(Debug)]
+pub struct TrajectoryProgram {
+    step: MachineStep,
+    degrees: usize,
+    /// Inputs of the system.
+    commands: usize,
+    /// Inputs of the program before the time step.
+    inputs: usize,
+}
+
+impl TrajectoryProgram {
+    /// A step of a method.
+    pub fn new(method: AnyMethod, dynamics: &Dynamics) -> Self {
+        TrajectoryProgram::of_step(MachineStep::new(method, dynamics, true), dynamics)
     }
 
-    /// The same in exact steps of a linear system.
-    pub fn exact(exact: Exact, dynamics: &Dynamics, start: &[S], dt: S) -> Self {
-        let (part, parts) = exact.parts();
+    /// A part of an exact step of a linear system.
+    pub fn exact(exact: Exact, dynamics: &Dynamics) -> Self {
+        let (part, _) = exact.parts();
         let program = StepProgram::new(part, dynamics);
-        let step = MachineStep::of_program(&program, dynamics.degrees());
-        Trajectory::of_parts(&step, dynamics, start, dt, parts)
+        TrajectoryProgram::of_step(MachineStep::of_program(&program, dynamics.degrees()), dynamics)
     }
 
-    /// In steps that are so many equal parts.
-    fn of_parts(step: &MachineStep, dynamics: &Dynamics, start: &[S], dt: S, parts: i32) -> Self {
-        let states = 2 * dynamics.degrees();
-        let mut inputs = vec![S::zero(); step.inputs(dynamics)];
+    fn of_step(step: MachineStep, dynamics: &Dynamics) -> Self {
+        let inputs = step.inputs(dynamics);
+        let (degrees, commands) = (dynamics.degrees(), dynamics.inputs());
+        TrajectoryProgram { step, degrees, commands, inputs }
+    }
+
+    /// A trajectory from positions and velocities, in steps of `dt` seconds that are so many equal parts: 1 for a method, and
+    /// [as many](Exact::parts) as it has for an exact step.
+    pub fn begin<S: Float>(&self, start: &[S], dt: S, parts: i32) -> Trajectory<S> {
+        let states = 2 * self.degrees;
+        let mut inputs = vec![S::zero(); self.inputs];
         inputs.push(dt.ratio(1, parts));
-        let mut lane = Lane::new(&step.step, &inputs);
+        let mut lane = Lane::new(&self.step.step, &inputs);
         lane.rows_mut()[..states].copy_from_slice(&start[..states]);
-        if let Some(first) = &step.first {
+        if let Some(first) = &self.step.first {
             let mut first = Lane::new(first, &inputs);
             first.rows_mut()[..states].copy_from_slice(&start[..states]);
             first.run(1, 0);
-            let known = states..states + dynamics.degrees();
+            let known = states..states + self.degrees;
             lane.rows_mut()[known.clone()].copy_from_slice(&first.rows()[known]);
         }
         Trajectory {
@@ -59,9 +75,29 @@ impl<S: Float> Trajectory<S> {
             parts: parts as u64,
             step: 0,
             states,
-            commands: dynamics.inputs(),
+            commands: self.commands,
             before: Vec::new(),
         }
+    }
+}
+
+impl<S: Float> Trajectory<S> {
+    /// From positions and velocities, as many as `dynamics` has, in steps of `dt` seconds.
+    pub fn new(method: AnyMethod, dynamics: &Dynamics, start: &[S], dt: S) -> Self {
+        TrajectoryProgram::new(method, dynamics).begin(start, dt, 1)
+    }
+
+    /// The same in exact steps of a linear system.
+    pub fn exact(exact: Exact, dynamics: &Dynamics, start: &[S], dt: S) -> Self {
+        let (_, parts) = exact.parts();
+        TrajectoryProgram::exact(exact, dynamics).begin(start, dt, parts)
+    }
+
+    /// Takes a step, also one whose numbers are not finite. Returns positions and velocities.
+    pub fn step(&mut self) -> &[S] {
+        self.lane.run(self.parts, 0);
+        self.step += 1;
+        self.state()
     }
 
     /// Takes so many steps, or fewer if a number of the state would not be finite: the trajectory stays before that step. Returns whether

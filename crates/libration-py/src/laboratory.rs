@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::background::run_in_background;
-use crate::equations::{EquationText, equations};
+use crate::equations::{AnySystem, Description, EquationText, any_system, equations};
 use crate::error::{Raised, unknown, value_error};
 
 /// Progress: study, its number, number of studies, current work, items done and number of items.
@@ -103,11 +103,11 @@ fn advised(
     Ok((json, advice.holds(), page.then(|| advise::page(&advice))))
 }
 
-/// Advises on a simulation of a system by equations; `tolerance` is a measure and its largest value.
+/// Advises on a simulation of a system by equations, with its start; `tolerance` is a measure and its largest value.
 #[pyfunction]
 pub(crate) fn _advise_equations(
     py: Python<'_>,
-    system: EquationText,
+    system: AnySystem,
     tolerance: (String, f64),
     horizon: f64,
     page: bool,
@@ -116,18 +116,32 @@ pub(crate) fn _advise_equations(
     let (measure, most) = tolerance;
     let of = Measure::ALL.into_iter().find(|known| known.name() == measure);
     let of = of.ok_or_else(|| unknown("tolerance", &measure, Measure::ALL.map(Measure::name)))?;
-    let (_, file, set) = &system;
-    let set: String = set.iter().map(|(name, x)| format!(" --set {name}={x}")).collect();
-    let file = if file.ends_with(".toml") { file } else { "FILE" };
-    let options = format!("--system {file}{set}");
-    let tolerance = Tolerance { of, most };
+    let options = options_of(&system);
     let request = Request {
         invocation: format!(
             "libration advise {options} --tolerance {measure}={most:e} --horizon {horizon}"
         ),
-        ..Request::of_equations(equations(&system)?, options, tolerance, horizon)
+        options: Some(options),
+        ..Request::new(any_system(&system)?, Tolerance { of, most }, horizon)
     };
     advised(py, &request, page, progress)
+}
+
+/// The options of the command line that stand for a system and its start.
+fn options_of((description, q, v): &AnySystem) -> String {
+    let (system, set) = match description {
+        // A system that was made in Python has no file.
+        Description::Equations((_, file, set)) if file.ends_with(".toml") => (file.as_str(), set),
+        Description::Equations((_, _, set)) => ("FILE", set),
+        Description::Name((name, set)) => (name.as_str(), set),
+    };
+    let set: String = set.iter().map(|(name, x)| format!(" --set {name}={x}")).collect();
+    let start = |flag: &str, values: &Option<Vec<f64>>| {
+        let list =
+            values.iter().map(|x| x.iter().map(f64::to_string).collect::<Vec<_>>().join(","));
+        list.map(|list| format!(" {flag} {list}")).collect::<String>()
+    };
+    format!("--system {system}{set}{}{}", start("--q", q), start("--v", v))
 }
 
 /// Advises on a loop around a linear plant.

@@ -11,7 +11,7 @@
 //! prints.
 
 pub use libration_analysis as analysis;
-pub use libration_batch::{Ensemble, Trajectory, checkpoint, ensemble, rl};
+pub use libration_batch::{Ensemble, Trajectory, TrajectoryProgram, checkpoint, ensemble, rl};
 pub use libration_bodies as bodies;
 pub use libration_core::{
     AnyMethod, AnySystem, CatalogError, Elementary, Float, Hamiltonian, ImplicitMethod, Integrator,

@@ -1,6 +1,7 @@
 //! Loops and independent simulations of them.
 
 use libration::analysis::{Imperfections, Plant};
+use libration::catalog::Actuation;
 use libration::control::clock::{Jittered, Rates};
 use libration::control::controller::StateFeedback;
 use libration::control::{Clock, Controller, Feedback, Jitter, Latency, LqrWeights, Schedule};
@@ -10,6 +11,15 @@ use libration::random::{Address, Purpose};
 use libration::system::Oscillator;
 use libration::{AnySystem, State};
 use libration_advise::{Control, Imperfection, Law, Measure, Request, Tolerance};
+use libration_settings::equations::EquationSystem;
+use libration_settings::initial_value_problem::InitialValueProblem;
+
+/// A system of the catalogue under accelerations, from its start.
+pub(crate) fn at_start(system: AnySystem, q: &[f64], v: &[f64]) -> EquationSystem {
+    let (q, v) = (q.to_vec(), v.to_vec());
+    let problem = InitialValueProblem { system, actuation: Actuation::Acceleration, q, v };
+    EquationSystem::of_catalogue(problem).unwrap()
+}
 
 /// A number from `low` to `high`.
 pub(crate) fn drawn(step: u64, low: f64, high: f64) -> f64 {
@@ -26,10 +36,9 @@ pub(crate) struct Case {
 
 impl Case {
     pub(crate) fn request(self) -> Request {
+        let oscillator = AnySystem::Oscillator(Oscillator { omega2: self.omega2 });
+        let tolerance = Tolerance { of: Measure::Trajectory, most: 1e-3 };
         Request {
-            system: AnySystem::Oscillator(Oscillator { omega2: self.omega2 }).into(),
-            q: vec![0.0],
-            v: vec![0.0],
             control: Some(Control {
                 law: Law::Pd(self.gains),
                 period: self.period,
@@ -41,11 +50,8 @@ impl Case {
                 weights: None,
                 deviation: 0.1,
             }),
-            tolerance: Tolerance { of: Measure::Trajectory, most: 1e-3 },
-            horizon: 5.0,
             rollout: [64, 64],
-            map: false,
-            invocation: String::new(),
+            ..Request::new(at_start(oscillator, &[0.0], &[0.0]), tolerance, 5.0)
         }
     }
 

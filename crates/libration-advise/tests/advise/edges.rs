@@ -7,7 +7,7 @@ use libration::system::{DampedOscillator, Kepler, Pendulum};
 use libration_advise as advise;
 use libration_advise::{Control, Imperfection, Law, Measure, Request};
 
-use super::case::Case;
+use super::case::{Case, at_start};
 use super::requests::{advice, with_work};
 use super::steps::free;
 
@@ -90,7 +90,7 @@ fn rare_outbursts_are_told_and_no_contradiction() {
 #[test]
 fn what_is_lost_on_a_long_way_is_not_said_to_be_simulated() {
     let mut far = request(0.001, |control| (control.latency, control.loss) = (0.05, 0.01));
-    (far.system, far.q) = (AnySystem::Pendulum(Pendulum { omega2: 9.81 }).into(), vec![0.5]);
+    far.system = at_start(AnySystem::Pendulum(Pendulum { omega2: 9.81 }), &[0.5], &[0.0]);
     let found = advice(&far).unwrap();
     let combined = &found.looped.as_ref().unwrap().combined;
     assert!(
@@ -160,7 +160,8 @@ fn a_narrow_window_of_instability_ends_a_budget_of_latency() {
         control.law = Law::Pd(Feedback { position: 0.0, velocity: -0.214 });
         control.latency = 1.7;
     });
-    weak.system = AnySystem::DampedOscillator(DampedOscillator { omega2: 10.0, gamma: 0.2 }).into();
+    let damped = AnySystem::DampedOscillator(DampedOscillator { omega2: 10.0, gamma: 0.2 });
+    weak.system = at_start(damped, &[0.0], &[0.0]);
     let limit = |request: &Request| {
         let budgets = with_work(|work| advise::budgets(work, request)).unwrap();
         budgets[0].stable_up_to.unwrap()

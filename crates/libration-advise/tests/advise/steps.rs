@@ -7,7 +7,7 @@ use libration::system::{Kepler, Oscillator, Pendulum};
 use libration::{AnySystem, Hamiltonian, Integrator, Method, State, System};
 use libration_advise::{Measure, Request, Tolerance};
 
-use super::case::Case;
+use super::case::{Case, at_start};
 use super::requests::advice;
 
 pub(crate) fn free(
@@ -18,17 +18,8 @@ pub(crate) fn free(
     most: f64,
     horizon: f64,
 ) -> Request {
-    Request {
-        system: system.into(),
-        q: q.to_vec(),
-        v: v.to_vec(),
-        control: None,
-        tolerance: Tolerance { of, most },
-        horizon,
-        rollout: [64, 64],
-        map: false,
-        invocation: String::new(),
-    }
+    let system = at_start(system, q, v);
+    Request { rollout: [64, 64], ..Request::new(system, Tolerance { of, most }, horizon) }
 }
 
 /// The fewest steps that cover a horizon.

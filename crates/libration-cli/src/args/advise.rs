@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 use libration::catalog;
 use libration::control::{Feedback, Jitter, LqrWeights};
-use libration_advise::{AdvisedSystem, Control, Law, Measure, Request, Tolerance};
+use libration_advise::{Control, Law, Measure, Request, Tolerance};
 use libration_analyze::LatencyOption;
-use libration_settings::initial_value_problem::InitialValueProblem;
+use libration_settings::equations::EquationSystem;
 
 use super::number::{self, period_of_rate, time};
 use super::timing::{feedback, finite, latency, law, weights};
@@ -172,23 +172,36 @@ integrator is accurate enough.";
 pub(super) struct ToleranceArg(pub(super) Tolerance);
 
 impl AdviseArgs {
-    /// Returns the request that the options describe.
-    pub(crate) fn request(&self) -> Result<Request, Failure> {
-        let Some(system) = &self.system else {
+    /// Returns the options of the system and its start; the operating point of a loop is the origin by default.
+    ///
+    /// # Errors
+    /// If there are none, or if `--feedback` is given for a system with several degrees of freedom.
+    pub(crate) fn system_and_start(&self) -> Result<SystemArgs, Failure> {
+        let Some(mut options) = self.system.clone() else {
             return Err(Failure::usage(
                 "no request is given; expected --config FILE, --system NAME or --plant FILE, and their options",
             ));
         };
-        let InitialValueProblem { system, actuation, q, v } = {
-            let mut given = system.clone();
-            one_degree_of_freedom(given.system.as_deref().unwrap_or_default(), self.feedback)?;
-            // The operating point of a loop is the origin by default.
-            if self.feedback.is_some() {
-                given.q.get_or_insert_with(number::Coordinates::origin);
-                given.v.get_or_insert_with(number::Coordinates::origin);
-            }
-            given.resolve()?
-        };
+        one_degree_of_freedom(options.system.as_deref().unwrap_or_default(), self.feedback)?;
+        if self.feedback.is_some() && options.is_of_catalogue() {
+            options.q.get_or_insert_with(number::Coordinates::origin);
+            options.v.get_or_insert_with(number::Coordinates::origin);
+        }
+        Ok(options)
+    }
+
+    /// Returns the request about a system, which these options describe.
+    pub(crate) fn request(
+        &self,
+        system: EquationSystem,
+        options: &SystemArgs,
+    ) -> Result<Request, Failure> {
+        let is_of_catalogue = system.twin.is_some();
+        if !is_of_catalogue && (self.feedback.is_some() || self.period().is_some()) {
+            return Err(Failure::usage(
+                "--feedback and --period are given without a loop; a loop around a file of equations takes --lqr or --gain",
+            ));
+        }
         let control = self.feedback.map(|gains| Control {
             law: Law::Pd(gains),
             period: self.period().unwrap_or(0.01),
@@ -201,15 +214,9 @@ impl AdviseArgs {
             deviation: self.deviation,
         });
         self.with_timing(Request {
-            system: AdvisedSystem::Catalogued { system, actuation },
-            q,
-            v,
             control,
-            tolerance: self.tolerance.0,
-            horizon: self.horizon,
-            rollout: Request::ROLLOUT,
-            map: false,
-            invocation: String::new(),
+            options: (!is_of_catalogue).then(|| options.words()),
+            ..Request::new(system, self.tolerance.0, self.horizon)
         })
     }
 

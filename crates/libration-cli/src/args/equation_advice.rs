@@ -1,8 +1,5 @@
 //! Requests of `advise` about systems by equations.
 
-use libration_advise::Request;
-use libration_settings::equations::EquationSystem;
-
 use super::{AdviseArgs, SystemArgs};
 use crate::error::Failure;
 
@@ -27,16 +24,5 @@ impl AdviseArgs {
             ))),
             None => Ok(()),
         }
-    }
-
-    /// Returns the request for a simulation of a system by equations.
-    pub(crate) fn equation_request(&self, system: EquationSystem) -> Result<Request, Failure> {
-        if self.feedback.is_some() || self.period().is_some() {
-            return Err(Failure::usage(
-                "--feedback and --period are given without a loop; a loop around a file of equations takes --lqr or --gain",
-            ));
-        }
-        let options = self.system.as_ref().map(SystemArgs::words).unwrap_or_default();
-        self.with_timing(Request::of_equations(system, options, self.tolerance.0, self.horizon))
     }
 }

@@ -116,6 +116,11 @@ impl SystemArgs {
         self.system.as_deref().filter(|system| is_file(system)).map(Path::new)
     }
 
+    /// Whether the system is one of the catalogue, by its name.
+    pub(crate) fn is_of_catalogue(&self) -> bool {
+        self.file().is_none() && self.force.is_empty()
+    }
+
     /// The parameters of `--set` for a system by equations.
     ///
     /// # Errors

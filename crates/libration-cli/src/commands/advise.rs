@@ -107,10 +107,10 @@ fn load_request(args: &AdviseArgs, quiet: bool) -> Result<(Request, RecordNotes)
             })?;
             args.with_timing(request)?
         }
-        None => match args.system_options().and_then(equation_file::system) {
-            Some(system) => args.equation_request(system?)?,
-            None => args.request()?,
-        },
+        None => {
+            let options = args.system_and_start()?;
+            args.request(equation_file::any_system(&options)?, &options)?
+        }
     };
     request.map = args.page.is_some();
     request.invocation = command_line();

@@ -20,13 +20,14 @@ pub(super) fn read(path: &Path, set: &[(String, f64)]) -> Result<EquationSystem,
 
 /// The system of equations of `--system FILE` or `--force`; none of the catalogue.
 pub(super) fn system(options: &SystemArgs) -> Option<Result<EquationSystem, Failure>> {
-    let is_of_equations = options.file().is_some() || !options.force.is_empty();
-    if let Some(error) = is_of_equations.then(|| options.equation_parameters().err()).flatten() {
+    if options.is_of_catalogue() {
+        return None;
+    }
+    if let Some(error) = options.equation_parameters().err() {
         return Some(Err(error));
     }
     let system = match options.file() {
         Some(file) => read(file, &options.set),
-        None if options.force.is_empty() => return None,
         None => by_forces(options),
     };
     Some(system.and_then(|mut system| {

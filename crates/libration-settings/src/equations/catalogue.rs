@@ -2,6 +2,7 @@
 
 use libration::Method;
 use libration::equations::{Definitions, EquationError, Equations};
+use libration::integrator::Exact;
 
 use super::{EquationSystem, Twin, named_states};
 use crate::initial_value_problem::InitialValueProblem;
@@ -58,5 +59,20 @@ impl EquationSystem {
     /// Whether all accelerations are linear in positions and velocities.
     pub fn is_linear(&self) -> bool {
         self.equations.polynomial_degree().is_some_and(|degree| degree <= 1)
+    }
+
+    /// The largest absolute eigenvalue of a linear system, in 1/s, by which it has [exact](Exact::of_angle) steps; none of others.
+    pub fn fastest_rate(&self) -> Option<f64> {
+        if !self.is_linear() {
+            return None;
+        }
+        let dynamics = self.equations.dynamics();
+        let degrees = dynamics.degrees();
+        let mut accelerations = dynamics.accelerations().on::<f64>();
+        let constant: Vec<f64> = accelerations.run(&[]).collect();
+        Some(Exact::fastest(2 * degrees, |state| {
+            let rates = accelerations.run(state).zip(&constant).map(|(a, constant)| a - constant);
+            state[degrees..].iter().copied().chain(rates).collect()
+        }))
     }
 }
