@@ -1,10 +1,8 @@
 //! Ensembles under implicit steps.
 
-use libration_batch::ensemble::{
-    BatchFloat, EnsembleError, Execution, InstructionSet, dynamics_of,
-};
+use libration_batch::ensemble::{AnyEnsemble, Execution, InstructionSet, dynamics_of};
 use libration_core::system::{HenonHeiles, Oscillator};
-use libration_core::{AnySystem, ImplicitMethod};
+use libration_core::{AnySystem, ImplicitMethod, Method};
 use libration_equations::StepProgram;
 
 #[test]
@@ -16,9 +14,9 @@ fn implicit_steps_have_the_bits_of_the_program_alone_in_every_lane() {
     for set in InstructionSet::available() {
         let execution = Execution::serial().instructions(set).unwrap();
         for method in ImplicitMethod::ALL {
-            let all = f64::program_ensemble(&dynamics, len, execution.clone(), &start);
+            let all = AnyEnsemble::<f64>::new(&dynamics, None, len, execution.clone(), start);
             let mut all = all.unwrap();
-            all.advance_implicit(method, dt, steps).unwrap();
+            all.advance(method, dt, steps);
             let step = StepProgram::implicit(method, &dynamics);
             let mut alone = step.program().on::<f64>();
             for n in 0..len {
@@ -34,9 +32,19 @@ fn implicit_steps_have_the_bits_of_the_program_alone_in_every_lane() {
 }
 
 #[test]
-fn compiled_kernels_refuse_implicit_steps() {
+fn implicit_steps_of_an_oscillator_are_those_of_its_program() {
     let oscillator = AnySystem::Oscillator(Oscillator { omega2: 1.0 });
-    let mut all = f64::ensemble(oscillator, 1, 2, Execution::serial(), &|_, _| 1.0).unwrap();
-    let refused = all.advance_implicit(ImplicitMethod::StablePd, 0.1, 1);
-    assert_eq!(refused, Err(EnsembleError::Implicit { method: "stable-pd" }));
+    let dynamics = dynamics_of(oscillator, 3).unwrap();
+    let start = |n: usize, i: usize| 0.1 * n as f64 + i as f64;
+    let positions = |twin| {
+        let all = AnyEnsemble::<f64>::new(&dynamics, twin, 5, Execution::serial(), start);
+        let mut all = all.unwrap();
+        // Kernels, a program, and kernels again.
+        all.advance(Method::Leapfrog, 0.1, 3);
+        all.advance(ImplicitMethod::StablePd, 0.1, 3);
+        all.advance(Method::Rk4, 0.1, 3);
+        assert_eq!(all.step(), 9);
+        [0, 1, 2].map(|i| all.q(i).unwrap().to_vec())
+    };
+    assert_eq!(positions(Some(oscillator)), positions(None));
 }

@@ -37,8 +37,8 @@ impl Threads {
 }
 
 enum AnyTrajectories {
-    F32(Box<dyn AnyEnsemble<f32>>),
-    F64(Box<dyn AnyEnsemble<f64>>),
+    F32(AnyEnsemble<f32>),
+    F64(AnyEnsemble<f64>),
 }
 
 /// Evaluates an expression for trajectories of either float type.
@@ -81,10 +81,10 @@ impl Trajectories {
         let (dynamics, twin) = (system.equations.dynamics(), system.twin.map(|twin| twin.system));
         let ensemble = if single {
             let start = |n, i| of(n, i) as f32;
-            let all = f32::ensemble_for(method.into(), dynamics, twin, len, execution, &start);
+            let all = AnyEnsemble::new(dynamics, twin, len, execution, start);
             AnyTrajectories::F32(all.map_err(refused)?)
         } else {
-            let all = f64::ensemble_for(method.into(), dynamics, twin, len, execution, &of);
+            let all = AnyEnsemble::new(dynamics, twin, len, execution, of);
             AnyTrajectories::F64(all.map_err(refused)?)
         };
         let ensemble = CheckedMutex::new((ensemble, threads));
@@ -119,9 +119,9 @@ impl Trajectories {
 
     /// Returns positions and velocities, `(len, dimension)` each.
     fn _states<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyAny>; 2]> {
-        fn states<'a, 'py, T: Number>(
+        fn states<'a, 'py, T: Number + BatchFloat>(
             py: Python<'py>,
-            all: &'a dyn AnyEnsemble<T>,
+            all: &'a AnyEnsemble<T>,
         ) -> PyResult<[Bound<'py, PyAny>; 2]> {
             let [len, dimension] = [all.len(), all.dimension()];
             let array = |plane: &dyn Fn(usize) -> Option<&'a [T]>| -> PyResult<_> {
@@ -137,17 +137,17 @@ impl Trajectories {
             Ok([array(&|i| all.q(i))?, array(&|i| all.v(i))?])
         }
         let inside = self.ensemble.lock(py)?;
-        with_all!(&inside.0, all => states(py, &**all))
+        with_all!(&inside.0, all => states(py, all))
     }
 
     /// Returns the energies per unit mass, `(len,)`, in the unit of a velocity squared.
     fn _energies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        fn energies<T: Number>(all: &dyn AnyEnsemble<T>) -> Vec<T> {
+        fn energies<T: Number + BatchFloat>(all: &AnyEnsemble<T>) -> Vec<T> {
             all.energies().unwrap_or_else(|| vec![T::from_f64(f64::NAN); all.len()])
         }
         Ok(match &self.ensemble.lock(py)?.0 {
-            AnyTrajectories::F32(all) => PyArray1::from_vec(py, energies(&**all)).into_any(),
-            AnyTrajectories::F64(all) => PyArray1::from_vec(py, energies(&**all)).into_any(),
+            AnyTrajectories::F32(all) => PyArray1::from_vec(py, energies(all)).into_any(),
+            AnyTrajectories::F64(all) => PyArray1::from_vec(py, energies(all)).into_any(),
         })
     }
 }

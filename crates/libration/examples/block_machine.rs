@@ -8,7 +8,7 @@
 
 use std::time::Instant;
 
-use libration::ensemble::{All, BatchFloat, Ensemble, EnsembleError, Execution};
+use libration::ensemble::{All, AnyEnsemble, BatchFloat, Ensemble, EnsembleError, Execution};
 use libration::equations::Dynamics;
 use libration::integrator::{Rk4, SymplecticEuler, VelocityVerlet};
 use libration::system::{Oscillator, Pendulum};
@@ -63,7 +63,8 @@ where
     let state = |n| State { q: [start(n, 0)], v: [start(n, 1)] };
     let dynamics = Dynamics::of(&model, None);
     let mut compiled = Ensemble::from_fn(TRAJECTORIES, Execution::serial(), state)?;
-    let mut machine = T::program_ensemble(&dynamics, TRAJECTORIES, Execution::serial(), &start)?;
+    let mut machine =
+        AnyEnsemble::<T>::new(&dynamics, None, TRAJECTORIES, Execution::serial(), start)?;
     let mut ratios: Vec<f64> = Vec::new();
     for _ in 0..ROUNDS {
         let begun = Instant::now();

@@ -44,21 +44,21 @@ fn run<T: BatchFloat>(
         T::from_f64(coordinate * (1.0 + 1e-3 * n as f64 / trajectories as f64))
     };
     let execution = Execution::serial().instructions(set)?;
-    let mut all = T::ensemble(system, dimension, trajectories, execution, &start)?;
-    let before = first_energy(&*all);
+    let mut all = AnyEnsemble::<T>::of_system(system, dimension, trajectories, execution, start)?;
+    let before = first_energy(&all);
     all.advance(method, T::from_f64(0.01), steps);
     println!(
         "{trajectories} trajectories, {steps} steps of {} with {}",
         method.title(),
         set.name()
     );
-    if let (Some(before), Some(after)) = (before, first_energy(&*all)) {
+    if let (Some(before), Some(after)) = (before, first_energy(&all)) {
         println!("energy of the first before and after: {before} and {after} J/kg");
     }
     Ok(())
 }
 
 /// The energy of the first trajectory.
-fn first_energy<T: BatchFloat>(all: &dyn AnyEnsemble<T>) -> Option<f64> {
+fn first_energy<T: BatchFloat>(all: &AnyEnsemble<T>) -> Option<f64> {
     all.energies()?.first().copied().map(T::to_f64)
 }

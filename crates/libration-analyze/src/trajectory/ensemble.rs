@@ -66,7 +66,7 @@ macro_rules! vectors {
                 degrees: usize,
                 ensemble: &EnsembleOptions,
             ) -> Result<(), TrajectoryError> {
-                let bytes = <$float>::ensemble_bytes(degrees, ensemble.count);
+                let bytes = AnyEnsemble::<$float>::bytes(degrees, ensemble.count);
                 InsufficientMemory::check(bytes).map_err(TrajectoryError::Memory)
             }
         }
@@ -129,9 +129,9 @@ fn run<S: BatchFloat + Number>(
     let start = |n: usize, i: usize| S::from_f64(scale(n, i) * first[i]);
     let (count, execution) = (ensemble.count, ensemble.execution()?);
     let twin = system.twin.map(|twin| twin.system);
-    let mut all = S::ensemble_for(method, dynamics, twin, count, execution, &start)?;
+    let mut all = AnyEnsemble::<S>::new(dynamics, twin, count, execution, start)?;
     let run = EnsembleRun { method, dt: *dt, steps: *steps, every: *every, kept: &kept };
-    let (lost, residual) = run.record(&mut *all, dynamics, rows, monitor)?;
+    let (lost, residual) = run.record(&mut all, dynamics, rows, monitor)?;
     Ok(Outcome::of::<S>(request, &lost).with_residual(residual))
 }
 
@@ -150,9 +150,9 @@ struct EnsembleRun<'a> {
 impl EnsembleRun<'_> {
     /// Simulates, gives the rows of kept steps, and returns the trajectories that are not finite in the end, and what iterations left in the
     /// steps after the kept ones.
-    fn record<S: Number>(
+    fn record<S: BatchFloat + Number>(
         &self,
-        all: &mut dyn AnyEnsemble<S>,
+        all: &mut AnyEnsemble<S>,
         dynamics: &Dynamics,
         rows: &mut dyn Rows<S>,
         monitor: &dyn Monitor,
@@ -213,10 +213,7 @@ impl EnsembleRun<'_> {
             }
             let to_next_row = (every - step % every).min(steps - step);
             let (dt, steps) = (S::from_f64(dt), to_next_row.min(at_once));
-            match method {
-                AnyMethod::Explicit(method) => all.advance(method, dt, steps),
-                AnyMethod::Implicit(method) => all.advance_implicit(method, dt, steps)?,
-            }
+            all.advance(method, dt, steps);
             monitor.on_step(all.step());
         }
     }

@@ -37,12 +37,6 @@ pub enum EnsembleError {
         /// The number of trajectories.
         len: usize,
     },
-    /// Kernels are compiled for explicit methods.
-    #[error("implicit steps (`{method}`) require an ensemble by a program")]
-    Implicit {
-        /// The name of the method.
-        method: &'static str,
-    },
     /// A step must take time.
     #[error(
         "the time step is {dt:?} s; it must be a finite number above 0, in the float type as well"

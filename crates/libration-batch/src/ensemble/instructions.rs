@@ -1,5 +1,7 @@
 //! The instruction sets that a kernel is compiled for.
 
+use core::marker::PhantomData;
+
 use pulp::{Simd, WithSimd};
 
 /// An instruction set. The bits of a result do not depend on it.
@@ -84,25 +86,38 @@ pub trait Loop {
 
     /// Does the work.
     fn run(self) -> Self::Output;
+
+    /// Does it on vectors of so many bytes, a constant in the code of each instruction set.
+    #[inline(always)]
+    fn run_on(self, vector_bytes: usize) -> Self::Output
+    where
+        Self: Sized,
+    {
+        let _ = vector_bytes;
+        self.run()
+    }
 }
 
-/// A [`Loop`], as `pulp` takes it.
-struct Vectorized<L>(L);
+/// A [`Loop`] and its instruction set, as `pulp` takes them.
+struct Vectorized<L, I>(L, PhantomData<I>);
 
-impl<L: Loop> WithSimd for Vectorized<L> {
+impl<L: Loop, I: Target> WithSimd for Vectorized<L, I> {
     type Output = L::Output;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> L::Output {
-        self.0.run()
+        self.0.run_on(I::BYTES)
     }
 }
 
-impl<L: Loop> Targeted for Vectorized<L> {
+/// A [`Loop`] whose instruction set is known when the program runs.
+struct Dispatched<L>(L);
+
+impl<L: Loop> Targeted for Dispatched<L> {
     type Output = L::Output;
 
     fn on<I: Target>(self, target: I) -> L::Output {
-        target.run(self)
+        target.vectorize(self.0)
     }
 }
 
@@ -119,7 +134,7 @@ pub(crate) trait Target: Copy + Send + Sync {
     /// Runs a loop, compiled for this instruction set.
     #[inline(always)]
     fn vectorize<L: Loop>(self, work: L) -> L::Output {
-        self.run(Vectorized(work))
+        self.run(Vectorized(work, PhantomData::<Self>))
     }
 }
 
@@ -181,7 +196,7 @@ impl InstructionSet {
     /// Runs a loop of the caller, compiled for this instruction set, or for the baseline where the
     /// processor lacks it.
     pub fn vectorize<L: Loop>(self, work: L) -> L::Output {
-        self.run(Vectorized(work))
+        self.run(Dispatched(work))
     }
 
     /// Runs `work` on this instruction set, or on the baseline where the processor lacks it or the work is compiled for no

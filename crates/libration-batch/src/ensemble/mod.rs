@@ -16,11 +16,11 @@ mod assign;
 mod batch_float;
 mod buffer;
 mod checkpoint;
+#[cfg(not(test))]
+mod compiled_oscillator;
 mod error;
 mod execution;
 pub(crate) mod instructions;
-#[cfg(not(test))]
-mod isotropic;
 #[cfg(not(test))]
 mod iterated_program;
 pub(crate) mod kernel;
@@ -28,8 +28,6 @@ mod loops;
 mod memory;
 mod observer;
 mod planes;
-#[cfg(not(test))]
-mod program_ensemble;
 mod run;
 pub(crate) mod stream;
 
@@ -38,10 +36,10 @@ use core::marker::PhantomData;
 use bytemuck::Pod;
 
 #[cfg(not(test))]
-pub use any_ensemble::AnyEnsemble;
+pub use any_ensemble::{AnyEnsemble, dynamics_of};
 pub use assign::{All, Assign, PerTrajectory};
 #[cfg(not(test))]
-pub use batch_float::{BatchFloat, dynamics_of};
+pub use batch_float::BatchFloat;
 pub use buffer::{Buffer, Pages};
 pub use error::EnsembleError;
 pub use execution::{Execution, MOST_THREADS, has_global_threads};
@@ -53,8 +51,6 @@ pub use stream::{stream, stream_repeatedly};
 
 use libration_core::{Float, Integrator, State, System};
 use planes::{Planes, Share};
-#[cfg(not(test))]
-use program_ensemble::ProgramEnsemble;
 use run::Run;
 
 /// The most trajectories, and the fewest but for the last ones, that an observer sees from the first step to the
@@ -183,15 +179,7 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
     ) -> Result<(), EnsembleError> {
         self.check::<Sys>(systems, dt)?;
         let range = self.step..self.step.saturating_add(steps);
-        let instructions = self.execution.instruction_set();
-        let count = self.threads_for::<_, Sys>(method, steps);
-        let shares = shares(self.planes.share(), count, GRAIN);
-        self.execution.each(shares, |share| {
-            let steps = range.clone();
-            let system = PhantomData::<(T, Sys)>;
-            let watch = None::<(u64, &mut NoObserver)>;
-            instructions.run(Run { share, method, systems, dt, steps, watch, system });
-        });
+        advance_share(self.planes.share(), &self.execution, method, systems, dt, &range);
         self.step = range.end;
         Ok(())
     }
@@ -242,11 +230,7 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
 
     /// The number of threads for so many steps of `M` on `Sys`.
     fn threads_for<M: Integrator, Sys: System<T, D>>(&self, _: M, steps: u64) -> usize {
-        // What holds more values does more with them: symplectic Euler on an oscillator counts as one,
-        // RK4 on a pendulum as 32 (it takes 60 times as long).
-        let weight = const { (M::REGISTERS.div_ceil(4) * Sys::REGISTERS.div_ceil(2)) as u64 };
-        let each = steps.saturating_mul(weight.max(1)).saturating_add(MOVED * D as u64);
-        self.execution.threads_for((self.len() as u64).saturating_mul(each))
+        threads_for::<T, M, Sys, D>(&self.execution, self.len(), steps)
     }
 
     fn check<Sys>(
@@ -261,6 +245,43 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         }
         Ok(())
     }
+}
+
+/// Takes the steps of a range with all trajectories of a share, divided among threads.
+fn advance_share<
+    T: Float,
+    M: Integrator,
+    Sys: System<T, D> + Copy + Send + Sync,
+    const D: usize,
+>(
+    share: Share<'_, T, D>,
+    execution: &Execution,
+    method: M,
+    systems: impl Assign<Sys>,
+    dt: impl Assign<T>,
+    range: &core::ops::Range<u64>,
+) {
+    let count = threads_for::<T, M, Sys, D>(execution, share.len(), range.end - range.start);
+    execution.each(shares(share, count, GRAIN), |share| {
+        let steps = range.clone();
+        let system = PhantomData::<(T, Sys)>;
+        let watch = None::<(u64, &mut NoObserver)>;
+        let run = Run { share, method, systems, dt, steps, watch, system };
+        execution.instruction_set().run(run);
+    });
+}
+
+/// The number of threads for so many steps of `M` on `Sys` with `len` trajectories.
+fn threads_for<T: Float, M: Integrator, Sys: System<T, D>, const D: usize>(
+    execution: &Execution,
+    len: usize,
+    steps: u64,
+) -> usize {
+    // What holds more values does more with them: symplectic Euler on an oscillator counts as one,
+    // RK4 on a pendulum as 32 (it takes 60 times as long).
+    let weight = const { (M::REGISTERS.div_ceil(4) * Sys::REGISTERS.div_ceil(2)) as u64 };
+    let each = steps.saturating_mul(weight.max(1)).saturating_add(MOVED * D as u64);
+    execution.threads_for((len as u64).saturating_mul(each))
 }
 
 /// Trajectories of an observer: the same for every instruction set and number of threads, so that what

@@ -6,7 +6,7 @@ use libration_core::{Float, Integrator, System};
 use pulp::{Simd, WithSimd};
 
 use super::assign::Assign;
-use super::instructions::{Target, Targeted};
+use super::instructions::{Baseline, Target, Targeted};
 use super::kernel::{Advance, Pass};
 use super::planes::Share;
 use super::{Lanes, Observer};
@@ -33,6 +33,9 @@ const FEW: usize = 4;
 
 /// Steps of a pass up to which the memory is the limit.
 const SHORT: u64 = 2;
+
+/// Registers of a step up to which that is so.
+const LIGHT: usize = 8;
 
 /// The width of the blocks in which a kernel runs fastest, as measured.
 ///
@@ -115,8 +118,8 @@ where
     /// Block after block, each from the first step to the last.
     fn blocks<I: Target, const W: usize, const NARROW: usize>(mut self, target: I) {
         let steps = self.steps.end - self.steps.start;
-        // Where somebody watches, no such kernel is made.
-        if const { !O::WATCHES } && steps <= SHORT {
+        // No such kernel is made where somebody watches, nor where a step takes longer than the memory.
+        if const { !O::WATCHES && M::REGISTERS <= LIGHT } && steps <= SHORT {
             let share = self.share.split_off(self.share.len() / NARROW * NARROW);
             let (method, systems, dt) = (self.method, self.systems, self.dt);
             target.run(Pass::<T, M, A, C, Sys, D, NARROW> {
@@ -133,8 +136,9 @@ where
             self.block::<I, W>(target, block);
         }
         if self.share.len() == 1 {
+            // A lone one has no vectors: one kernel serves all instruction sets.
             let block = self.share.split_off(1);
-            self.block::<I, 1>(target, block);
+            self.block::<Baseline, 1>(Baseline, block);
         }
     }
 

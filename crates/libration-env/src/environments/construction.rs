@@ -8,7 +8,7 @@ use libration::rl::start::UniformStart;
 use libration::rl::{
     Environment, EnvironmentError, Environments, ProgramEnvironment, ProgramEnvironments,
 };
-use libration::{AnySystem, Elementary, Float, Model, State, System, rl};
+use libration::{AnySystem, Elementary, Float, Method, Model, State, System, rl};
 
 use super::{AnyEnvironments, EnvironmentSettings, Task};
 
@@ -46,8 +46,12 @@ macro_rules! environment_floats {
             ) -> Result<Box<dyn AnyEnvironments<Self>>, EnvironmentError> {
                 settings.check::<$float>()?;
                 // Ideal environments of the two tasks that most begin with are 1.7 to 3 times as fast by compiled kernels. All
-                // others are by programs, which with noise reach half of that speed.
+                // others are by programs, which with noise reach half of that speed; so are steps of published tables, over whose
+                // coefficients a kernel loops.
                 match (settings.system.any(), settings.task) {
+                    _ if matches!(settings.method, Method::Splitting(_) | Method::RungeKutta(_)) => {
+                        Self::by_program(settings.by_program(), which)
+                    }
                     (AnySystem::Oscillator(model), Task::Regulate(task)) if settings.noise.is_none() => {
                         settings.compiled(Model::<1>::on::<$float>(&model), task, which)
                     }

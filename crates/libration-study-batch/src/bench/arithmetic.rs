@@ -32,42 +32,60 @@ impl Mix {
         self.multiplications + self.additions
     }
 
-    /// Runs so many rounds on `width` lanes; what comes out is of no use, but must not be lost.
-    pub(crate) fn run<T: Float>(self, set: InstructionSet, width: usize, rounds: u64) -> f64 {
+    /// Runs so many rounds on `vectors` vectors of lanes; what comes out is of no use, but must not be lost.
+    pub(crate) fn run<T: Float>(self, set: InstructionSet, vectors: usize, rounds: u64) -> f64 {
         match (self.multiplications, self.additions) {
-            (3, 2) => on_width::<T, 3, 2>(set, width, rounds),
-            (4, 3) => on_width::<T, 4, 3>(set, width, rounds),
-            (2, 3) => on_width::<T, 2, 3>(set, width, rounds),
-            _ => on_width::<T, 1, 1>(set, width, rounds),
+            (3, 2) => on_vectors::<T, 3, 2>(set, vectors, rounds),
+            (4, 3) => on_vectors::<T, 4, 3>(set, vectors, rounds),
+            (2, 3) => on_vectors::<T, 2, 3>(set, vectors, rounds),
+            _ => on_vectors::<T, 1, 1>(set, vectors, rounds),
         }
     }
 }
 
-/// The widths, in lanes, at which a mix may be fastest: with enough vectors to hide the latency of an operation,
-/// and no more than the registers hold beside what is multiplied by and added.
-pub(crate) fn widths<T>(set: InstructionSet) -> impl Iterator<Item = usize> {
-    let lanes = set.vector_bytes() / size_of::<T>();
-    [12, 14].into_iter().map(move |vectors| vectors * lanes)
-}
+/// The numbers of vectors at which a mix may be fastest: enough to hide the latency of an operation, and no more than the registers hold
+/// beside what is multiplied by and added.
+pub(crate) const VECTORS: [usize; 2] = [12, 14];
 
-/// One value for each of `L·V` lanes, which is multiplied `M` times and added to `A` times in every round. The operands
-/// come as `L` equal numbers.
-struct Independent<T, const M: usize, const A: usize, const L: usize, const V: usize> {
-    factor: [T; L],
-    term: [T; L],
+/// Independent values, which are multiplied `M` times and added to `A` times in every round: one for each lane of `N` vectors.
+struct Independent<T, const M: usize, const A: usize, const N: usize> {
+    factor: T,
+    term: T,
     rounds: u64,
 }
 
-impl<T: Float, const M: usize, const A: usize, const L: usize, const V: usize> Loop
-    for Independent<T, M, A, L, V>
-{
+impl<T: Float, const M: usize, const A: usize, const N: usize> Loop for Independent<T, M, A, N> {
     type Output = f64;
 
     #[inline(always)]
     fn run(self) -> f64 {
-        let Independent { factor, term, rounds } = self;
+        self.lanes::<1, N>()
+    }
+
+    #[inline(always)]
+    fn run_on(self, vector_bytes: usize) -> f64 {
+        // One operand for all lanes becomes a vector by itself, but not where two lanes are one.
+        match (N, vector_bytes / size_of::<T>()) {
+            (12, 2) => self.lanes::<2, 12>(),
+            (14, 2) => self.lanes::<2, 14>(),
+            (12, 4) => self.lanes::<1, 48>(),
+            (14, 4) => self.lanes::<1, 56>(),
+            (12, 8) => self.lanes::<1, 96>(),
+            (14, 8) => self.lanes::<1, 112>(),
+            (12, 16) => self.lanes::<1, 192>(),
+            (14, 16) => self.lanes::<1, 224>(),
+            _ => f64::NAN,
+        }
+    }
+}
+
+impl<T: Float, const M: usize, const A: usize, const N: usize> Independent<T, M, A, N> {
+    /// The rounds on `L·V` lanes, whose operands come as `L` equal numbers.
+    #[inline(always)]
+    fn lanes<const L: usize, const V: usize>(self) -> f64 {
+        let (factor, term) = ([self.factor; L], [self.term; L]);
         let mut values = [[T::one(); L]; V];
-        for _ in 0..rounds {
+        for _ in 0..self.rounds {
             for vector in &mut values {
                 for l in 0..L {
                     for i in 0..const { if M > A { M } else { A } } {
@@ -81,29 +99,18 @@ impl<T: Float, const M: usize, const A: usize, const L: usize, const V: usize> L
     }
 }
 
-fn on_width<T: Float, const M: usize, const A: usize>(
+fn on_vectors<T: Float, const M: usize, const A: usize>(
     set: InstructionSet,
-    width: usize,
+    vectors: usize,
     rounds: u64,
 ) -> f64 {
     // Numbers that stay what they are, but that the compiler does not know.
-    let factor = std::hint::black_box(T::one());
-    let term = std::hint::black_box(T::zero());
-    macro_rules! widths {
-        ($($w:literal = $l:literal x $v:literal)*) => {
-            match width {
-                $($w => set.vectorize(Independent::<T, M, A, $l, $v> {
-                    factor: [factor; $l],
-                    term: [term; $l],
-                    rounds,
-                }),)*
-                _ => f64::NAN,
-            }
-        };
+    let (factor, term) = (std::hint::black_box(T::one()), std::hint::black_box(T::zero()));
+    match vectors {
+        12 => set.vectorize(Independent::<T, M, A, 12> { factor, term, rounds }),
+        14 => set.vectorize(Independent::<T, M, A, 14> { factor, term, rounds }),
+        _ => f64::NAN,
     }
-    // One operand for all lanes becomes a vector by itself, but not where two lanes are one.
-    widths!(24 = 2 x 12  28 = 2 x 14  48 = 1 x 48  56 = 1 x 56
-        96 = 1 x 96  112 = 1 x 112  192 = 1 x 192  224 = 1 x 224)
 }
 
 #[cfg(test)]
@@ -128,15 +135,22 @@ mod tests {
     }
 
     #[test]
-    fn every_width_that_is_offered_can_be_run() {
+    fn every_number_of_vectors_that_is_offered_can_be_run() {
         for set in InstructionSet::available() {
             for mix in Mix::KNOWN {
-                // All values stay 1, and there is one for each lane.
-                for width in widths::<f32>(set) {
-                    assert_eq!(mix.run::<f32>(set, width, 10), width as f64, "{set:?} {mix:?}");
-                }
-                for width in widths::<f64>(set) {
-                    assert_eq!(mix.run::<f64>(set, width, 10), width as f64, "{set:?} {mix:?}");
+                for vectors in VECTORS {
+                    // All values stay 1, and there is one for each lane.
+                    let bytes = vectors * set.vector_bytes();
+                    assert_eq!(
+                        mix.run::<f32>(set, vectors, 10),
+                        (bytes / 4) as f64,
+                        "{set:?} {mix:?}"
+                    );
+                    assert_eq!(
+                        mix.run::<f64>(set, vectors, 10),
+                        (bytes / 8) as f64,
+                        "{set:?} {mix:?}"
+                    );
                 }
             }
         }

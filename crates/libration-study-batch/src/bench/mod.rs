@@ -17,7 +17,7 @@ mod stopwatch;
 mod storage;
 mod task;
 
-pub(crate) use arithmetic::{Mix, widths};
+pub(crate) use arithmetic::{Mix, VECTORS};
 pub(crate) use chain::{CHAIN_LINKS, Chain, Link};
 pub(crate) use faults::{PAGE, count_faults};
 pub(crate) use float::with_float;

@@ -15,10 +15,10 @@ use super::{Bench, Contestant, Task};
 pub(crate) fn oscillators<T: Bench>(
     task: Task,
     execution: &Execution,
-) -> Result<Box<dyn AnyEnsemble<T>>, EnsembleError> {
+) -> Result<AnyEnsemble<T>, EnsembleError> {
     let system = AnySystem::Oscillator(Oscillator { omega2: task.omega2 });
     let start = |n: usize, i: usize| T::from_f64(task.start(n)[i]);
-    T::ensemble(system, 1, task.count, execution.clone(), &start)
+    AnyEnsemble::of_system(system, 1, task.count, execution.clone(), start)
 }
 
 /// A task under `method`, so many steps a pass: steps a second of all trajectories together.

@@ -103,7 +103,7 @@ impl<T: Float> Rung for Scalar<T> {
 
 /// [`Implementation::OneStep`], [`Implementation::Fused`] and [`Implementation::Threads`].
 struct Blocks<T: Bench> {
-    ensemble: Box<dyn AnyEnsemble<T>>,
+    ensemble: AnyEnsemble<T>,
     dt: T,
     fused: bool,
 }

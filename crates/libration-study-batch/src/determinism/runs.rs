@@ -3,7 +3,7 @@
 use libration::control::clock::{Gaussian, Jittered, Skewed};
 use libration::control::controller::StateFeedback;
 use libration::control::{Feedback, Jitter, Latency, Schedule};
-use libration::ensemble::{All, BatchFloat, Execution, Loops, Setup};
+use libration::ensemble::{All, AnyEnsemble, Execution, Loops, Setup};
 use libration::integrator::SymplecticEuler;
 use libration::system::Oscillator;
 use libration::{AnySystem, Method, State};
@@ -45,7 +45,7 @@ pub(super) fn run_plain(
 ) -> Result<Vec<Bits>, StudyError> {
     let system = AnySystem::Oscillator(SPRING);
     let at = |n: usize, i: usize| start(n)[i];
-    let mut all = f32::ensemble(system, 1, count, execution, &at)?;
+    let mut all = AnyEnsemble::<f32>::of_system(system, 1, count, execution, at)?;
     let whole = steps(lab);
     for call in 0..calls {
         let part = whole * (call + 1) / calls - whole * call / calls;

@@ -1,6 +1,6 @@
 //! The study `determinism` of a system of equations.
 
-use libration::ensemble::{BatchFloat, Execution, InstructionSet};
+use libration::ensemble::{AnyEnsemble, BatchFloat, Execution, InstructionSet};
 use libration::equations::StepProgram;
 use libration::{Float, Method};
 use libration_report::Record;
@@ -170,7 +170,7 @@ impl SystemDeterminism<'_> {
     ) -> Result<Vec<Vec<T>>, StudyError> {
         let dynamics = self.system.equations.dynamics();
         let start = |n: usize, i: usize| self.start(n, i);
-        let mut all = T::program_ensemble(dynamics, count, execution, &start)?;
+        let mut all = AnyEnsemble::<T>::new(dynamics, None, count, execution, start)?;
         for call in 0..calls {
             let part = STEPS[1] * (call + 1) / calls - STEPS[1] * call / calls;
             all.advance(method, self.dt(), part);

@@ -9,7 +9,7 @@ use libration::{Method, with_method};
 use libration_report::record::{Record, Table};
 use libration_study::StudyError;
 
-use crate::bench::{Bench, BenchFloat, Contestant, Mix, Rates, stepping, widths, with_float};
+use crate::bench::{Bench, BenchFloat, Contestant, Mix, Rates, VECTORS, stepping, with_float};
 use crate::measurement::{Measurement, judge};
 
 /// Trajectories whose states stay in a cache of the core, in whole blocks of most widths.
@@ -35,22 +35,24 @@ fn bar(method: Method, set: InstructionSet) -> Option<f64> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Peak {
     mix: Mix,
-    /// Lanes at which that loop is fastest.
-    width: usize,
+    /// Vectors at which that loop is fastest, and their lanes.
+    vectors: usize,
+    lanes: usize,
     /// Operations of a step.
     operations: usize,
 }
 
-/// The peak for steps of `flow` on floats of type `T`: the fastest of all widths.
+/// The peak for steps of `flow` on floats of type `T`: the fastest of all numbers of vectors.
 pub(super) fn peak<T: Bench>(
     measurement: &Measurement<'_>,
     flow: &DataFlow,
 ) -> Result<Peak, StudyError> {
     let (set, mix) = (measurement.set(), Mix::of(flow));
     let operations = arithmetic(flow);
-    let offered: Vec<usize> = widths::<T>(set).collect();
-    let peaks = offered.iter().map(|&width| Peak { mix, width, operations });
-    let peaks: Vec<Peak> = peaks.collect();
+    let peaks = VECTORS.map(|vectors| {
+        let lanes = vectors * set.vector_bytes() / size_of::<T>();
+        Peak { mix, vectors, lanes, operations }
+    });
     let mut contestants: Vec<_> = peaks.iter().map(|peak| peak.contestant::<T>(set)).collect();
     let rates = measurement.sweep_rates_of(&mut contestants)?;
     let fastest = rates.iter().zip(peaks).max_by(|a, b| a.0.median().total_cmp(&b.0.median()));
@@ -67,7 +69,7 @@ impl Peak {
     /// Steps a second that this arithmetic amounts to.
     pub(super) fn contestant<T: Bench>(self, set: InstructionSet) -> Contestant<'static> {
         Contestant::new(self.work(), move |times| {
-            black_box(self.mix.run::<T>(set, self.width, times * ROUNDS));
+            black_box(self.mix.run::<T>(set, self.vectors, times * ROUNDS));
         })
     }
 
@@ -77,14 +79,14 @@ impl Peak {
         let (set, threads) = (execution.instruction_set(), execution.thread_count());
         Contestant::new(self.work() * threads as f64, move |times| {
             execution.each(vec![(); threads], |()| {
-                black_box(self.mix.run::<T>(set, self.width, times * ROUNDS));
+                black_box(self.mix.run::<T>(set, self.vectors, times * ROUNDS));
             });
         })
     }
 
     /// Steps in `ROUNDS` rounds.
     fn work(self) -> f64 {
-        let operations = ROUNDS as usize * self.width * self.mix.operations();
+        let operations = ROUNDS as usize * self.lanes * self.mix.operations();
         operations as f64 / self.operations as f64
     }
 

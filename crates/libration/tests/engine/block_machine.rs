@@ -1,6 +1,6 @@
 //! The block machine on systems by equations.
 
-use libration::ensemble::{BatchFloat, Execution, InstructionSet};
+use libration::ensemble::{AnyEnsemble, BatchFloat, Execution, InstructionSet};
 use libration::equations::{Dynamics, StepProgram};
 use libration::{Method, with_method};
 use proptest::prelude::*;
@@ -21,7 +21,8 @@ fn differing<T: BatchFloat>(
 ) -> Vec<String> {
     let degrees = dynamics.degrees();
     let dt = T::from_f64(0.01);
-    let mut all = T::program_ensemble(dynamics, len, execution.clone(), &start::<T>).unwrap();
+    let mut all =
+        AnyEnsemble::<T>::new(dynamics, None, len, execution.clone(), start::<T>).unwrap();
     all.advance(method, dt, 1);
     all.advance(method, dt, steps - 1);
     let step = with_method!(method, |method| StepProgram::new(method, dynamics));

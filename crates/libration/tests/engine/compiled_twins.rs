@@ -1,6 +1,6 @@
 //! Compiled twins of programs.
 
-use libration::ensemble::{BatchFloat, Execution, dynamics_of};
+use libration::ensemble::{AnyEnsemble, Execution, dynamics_of};
 use libration::{AnySystem, Method};
 
 #[test]
@@ -11,8 +11,7 @@ fn compiled_kernels_of_a_twin_change_no_bit_of_any_method() {
     for method in Method::all() {
         let bits = |twin| -> Vec<u64> {
             let execution = Execution::serial();
-            let all = f64::ensemble_for(method.into(), &dynamics, twin, 67, execution, &start);
-            let mut all = all.unwrap();
+            let mut all = AnyEnsemble::<f64>::new(&dynamics, twin, 67, execution, start).unwrap();
             all.advance(method, 0.07, 5);
             let planes = [all.q(0), all.q(1), all.v(0), all.v(1)].map(|plane| plane.unwrap());
             let energies = all.energies().unwrap();

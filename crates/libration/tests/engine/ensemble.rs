@@ -1,8 +1,8 @@
 //! Every lane of an ensemble equals the scalar trajectory, bit for bit.
 
 use libration::ensemble::{
-    All, BatchFloat, Ensemble, EnsembleError, Execution, InstructionSet, Lanes, Observer,
-    PerTrajectory,
+    All, AnyEnsemble, BatchFloat, Ensemble, EnsembleError, Execution, InstructionSet, Lanes,
+    Observer, PerTrajectory,
 };
 use libration::integrator::{Rk4, Splitting, VelocityVerlet};
 use libration::system::{DampedOscillator, Oscillator, Pendulum};
@@ -67,7 +67,8 @@ fn differing<T: BatchFloat>(
     let dimension = *entry.dimensions.start();
     let dt = T::from_f64(0.01);
     let begin = |n, i| start(entry, dimension, n, i);
-    let mut all = T::ensemble(system, dimension, len, execution.clone(), &begin).unwrap();
+    let mut all =
+        AnyEnsemble::<T>::of_system(system, dimension, len, execution.clone(), begin).unwrap();
     // In two parts, so that a start in the middle is seen; so few steps have kernels of their own.
     let few = steps.min(2);
     all.advance(method, dt, few);
