@@ -110,7 +110,7 @@ def own_rates(program, counts, effort):
     command += ["--num-trajectories", ",".join(map(str, counts)), "--dtype", "f32,f64"]
     answer = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
     return {
-        (rate["implementation"], rate["float"], rate["count"]): rate["steps_per_second"]
+        (rate["implementation"], rate["dtype"], rate["count"]): rate["steps_per_second"]
         for rate in answer["rates"]
     }
 
@@ -202,10 +202,10 @@ def main():
             missed += verdict == "MISSED"
             print(f"  {number}  N = {count:<9d} {implementation} over {peer}: {median:7.1f}", end="")
             print(f"  [{low:.1f}, {high:.1f}], wanted {bar}: {verdict}")
-            rows.append(dict(implementation=implementation, peer=peer, float=number, count=count,
+            rows.append(dict(implementation=implementation, peer=peer, dtype=number, count=count,
                              ratio=median, quartiles=[low, high], wanted=bar, most=most))
     if arguments.json:
-        answer = dict(schema="libration.peers/1", cpu=cpu, versions=versions, rounds=arguments.rounds,
+        answer = dict(schema="libration.peers/2", cpu=cpu, versions=versions, rounds=arguments.rounds,
                       rows=rows)
         pathlib.Path(arguments.json).write_text(json.dumps(answer, indent=1) + "\n")
     return 1 if missed else 0

@@ -308,7 +308,7 @@ def own_rates(program, file=None):
         text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     answer = json.loads(text)
     return answer.get("machine", {}).get("cpu", "unknown"), {
-        (rate["task"], rate["environments"], rate["horizon"], rate["threads"]): rate["transitions_per_second"]
+        (rate["task"], rate["num_envs"], rate["horizon"], rate["threads"]): rate["transitions_per_second"]
         for rate in answer["rollouts"]
         # As the peers have it.
         if rate["layout"] == "interleaved"
@@ -426,15 +426,15 @@ def measure(arguments, folder):
         missed += verdict == "MISSED"
         print(f"{median:6.1f}  [{low:.1f}, {high:.1f}], wanted {bar}: {verdict}")
         threads = 1 if name in ALONE else arguments.threads
-        rows.append(dict(peer=name, task=task, environments=environments, horizon=horizon, threads=threads,
+        rows.append(dict(peer=name, task=task, num_envs=environments, horizon=horizon, threads=threads,
                          ratio=median, quartiles=[low, high], wanted=bar))
     if arguments.json:
         listed = [
-            dict(task=task, environments=environments, horizon=horizon, name=name, way=way,
+            dict(task=task, num_envs=environments, horizon=horizon, name=name, way=way,
                  transitions_per_second=statistics.median(values))
             for (task, environments, horizon, name, way), values in table
         ]
-        answer = dict(schema="libration.rollouts/1", cpu=cpu, versions=versions, rounds=arguments.rounds,
+        answer = dict(schema="libration.rollouts/2", cpu=cpu, versions=versions, rounds=arguments.rounds,
                       threads=arguments.threads, rates=listed, rows=rows, absent=absent)
         pathlib.Path(arguments.json).write_text(json.dumps(answer, indent=1) + "\n")
     return 1 if missed else 0

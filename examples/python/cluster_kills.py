@@ -23,11 +23,11 @@ import libration
 import libration.cluster
 
 SETTINGS = {
-    "environments": 96,
+    "num_envs": 96,
     "steps": 3000,
     "dt": 1e-4,
     "substeps": 400,
-    "chunk": {"environments": 8, "steps": 100},
+    "chunk": {"num_envs": 8, "steps": 100},
     "noise": {"jitter": 0.05},
 }
 NODE = {"num_cpus": 1, "object_store_memory": 80 * 2**20}

@@ -178,7 +178,7 @@ class _Written:
             self._manifests[path] += len(lines)
             for line in map(json.loads, lines.splitlines()):
                 if "data" in line:
-                    self._total = line["data"]["environments"] * line["data"]["steps"]
+                    self._total = line["data"]["num_envs"] * line["data"]["steps"]
                 else:
                     self._transitions += line["holds"]["transitions"]
         done = f"{self._transitions:,} transitions, {finished} of {len(self._manifests)} shards"

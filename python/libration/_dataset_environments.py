@@ -63,8 +63,8 @@ def _keywords(settings: Mapping[str, Any]) -> tuple[str | EquationSystem, dict[s
         "integrator": settings["integrator"],
         "dt": _period(dt, substeps),
         "substeps": substeps,
-        "dtype": _FLOATS.get(settings["float"], settings["float"]),
-        **{f"{name}_delay": tuple(dt * steps for steps in delays[name]) for name in ("observation", "action")},
+        "dtype": _FLOATS.get(settings["dtype"], settings["dtype"]),
+        **{f"{name}_delay": tuple(delays[name]) for name in ("observation", "action")},
         **{name: noise[name] for name in ("jitter", "skew")},
         "observation_noise": noise["observation"],
     }

@@ -247,7 +247,7 @@ def environment_spec(folder: str | os.PathLike[str]) -> Any:
 
     settings = read_settings(folder)
     keywords_of_settings(settings)
-    limit = settings["limit"] or None
+    limit = settings["max_episode_steps"] or None
     return EnvSpec(DATASET_ID, "libration.envs:DatasetEnv", max_episode_steps=limit, kwargs={"settings": settings})
 
 

@@ -212,7 +212,7 @@ def simulate(
         return _custom(system, integrator, dt, steps, q, v, _float_of(dtype), save_every)
     rows = {
         "steps": whole("steps", steps),
-        "float": _float_of(dtype),
+        "dtype": _float_of(dtype),
         "every": whole("save_every", save_every),
         "count": None if num_trajectories is None else whole("num_trajectories", num_trajectories),
         "spread": number("spread", spread, "finite"),

@@ -81,7 +81,7 @@ def test_the_spec_of_an_environment_of_the_catalogue_is_json_and_makes_it_again(
 
 
 def test_data_sets_take_systems_of_the_catalogue(tmp_path):
-    settings = {"environments": 4, "steps": 10, "dt": 0.1, "task": {"expressions": {"observe": ["q", "q'"], "reward": "-q^2"}}}
+    settings = {"num_envs": 4, "steps": 10, "dt": 0.1, "task": {"expressions": {"observe": ["q", "q'"], "reward": "-q^2"}}}
     written = [libration.datasets.write(tmp_path / name, settings, system=system) for name, system in (
         ("a", System("pendulum")), ("b", System("pendulum").equations()))]
     assert written[0].transitions == written[1].transitions == 40

@@ -21,8 +21,8 @@ from ray.cluster_utils import Cluster  # noqa: E402
 
 from libration import cluster  # noqa: E402
 
-SETTINGS = {"environments": 96, "steps": 200, "chunk": {"environments": 16, "steps": 50}, "noise": {"jitter": 0.05}}
-LONG = {"environments": 96, "steps": 40_000, "chunk": {"environments": 16, "steps": 2000}, "noise": {"jitter": 0.05}}
+SETTINGS = {"num_envs": 96, "steps": 200, "chunk": {"num_envs": 16, "steps": 50}, "noise": {"jitter": 0.05}}
+LONG = {"num_envs": 96, "steps": 40_000, "chunk": {"num_envs": 16, "steps": 2000}, "noise": {"jitter": 0.05}}
 GRID = {"config": {"system": "oscillator", "integrator": "rk4"}, "over": {"dt": [0.01, 0.02, 0.03, 9.0], "steps": [1, 2]}}
 MEMORY = 80 * 2**20
 
@@ -151,7 +151,7 @@ def test_any_number_of_shards_gives_the_bytes_of_one_process(nodes, whole, tmp_p
 def test_a_system_by_equations_has_the_bytes_of_one_process(nodes, tmp_path):
     task = {"reward": "-q^2 - 0.01*u^2", "start": {"q": (-1, 1)}}
     driven = libration.System(acceleration={"q": "-10*q + u"}, inputs=["u"], task=task)
-    policy = {"policy": {"linear": {"weights": [-2.0, -1.0]}}, "environments": 32, "chunk": {"environments": 16}}
+    policy = {"policy": {"linear": {"weights": [-2.0, -1.0]}}, "num_envs": 32, "chunk": {"num_envs": 16}}
     libration.datasets.write(tmp_path / "one", policy, system=driven, transitions=3200)
     cluster.rollout(policy, tmp_path / "two", shards=2, system=driven, transitions=3200)
     assert same(tmp_path / "one", tmp_path / "two")
@@ -257,7 +257,7 @@ def test_a_resumed_run_that_never_began_runs_on_the_cluster(nodes, whole, tmp_pa
         ({"shards": 2, "retries": -2}, ValueError, "retries is -2, but it must be -1 to"),
         ({"shards": 2, "format": "minari"}, ValueError, "shards is 2, but the format 'minari' has no shards; expected 1"),
         ({"shards": 2, "format": "csv"}, ValueError, "csv"),
-        ({"shards": 2, "settings": {"environment": 3}}, ValueError, "unknown key `environment`.*did you mean `environments`"),
+        ({"shards": 2, "settings": {"environment": 3}}, ValueError, "unknown key `environment`.*did you mean `num_envs`"),
         ({"shard": 2}, TypeError, "did you mean 'shards'"),
     ],
 )

@@ -10,7 +10,7 @@ from pathlib import Path
 import libration
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "cluster.md"
-SETTINGS = {"environments": 64, "steps": 200, "chunk": {"environments": 16, "steps": 100}}
+SETTINGS = {"num_envs": 64, "steps": 200, "chunk": {"num_envs": 16, "steps": 100}}
 SLURM = re.findall(r"^```bash\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
 
 

@@ -7,8 +7,8 @@ import pytest
 import libration
 from libration import datasets
 
-COMMON = {"environments": 3, "steps": 60, "chunk": {"environments": 3, "steps": 60}, "limit": 25}
-ACTING = {"delays": {"action": [2, 2], "observation": [1, 1]}, "substeps": 3, "dt": 0.007}
+COMMON = {"num_envs": 3, "steps": 60, "chunk": {"num_envs": 3, "steps": 60}, "max_episode_steps": 25}
+ACTING = {"delays": {"action": 0.014, "observation": [0.007, 0.007]}, "substeps": 3, "dt": 0.007}
 REGULATE = {"regulate": {"position": 2.0, "velocity": 0.3, "effort": 0.01, "bound": 1.5}}
 RANDOM = {"random": {"low": -3.0, "high": 3.0}}
 SPRING = libration.System(
@@ -28,7 +28,7 @@ CASES = {
         "policy": RANDOM,
         "integrator": "rk4",
     },
-    "duffing": {"system": {"duffing": {"alpha": -2.0, "beta": 0.5}}, "task": REGULATE, "policy": RANDOM, "float": "f64"},
+    "duffing": {"system": {"duffing": {"alpha": -2.0, "beta": 0.5}}, "task": REGULATE, "policy": RANDOM, "dtype": "f64"},
     "equations": {"system": {"equations": {"max_action": 1.0}}, "policy": RANDOM, "substeps": 2},
 }
 

@@ -196,7 +196,7 @@ def test_what_does_not_go_with_a_system_in_the_laboratory_is_refused_by_name(tmp
     assert not (tmp_path / "none").exists()
 
 
-SETTINGS = {"environments": 6, "steps": 40, "dt": 0.02, "chunk": {"environments": 3, "steps": 10}}
+SETTINGS = {"num_envs": 6, "steps": 40, "dt": 0.02, "chunk": {"num_envs": 3, "steps": 10}}
 SETTINGS |= {"policy": {"random": {"low": -4.0, "high": 4.0}}}
 
 

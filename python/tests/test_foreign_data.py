@@ -13,7 +13,7 @@ from libration import datasets
 from libration.hosts import _fmu_archive
 from libration.hosts._fmu_archive import check_archive
 
-SETTINGS: dict[str, Any] = {"environments": 2, "steps": 4, "chunk": {"environments": 2, "steps": 4}}
+SETTINGS: dict[str, Any] = {"num_envs": 2, "steps": 4, "chunk": {"num_envs": 2, "steps": 4}}
 
 
 def changed(folder: Path, change: Any) -> Path:
@@ -39,7 +39,7 @@ def changed(folder: Path, change: Any) -> Path:
         lambda data: {**data, "dt": None},
         lambda data: {**data, "substeps": 0},
         lambda data: {**data, "delays": 3},
-        lambda data: {**data, "float": ["f64"]},
+        lambda data: {**data, "dtype": ["f64"]},
         lambda data: {**data, "integrator": 7},
         lambda data: {**data, "noise": {"jitter": {}}},
         lambda data: {**data, "start": {"q": "here", "v": []}},

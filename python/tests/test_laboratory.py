@@ -237,7 +237,7 @@ def test_what_the_laboratory_cannot_run_is_refused_by_name(asked, error, told):
         run_lab(**asked)
 
 
-DATA = {"environments": 8, "steps": 64, "chunk": {"environments": 4, "steps": 16}}
+DATA = {"num_envs": 8, "steps": 64, "chunk": {"num_envs": 4, "steps": 16}}
 
 
 def test_a_data_set_is_resumed_to_the_same_bytes_and_verified(tmp_path):
@@ -292,7 +292,7 @@ def test_a_verification_without_a_replay_names_what_it_did_not_compare(tmp_path)
 @pytest.mark.parametrize(
     "change, error, told",
     [
-        ({"settings": {"environments": 0}}, ValueError, "environments"),
+        ({"settings": {"num_envs": 0}}, ValueError, "num_envs"),
         ({"settings": {"stesp": 1}}, ValueError, "steps"),
         ({"format": "csv"}, ValueError, "parquet"),
         ({"shard": (3, 2)}, ValueError, "shard"),

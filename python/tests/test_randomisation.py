@@ -314,10 +314,10 @@ def test_a_data_set_of_a_system_with_projection_and_discrete_actions_replays(tmp
         inputs=["u"],
         task={"reward": "-x^2", "start": {"x": (-1, 1)}, "actions": [-1.0, 1.0], "project": {"x'": "max(-0.2, min(0.2, x'))"}},
     )
-    libration.datasets.write(tmp_path / "data", {"environments": 8, "steps": 40, "dt": 0.1}, system=system)
+    libration.datasets.write(tmp_path / "data", {"num_envs": 8, "steps": 40, "dt": 0.1}, system=system)
     assert libration.datasets.verify(tmp_path / "data", replay=True) == []
     with pytest.raises(ValueError, match="discrete `actions` have commands of their own"):
-        settings = {"environments": 8, "steps": 40, "dt": 0.1, "system": {"equations": {"max_action": 0.5}}}
+        settings = {"num_envs": 8, "steps": 40, "dt": 0.1, "system": {"equations": {"max_action": 0.5}}}
         libration.datasets.write(tmp_path / "other", settings, system=system)
 
 

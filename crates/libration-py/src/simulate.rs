@@ -23,7 +23,7 @@ use crate::request::{Loop, stepping, warn_of};
 #[pyo3(from_item_all)]
 pub(crate) struct Rows {
     steps: i64,
-    float: String,
+    dtype: String,
     every: u64,
     count: Option<usize>,
     spread: f64,
@@ -52,8 +52,8 @@ impl Rows {
     }
 
     fn float(&self) -> PyResult<FloatType> {
-        FloatType::from_name(&self.float)
-            .ok_or_else(|| unknown("float", &self.float, FloatType::ALL.map(FloatType::name)))
+        FloatType::from_name(&self.dtype)
+            .ok_or_else(|| unknown("dtype", &self.dtype, FloatType::ALL.map(FloatType::name)))
     }
 
     fn ensemble(&self) -> Option<EnsembleOptions> {

@@ -105,6 +105,9 @@ fn unknown_key_help(name: &str, own: &[&str]) -> String {
     if name == "oscillator" {
         return "the table of the oscillator is [system.oscillator]".to_owned();
     }
+    if suggestions::key_meant(name).is_some_and(|meant| own.contains(&meant)) {
+        return suggestions::suggest("keys", name, own.iter().copied());
+    }
     let of_own = suggestions::nearest(name, own.iter().copied());
     let of_all = suggestions::nearest(name, ConfigCommand::all_keys());
     let near = suggestions::nearest(name, [of_own, of_all].into_iter().flatten());

@@ -124,7 +124,9 @@ pub fn list_of_periods<'de, D: Deserializer<'de>>(
     Ok(all.into_iter().map(|Period(x)| Number(x)).collect())
 }
 
-struct Duration(f64);
+/// A duration in s in a file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Duration(pub f64);
 
 impl<'de> Deserialize<'de> for Duration {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {

@@ -37,10 +37,23 @@ pub fn suggest<'a>(
 ) -> String {
     let list: Vec<_> = known.clone().into_iter().map(|name| format!("`{name}`")).collect();
     let all = format!("the {what} are {}", list.join(", "));
-    match nearest(name, known) {
+    let meant = key_meant(name).filter(|meant| known.clone().into_iter().any(|one| one == *meant));
+    match meant.or_else(|| nearest(name, known)) {
         Some(near) => format!("did you mean `{near}`? {all}"),
         None => all,
     }
+}
+
+/// Keys of settings, each with its other names in former versions and other libraries.
+const KEYS: [(&str, &[&str]); 3] = [
+    ("dtype", &["float", "float_type", "precision"]),
+    ("num_envs", &["environments", "environment", "n_envs", "nenvs"]),
+    ("max_episode_steps", &["limit", "time_limit", "episode_length", "max_steps"]),
+];
+
+/// The key that is meant by another name: the same thing comes before one that is spelled alike.
+pub(crate) fn key_meant(name: &str) -> Option<&'static str> {
+    KEYS.iter().find(|(_, others)| others.contains(&name)).map(|(key, _)| *key)
 }
 
 /// The laws of jitter and skew, each with its other names in libraries and textbooks.

@@ -107,7 +107,7 @@ scalar_only!(f16 bf16);
 /// The error of an ensemble or a loop in a float type without native arithmetic.
 fn no_vectors<S: Number>() -> TrajectoryError {
     TrajectoryError::Value {
-        name: "float",
+        name: "dtype",
         value: S::NAME.to_owned(),
         allowed: "f64 or f32 for ensembles and loops".to_owned(),
     }

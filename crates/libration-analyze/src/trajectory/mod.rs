@@ -171,7 +171,7 @@ fn head(request: &Request) -> Vec<(&'static str, Value)> {
         ("system", system.name.clone().into()),
         ("parameters", parameters.into()),
         ("integrator", request.stepping.name().into()),
-        ("float", request.float.name().into()),
+        ("dtype", request.float.name().into()),
         ("dt", request.dt.into()),
         ("steps", request.steps.into()),
         ("every", request.every.into()),

@@ -287,7 +287,7 @@ fn what_no_ensemble_can_do_is_refused_before_any_work() {
             FloatType::F32,
             "`spread` is 1e300",
         ),
-        (COPIES, f16, "`float` is f16, but it must be f64 or f32"),
+        (COPIES, f16, "`dtype` is f16, but it must be f64 or f32"),
     ] {
         let error = of(ensemble, float);
         assert!(error.contains(told), "{error}");

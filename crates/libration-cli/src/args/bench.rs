@@ -38,7 +38,7 @@ pub(crate) struct BenchArgs {
         requires = "implementation",
         conflicts_with = "rollouts"
     )]
-    pub(crate) float: Vec<BenchFloat>,
+    pub(crate) dtype: Vec<BenchFloat>,
     /// Measure rollouts of environments, relative to a fill of the same memory
     #[arg(long, conflicts_with = "implementation")]
     pub(crate) rollouts: bool,

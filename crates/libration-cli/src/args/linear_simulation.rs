@@ -72,7 +72,7 @@ const NOT_LINEAR: [&str; 11] = [
     "start",
     "integrator",
     "dt",
-    "float",
+    "dtype",
     "skew",
     "time_stamps",
 ];

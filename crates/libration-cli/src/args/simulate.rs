@@ -50,7 +50,7 @@ pub(crate) struct SimulateArgs {
     pub(crate) adaptive: Option<StepControl>,
     /// Float type of the state, the parameters and every operation
     #[arg(long = "dtype", value_name = "TYPE", value_parser = float_types(), default_value = "f64")]
-    pub(crate) float: FloatType,
+    pub(crate) dtype: FloatType,
     /// Write every N-th step, the start and the last step
     #[arg(
         long = "save-every",
@@ -162,7 +162,6 @@ pub(crate) fn option_of(field: &str) -> &str {
     match field {
         "count" => "num-trajectories",
         "every" => "save-every",
-        "float" => "dtype",
         same => same,
     }
 }

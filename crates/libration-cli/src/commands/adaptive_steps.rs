@@ -16,8 +16,8 @@ pub(super) fn request(
     let (Some(options), Some(step)) = (&args.system, &args.step) else {
         return Err(Failure::usage("--adaptive requires --system, --integrator and --dt"));
     };
-    if args.float != FloatType::F64 {
-        let float = args.float.name();
+    if args.dtype != FloatType::F64 {
+        let float = args.dtype.name();
         return Err(Failure::usage(format!("--dtype {float}: --adaptive has f64 only")));
     }
     let method: Method = match step.integrator.any_method() {

@@ -28,7 +28,7 @@ fn of_file(
         ("--v", options.v.is_some()),
         ("--start", !options.start.is_empty()),
         ("--time-stamps", args.time_stamps.is_some()),
-        ("--dtype", args.float != FloatType::F64),
+        ("--dtype", args.dtype != FloatType::F64),
         ("--feedback and --skew", {
             let Timing { feedback, skew, .. } = args.timing.timing();
             feedback.is_some() || skew.is_some()

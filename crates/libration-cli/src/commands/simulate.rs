@@ -153,7 +153,7 @@ fn request(args: &SimulateArgs) -> Result<Request, Failure> {
     Ok(Request {
         system,
         stepping: step.integrator,
-        float: args.float,
+        float: args.dtype,
         dt: step.dt,
         steps: args.steps_of(step.dt)?,
         every: args.every,

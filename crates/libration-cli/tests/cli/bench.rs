@@ -19,7 +19,7 @@ fn named_implementations_are_timed_alone_and_each_once() {
     let words = "--quiet bench --implementation fused,in-place --num-trajectories 1e3,10,1000 --dtype f32,f32 --json";
     let run = libration(words).assert().success().stderr(is_empty());
     let answer: Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
-    assert_eq!(answer["schema"], "libration.bench/1");
+    assert_eq!(answer["schema"], "libration.bench/2");
     assert!(answer["machine"]["caches"].is_array());
     let rates = answer["rates"].as_array().unwrap();
     let timed: Vec<_> = rates
@@ -38,10 +38,10 @@ fn rollouts_are_timed_in_both_layouts_beside_fills_of_as_much_memory() {
     let words = "--quiet bench --rollouts --case 256x16,300x40 --json";
     let run = libration(words).assert().success().stderr(is_empty());
     let answer: Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
-    assert_eq!(answer["schema"], "libration.bench/1");
+    assert_eq!(answer["schema"], "libration.bench/2");
     let rates = answer["rollouts"].as_array().unwrap();
     for (environments, horizon) in [(256, 16), (300, 40)] {
-        let size = |rate: &Value| [&rate["environments"], &rate["horizon"]].map(Value::as_u64);
+        let size = |rate: &Value| [&rate["num_envs"], &rate["horizon"]].map(Value::as_u64);
         let of_case = |rate: &&Value| size(rate) == [Some(environments), Some(horizon)];
         let found: Vec<_> = rates.iter().filter(of_case).collect();
         assert!(found.iter().any(|rate| rate["layout"] == "interleaved" && rate["threads"] == 1));

@@ -78,7 +78,7 @@ fn trajectories_of_forces_are_those_of_accelerations() {
 fn actions_of_a_data_set_are_forces_where_a_mass_is_given() {
     let text = |system: &str, weights: &str| {
         format!(
-            "environments = 4\nsteps = 20\nsubsteps = 2\n[system.oscillator]\n{system}\n[noise]\njitter = 0.1\n\
+            "num_envs = 4\nsteps = 20\nsubsteps = 2\n[system.oscillator]\n{system}\n[noise]\njitter = 0.1\n\
              [task.regulate]\nposition = 1.0\nvelocity = 0.1\neffort = 0.0\nbound = 10.0\n\
              [policy.linear]\nweights = {weights}\nbias = 0.0\n"
         )

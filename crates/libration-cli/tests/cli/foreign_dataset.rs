@@ -16,10 +16,10 @@ use super::rollout::{contents, libration, settings, write};
 
 /// Two groups of two environments, in two chunks each.
 const SMALL: &str = "\
-environments = 4
+num_envs = 4
 steps = 6
 [chunk]
-environments = 2
+num_envs = 2
 steps = 3
 [system.pendulum]
 omega2 = 9.81

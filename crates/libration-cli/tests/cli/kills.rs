@@ -10,11 +10,11 @@ use crate::rollout::{contents, libration, settings};
 
 /// Forty chunks, at any of which a kill may fall.
 const SETTINGS: &str = "\
-environments = 800
+num_envs = 800
 steps = 3000
-limit = 90
+max_episode_steps = 90
 [chunk]
-environments = 200
+num_envs = 200
 steps = 300
 [start]
 q = [-1.0, 1.0]
@@ -23,11 +23,11 @@ q = [-1.0, 1.0]
 
 /// The same with fewer episodes, each of which is two files.
 const EPISODES: &str = "\
-environments = 60
+num_envs = 60
 steps = 400
-limit = 90
+max_episode_steps = 90
 [chunk]
-environments = 20
+num_envs = 20
 steps = 50
 [start]
 q = [-1.0, 1.0]

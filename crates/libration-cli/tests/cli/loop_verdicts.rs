@@ -252,21 +252,21 @@ fn a_delay_as_long_as_an_episode_is_refused_with_both_times() {
     let folder = tempfile::tempdir().unwrap();
     for (delays, substeps, refused) in [
         (
-            "action = [800, 800]",
+            "action = 40",
             1,
             "`delays.action` is 800 steps, 40 s, but an episode lasts 200 steps, 10 s",
         ),
-        ("observation = [200, 300]", 1, "`delays.observation` is 200 steps, 10 s"),
+        ("observation = ['10s', 15]", 1, "`delays.observation` is 200 steps, 10 s"),
         (
-            "action = [900, 900]",
+            "action = 45.0",
             4,
             "`delays.action` is 900 steps, 45 s, but an episode lasts 800 steps, 40 s",
         ),
-        ("action = [0, 300]", 1, ""),
-        ("action = [799, 799]", 4, ""),
+        ("action = [0, 15]", 1, ""),
+        ("action = '39950ms'", 4, ""),
     ] {
         let text = format!(
-            "environments = 2\nsteps = 4\ndt = 0.05\nlimit = 200\nsubsteps = {substeps}\n[delays]\n{delays}\n"
+            "num_envs = 2\nsteps = 4\ndt = 0.05\nmax_episode_steps = 200\nsubsteps = {substeps}\n[delays]\n{delays}\n"
         );
         let file = plant(&folder, "rollout.toml", &text);
         let out = folder.path().join(format!("{substeps}{}", delays.len()));

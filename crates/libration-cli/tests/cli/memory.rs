@@ -26,7 +26,7 @@ fn code(folder: &std::path::Path, megabytes: u64, words: &str) -> i32 {
 #[test]
 fn a_limit_of_memory_ends_a_run_with_a_message_and_never_with_an_abort() {
     // Few environments: each episode is a file for Minari.
-    let dir = settings("environments = 100\nsteps = 3000\n[chunk]\nsteps = 1000\n");
+    let dir = settings("num_envs = 100\nsteps = 3000\n[chunk]\nsteps = 1000\n");
     let folder = dir.path();
     // What it takes to begin: the program, its stacks, and the memory that the system sets apart for each thread.
     let begins = |megabytes: &u64| limited(folder, *megabytes, "list").status.code() == Some(0);
@@ -62,7 +62,7 @@ fn a_limit_of_memory_ends_a_run_with_a_message_and_never_with_an_abort() {
 
 #[test]
 fn what_does_not_fit_under_a_limit_says_how_much_is_needed_and_what_lowers_it() {
-    let dir = settings("environments = 4096\n");
+    let dir = settings("num_envs = 4096\n");
     let said = |words: &str| {
         let output = limited(dir.path(), 700, words);
         assert_eq!(output.status.code(), Some(1), "{output:?}");

@@ -85,11 +85,11 @@ assert whole.num_rows == rows
 /// Two groups; most episodes end by themselves or by the limit, the others with the data set.
 const EPISODES: &str = "\
 seed = 8
-environments = 20
+num_envs = 20
 steps = 130
-limit = 40
+max_episode_steps = 40
 [chunk]
-environments = 12
+num_envs = 12
 steps = 50
 [task.regulate]
 bound = 0.9

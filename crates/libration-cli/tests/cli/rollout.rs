@@ -12,14 +12,14 @@ use tempfile::TempDir;
 /// Six groups of at most 64 environments with all that can be wrong, in five chunks each.
 pub(crate) const SETTINGS: &str = "\
 seed = 5
-environments = 350
+num_envs = 350
 steps = 450
-limit = 60
+max_episode_steps = 60
 integrator = \"velocity-verlet\"
 dt = 0.02
 substeps = 2
 [chunk]
-environments = 64
+num_envs = 64
 steps = 100
 [system.pendulum]
 omega2 = 9.81
@@ -30,8 +30,8 @@ bound = 2.5
 q = [-1.0, 1.0]
 v = [-1.0, 1.0]
 [delays]
-observation = [0, 2]
-action = [1, 4]
+observation = [0, \"40ms\"]
+action = [\"20ms\", 0.08]
 [noise]
 jitter = 0.05
 skew = 0.01
@@ -94,7 +94,7 @@ fn the_default_settings_are_printed_and_are_those_that_count_without_a_file() {
     // The source's case: five steps of its 4096 environments are the first whole ones beyond 20 000.
     let manifest = fs::read_to_string(dir.path().join("one/manifest.jsonl")).unwrap();
     let head: Value = serde_json::from_str(manifest.lines().next().unwrap()).unwrap();
-    assert_eq!(head["data"]["environments"], 4096);
+    assert_eq!(head["data"]["num_envs"], 4096);
     assert_eq!(head["data"]["steps"], 5);
     assert_eq!(head["data"]["system"]["oscillator"]["omega2"], 10.0);
     let verified = libration("verify one --replay").current_dir(dir.path()).assert().success();
@@ -138,11 +138,11 @@ fn shards_together_are_the_data_set_whatever_their_number_and_the_threads() {
 fn episodes_for_minari_are_the_same_on_any_threads_and_are_not_sharded() {
     // Rewards that leave the float type lose an environment, and the action leaves no transition.
     let text = "\
-environments = 40
+num_envs = 40
 steps = 90
-limit = 25
+max_episode_steps = 25
 [chunk]
-environments = 30
+num_envs = 30
 steps = 40
 [start]
 v = [-1.0, 1.0]
@@ -203,7 +203,7 @@ fn a_run_that_is_stopped_by_a_full_disk_says_so_and_goes_on_to_the_same_bytes() 
 
 #[test]
 fn what_cannot_be_is_refused_before_a_folder_is_made() {
-    let dir = settings("environments = 0\n");
+    let dir = settings("num_envs = 0\n");
     let refused = |text: &str, more: &str| {
         fs::write(dir.path().join("set.toml"), text).unwrap();
         let run = write(&dir, "out", more).code(2).stdout(is_empty());
@@ -211,9 +211,9 @@ fn what_cannot_be_is_refused_before_a_folder_is_made() {
         String::from_utf8(run.get_output().stderr.clone()).unwrap()
     };
     for (text, said) in [
-        ("environments = 0", "`environments` is 0, but it must be 1 to 1000000000"),
+        ("num_envs = 0", "`num_envs` is 0, but it must be 1 to 1000000000"),
         ("steps = -3", "`steps` is -3"),
-        ("float = \"f16\"", "`float` is `f16`, but it must be `f32` or `f64`"),
+        ("dtype = \"f16\"", "`dtype` is `f16`, but it must be `f32` or `f64`"),
         ("dt = 0", "`dt` is 0.0, but it must be"),
         ("integrator = \"verlet\"", "did you mean `velocity-verlet`?"),
         ("integrater = \"rk4\"", "unknown key `integrater`"),
@@ -223,7 +223,18 @@ fn what_cannot_be_is_refused_before_a_folder_is_made() {
         ("[task.regulate]\nbound = -1", "`bound` is -1.0"),
         ("[task.fly]", "unknown variant `fly`"),
         ("[start]\nq = [1, 0]", "`start.q` is from 1.0 to 0.0, but it must rise"),
-        ("[delays]\naction = [0, 5000]", "it must be 0 to 4096"),
+        (
+            "[delays]\naction = [0, 50]",
+            "is 50 s, 5000 steps of 0.01 s, but it must be at most 4096",
+        ),
+        ("[delays]\naction = 0.015", "is 0.015 s, 1.5 steps of 0.01 s, but it must be whole steps"),
+        ("[delays]\nobservation = '-10ms'", "is -0.01 s, but it must be finite and at least 0"),
+        ("[delays]\naction = [0.02, 0.01]", "is from 0.02 s to 0.01 s, but it must rise"),
+        ("[delays]\naction = '2 steps'", "a text with a unit such as \"2ms\""),
+        ("float = 'f64'", "did you mean `dtype`?"),
+        ("environments = 3", "did you mean `num_envs`?"),
+        ("limit = 3", "did you mean `max_episode_steps`?"),
+        ("[chunk]\nenvironments = 3", "did you mean `num_envs`?"),
         ("[noise]\njitter = -0.1", "`noise.jitter` is -0.1"),
         ("[policy.linear]\nweights = [1]", "`weights` has 1 numbers, but it must have 2"),
         ("[policy.random]\nlow = 1\nhigh = 1", "`low` must be below `high`"),
@@ -238,18 +249,19 @@ fn what_cannot_be_is_refused_before_a_folder_is_made() {
     assert!(found.contains("e.g. 2/3"), "{found}");
     let found = refused("", "--shard 2/2");
     assert!(
-        found.contains("at most as many shards as groups of `chunk.environments` environments (1)"),
+        found.contains("at most as many shards as groups of `chunk.num_envs` environments (1)"),
         "{found}"
     );
     assert!(refused("", "--transitions 0").contains("from 1 to 1e15"));
-    let found = refused("environments = 1", "--transitions 1e15");
+    let found = refused("num_envs = 1", "--transitions 1e15");
     assert!(found.contains("would take 1000000000000000 steps"), "{found}");
     let found = refused(
-        "environments = 1000000\n[chunk]\nenvironments = 1000000\nsteps = 1000000\n",
+        "num_envs = 1000000\n[chunk]\nnum_envs = 1000000\nsteps = 1000000\n",
         "--transitions 1e12",
     );
     assert!(found.contains("GB of memory are needed"), "{found}");
-    let many = "environments = 1000000000\nsteps = 1000000000000\n[chunk]\nenvironments = 1000\nsteps = 100\n";
+    let many =
+        "num_envs = 1000000000\nsteps = 1000000000000\n[chunk]\nnum_envs = 1000\nsteps = 100\n";
     let found = refused(many, "");
     assert!(
         found.contains("10000000000000000 chunks, of which a manifest may have 2236962"),

@@ -76,9 +76,9 @@ fn a_data_set_that_lacks_chunks_or_has_others_does_not_pass() {
 
 /// Episodes of 64 environments in two chunks.
 pub(crate) const EPISODES: &str = "\
-environments = 64
+num_envs = 64
 steps = 100
-limit = 30
+max_episode_steps = 30
 [chunk]
 steps = 50
 [start]

@@ -32,7 +32,7 @@ pub enum DatasetError {
     /// The shard does not exist, or there are more shards than groups of environments.
     #[error(
         "shard {index} of {of}: expected a shard from 1 to {of}, and at most as many shards as groups of \
-         `chunk.environments` environments ({groups})"
+         `chunk.num_envs` environments ({groups})"
     )]
     Shard {
         /// Which one.
@@ -44,7 +44,7 @@ pub enum DatasetError {
     },
     /// The manifest would be too long.
     #[error(
-        "{chunks} chunks, of which a manifest may have {most}: `chunk.steps` or `chunk.environments` must be larger, or there must be \
+        "{chunks} chunks, of which a manifest may have {most}: `chunk.steps` or `chunk.num_envs` must be larger, or there must be \
          more shards"
     )]
     Chunks {

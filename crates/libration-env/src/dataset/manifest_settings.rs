@@ -14,7 +14,7 @@ use crate::environments::{
 };
 
 /// Version of the manifest format.
-const SCHEMA: &str = "libration.dataset/1";
+const SCHEMA: &str = "libration.dataset/2";
 
 /// The first line of the manifest for some groups: the settings, and `groups`.
 pub(super) fn manifest_head(
@@ -74,19 +74,22 @@ impl Dataset {
         let (dt, substeps, limit, delays, Noise { jitter, skew, observation }) = common;
         let mut data = json!({
             "seed": self.seed,
-            "float": self.float.name(),
-            "environments": self.environments,
+            "dtype": self.float.name(),
+            "num_envs": self.environments,
             "steps": self.steps,
             "integrator": self.environment.method().name(),
             "dt": dt,
             "substeps": substeps,
-            "limit": limit.unwrap_or(0),
-            "chunk": { "environments": self.chunk.environments, "steps": self.chunk.steps },
+            "max_episode_steps": limit.unwrap_or(0),
+            "chunk": { "num_envs": self.chunk.environments, "steps": self.chunk.steps },
         });
         for (key, value) in own {
             data[key] = value;
         }
-        data["delays"] = json!({ "observation": delays.observation, "action": delays.action });
+        let seconds = |steps: [u32; 2]| steps.map(|steps| f64::from(steps) * dt);
+        data["delays"] = json!({
+            "observation": seconds(delays.observation), "action": seconds(delays.action),
+        });
         let noise = json!({
             "jitter": jitter.rms(), "skew": skew.rms(), "observation": observation.rms(),
         });

@@ -147,7 +147,7 @@ pub(super) fn metadata(dataset: &Dataset, all: Totals) -> String {
 /// The environment in the JSON of Gymnasium's `EnvSpec`, from which Minari recovers it: `libration.datasets.environment_spec` in Python.
 fn environment_spec(dataset: &Dataset) -> String {
     let settings = dataset.data();
-    let limit = settings["limit"].as_u64().filter(|&limit| limit > 0);
+    let limit = settings["max_episode_steps"].as_u64().filter(|&limit| limit > 0);
     let spec = json!({
         "id": "libration/Dataset-v0",
         "entry_point": "libration.envs:DatasetEnv",

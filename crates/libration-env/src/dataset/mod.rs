@@ -5,7 +5,7 @@
 
 mod chunk_files;
 mod chunk_order;
-mod delay_check;
+mod delay_steps;
 mod episodes;
 mod equation_tables;
 mod error;

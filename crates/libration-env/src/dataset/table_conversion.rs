@@ -11,7 +11,7 @@ use libration_settings::{
     Coordinates, Count, Fault, Number, StartTable, SystemTables, suggestions,
 };
 
-use super::delay_check::check_delays;
+use super::delay_steps::{check_delays, delay_steps};
 use super::equation_tables::equation_environment;
 use super::settings::{Chunk, Dataset, STEPS};
 use super::system_tables::{EquationsTable, Numbers};
@@ -53,10 +53,10 @@ impl TryFrom<File> for Dataset {
     type Error = Fault;
 
     fn try_from(file: File) -> Result<Self, Fault> {
-        let float = [FloatType::F32, FloatType::F64].into_iter().find(|f| f.name() == file.float);
-        let float = float.ok_or_else(|| {
-            let message = format!("`float` is `{}`, but it must be `f32` or `f64`", file.float);
-            Fault::new("float", message)
+        let known = |float: &FloatType| [float.name(), float.dtype()].contains(&&*file.dtype);
+        let dtype = [FloatType::F32, FloatType::F64].into_iter().find(known).ok_or_else(|| {
+            let message = format!("`dtype` is `{}`, but it must be `f32` or `f64`", file.dtype);
+            Fault::new("dtype", message)
         })?;
         let name = &file.integrator;
         let method = Method::from_name(name).ok_or_else(|| {
@@ -70,20 +70,12 @@ impl TryFrom<File> for Dataset {
             fault.help(suggestions::suggest("integrators", name, Method::ALL.map(Method::name)))
         })?;
         let dt = within(TIME_STEP, "dt", file.dt.0).map_err(|why| Fault::new("dt", why))?;
-        let limit = count("limit", file.limit, 0..=u32::MAX.into())? as u32;
+        let limit = count("max_episode_steps", file.max_episode_steps, 0..=u32::MAX.into())? as u32;
         let [observation, action] = [
             ("delays.observation", file.delays.observation),
             ("delays.action", file.delays.action),
         ]
-        .map(|(key, ends)| -> Result<[u32; 2], Fault> {
-            let [least, most] = ends.map(|end| count(key, end, 0..=4096));
-            let (least, most) = (least? as u32, most? as u32);
-            if least > most {
-                let message = format!("`{key}` is from {least} to {most}, but it must rise");
-                return Err(Fault::new(key, message));
-            }
-            Ok([least, most])
-        });
+        .map(|(key, range)| delay_steps(key, range, dt));
         let ends = |key, given: Option<Coordinates>, default: f64| -> Result<[f64; 2], Fault> {
             let ends = match given.map_or(vec![default], Coordinates::list)[..] {
                 [one] => [one; 2],
@@ -161,12 +153,11 @@ impl TryFrom<File> for Dataset {
         let acting = policy(file.policy.unwrap_or(default), sizes)?;
         Ok(Dataset {
             seed: count("seed", file.seed, 0..=u64::MAX)?,
-            float,
-            environments: count("environments", file.environments, 1..=1_000_000_000)? as usize,
+            float: dtype,
+            environments: count("num_envs", file.num_envs, 1..=1_000_000_000)? as usize,
             steps: count("steps", file.steps, 1..=STEPS)?,
             chunk: Chunk {
-                environments: count("chunk.environments", file.chunk.environments, 1..=1_000_000)?
-                    as usize,
+                environments: count("chunk.num_envs", file.chunk.num_envs, 1..=1_000_000)? as usize,
                 steps: count("chunk.steps", file.chunk.steps, 1..=1_000_000)? as usize,
             },
             environment,

@@ -1,6 +1,7 @@
 //! Tables of settings files.
 
-use libration_settings::{Count, Number, StartTable, SystemTables, duration};
+use libration_settings::duration::{self, Duration};
+use libration_settings::{Count, Number, StartTable, SystemTables};
 use serde::Deserialize;
 
 use super::system_tables::{EquationSource, EquationsTable, Numbers, Weights};
@@ -10,14 +11,14 @@ use super::system_tables::{EquationSource, EquationsTable, Numbers, Weights};
 #[serde(default)]
 pub(super) struct File {
     pub(super) seed: Count,
-    pub(super) float: String,
-    pub(super) environments: Count,
+    pub(super) dtype: String,
+    pub(super) num_envs: Count,
     pub(super) steps: Count,
     pub(super) integrator: String,
     #[serde(deserialize_with = "duration::number_of_period")]
     pub(super) dt: Number,
     pub(super) substeps: Count,
-    pub(super) limit: Count,
+    pub(super) max_episode_steps: Count,
     pub(super) chunk: ChunkTable,
     pub(super) system: SystemTables<EquationsTable>,
     pub(super) task: Option<TaskTable>,
@@ -31,7 +32,7 @@ pub(super) struct File {
 #[derive(Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct ChunkTable {
-    pub(super) environments: Count,
+    pub(super) num_envs: Count,
     pub(super) steps: Count,
 }
 
@@ -77,8 +78,19 @@ pub(super) struct TrackTable {
 #[derive(Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct DelaysTable {
-    pub(super) observation: [Count; 2],
-    pub(super) action: [Count; 2],
+    pub(super) observation: LatencyRange,
+    pub(super) action: LatencyRange,
+}
+
+/// A latency in s, or the two ends of an interval.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected a number of seconds or a text with a unit such as \"2ms\", or a list with the two ends of an interval"
+)]
+pub(super) enum LatencyRange {
+    One(Duration),
+    Ends([Duration; 2]),
 }
 
 #[derive(Deserialize)]
@@ -140,13 +152,13 @@ impl Default for File {
     fn default() -> Self {
         File {
             seed: Count(0),
-            float: "f32".into(),
-            environments: Count(4096),
+            dtype: "f32".into(),
+            num_envs: Count(4096),
             steps: Count(1024),
             integrator: "symplectic-euler".into(),
             dt: Number(0.01),
             substeps: Count(1),
-            limit: Count(0),
+            max_episode_steps: Count(0),
             chunk: ChunkTable::default(),
             system: SystemTables::of("oscillator", &[("omega2", 10.0)]),
             task: None,
@@ -172,7 +184,7 @@ impl Default for PolicyTable {
 
 impl Default for ChunkTable {
     fn default() -> Self {
-        ChunkTable { environments: Count(4096), steps: Count(1024) }
+        ChunkTable { num_envs: Count(4096), steps: Count(1024) }
     }
 }
 
@@ -199,7 +211,8 @@ impl Default for TrackTable {
 
 impl Default for DelaysTable {
     fn default() -> Self {
-        DelaysTable { observation: [Count(0); 2], action: [Count(0); 2] }
+        let none = LatencyRange::One(Duration(0.0));
+        DelaysTable { observation: none, action: none }
     }
 }
 

@@ -19,13 +19,13 @@ use libration_settings::ConfigCommand;
 
 const SETTINGS: &str = "\
 seed = 3
-environments = 100
+num_envs = 100
 steps = 75
-limit = 40
+max_episode_steps = 40
 integrator = \"velocity-verlet\"
 dt = 0.05
 [chunk]
-environments = 64
+num_envs = 64
 steps = 30
 [system.pendulum]
 omega2 = 4.0
@@ -113,8 +113,8 @@ fn settings_are_read_back_from_a_manifest_whatever_they_are() {
     for text in [
         "",
         SETTINGS,
-        "float = \"f64\"\nenvironments = 3\nsteps = 5\n[task.regulate]\nbound = inf\n[policy.constant]\naction = -1",
-        "environments = 3\nsteps = 5\n[system.duffing]\n[task.track]\nphase = 0.1\n[policy.random]\n[noise]\nskew = 0.1",
+        "dtype = \"f64\"\nnum_envs = 3\nsteps = 5\n[task.regulate]\nbound = inf\n[policy.constant]\naction = -1",
+        "num_envs = 3\nsteps = 5\n[system.duffing]\n[task.track]\nphase = 0.1\n[policy.random]\n[noise]\nskew = 0.1",
     ] {
         let dir = tempfile::tempdir().unwrap();
         let out = dir.path().join("set");

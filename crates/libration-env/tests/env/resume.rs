@@ -13,17 +13,17 @@ use libration_env::dataset::{
 /// Three groups of eight chunks; episodes go over several chunks.
 const SETTINGS: &str = "\
 seed = 3
-environments = 40
+num_envs = 40
 steps = 160
-limit = 50
+max_episode_steps = 50
 [chunk]
-environments = 16
+num_envs = 16
 steps = 20
 [start]
 q = [-1.0, 1.0]
 [policy.random]
 [delays]
-action = [0, 3]
+action = [0.0, 0.03]
 [noise]
 jitter = 0.1
 observation = 0.01
@@ -104,8 +104,7 @@ fn a_resumed_data_set_goes_on_from_its_state_with_the_bytes_of_one_that_was_not_
     // A state is written when the chunks since the last one hold as much: where all groups have 16 environments, chunks of 5760 bytes
     // and states of 5712, after each. In a group of 8 chunks have 2880 bytes, so it is after every second.
     for (environments, most) in [(48, 0), (40, 1)] {
-        let settings =
-            SETTINGS.replace("environments = 40", &format!("environments = {environments}"));
+        let settings = SETTINGS.replace("num_envs = 40", &format!("num_envs = {environments}"));
         for format in DataFormat::ALL {
             let dir = tempfile::tempdir().unwrap();
             let [whole, part] = ["whole", "part"].map(|name| dir.path().join(name));

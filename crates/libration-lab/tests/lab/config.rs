@@ -172,15 +172,15 @@ fn a_file_of_peers_is_read_before_any_work() {
     std::fs::write(&file, "[]").unwrap();
     assert!(told().contains("is not what benches/peers.py writes"), "{}", told());
     let other = json!({
-        "schema": "libration.peers/1", "cpu": "abacus", "versions": "", "rounds": 1, "rows": [],
+        "schema": "libration.peers/2", "cpu": "abacus", "versions": "", "rounds": 1, "rows": [],
     });
     std::fs::write(&file, other.to_string()).unwrap();
     assert!(told().contains("was measured on `abacus`; this is `"), "{}", told());
-    std::fs::write(&file, other.to_string().replace("peers/1", "peers/9")).unwrap();
-    assert!(told().contains("it must be `libration.peers/1`"), "{}", told());
+    std::fs::write(&file, other.to_string().replace("peers/2", "peers/9")).unwrap();
+    assert!(told().contains("it must be `libration.peers/2`"), "{}", told());
     // Those of rollouts are of another kind.
     let told = error(&format!("rollout.peers = '{}'", file.display())).message().to_owned();
-    assert!(told.contains("it must be `libration.rollouts/1`"), "{told}");
+    assert!(told.contains("it must be `libration.rollouts/2`"), "{told}");
 }
 
 #[test]

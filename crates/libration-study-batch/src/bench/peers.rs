@@ -37,7 +37,7 @@ pub(crate) struct Peers<R> {
 pub(crate) struct Peer {
     pub(crate) implementation: String,
     pub(crate) peer: String,
-    pub(crate) float: String,
+    pub(crate) dtype: String,
     pub(crate) count: u64,
     /// The median of the ratios of the rounds.
     pub(crate) ratio: f64,
@@ -50,7 +50,7 @@ pub(crate) struct Peer {
 }
 
 impl PeerRow for Peer {
-    const SCHEMA: &str = "libration.peers/1";
+    const SCHEMA: &str = "libration.peers/2";
     const PROGRAM: &str = "benches/peers.py";
 }
 
@@ -59,7 +59,7 @@ impl PeerRow for Peer {
 pub(crate) struct RolloutPeer {
     pub(crate) peer: String,
     pub(crate) task: String,
-    pub(crate) environments: u64,
+    pub(crate) num_envs: u64,
     /// None where it makes no difference.
     pub(crate) horizon: Option<u64>,
     /// Threads of Libration.
@@ -73,7 +73,7 @@ pub(crate) struct RolloutPeer {
 }
 
 impl PeerRow for RolloutPeer {
-    const SCHEMA: &str = "libration.rollouts/1";
+    const SCHEMA: &str = "libration.rollouts/2";
     const PROGRAM: &str = "benches/rollouts.py";
 }
 
@@ -101,7 +101,7 @@ impl PeerRow for StoragePeer {
 /// Rate of a rollout.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 pub(crate) struct PeerRate {
-    pub(crate) environments: u64,
+    pub(crate) num_envs: u64,
     pub(crate) horizon: Option<u64>,
     /// Name of the program.
     pub(crate) name: String,
@@ -134,8 +134,7 @@ impl Peers<RolloutPeer> {
     /// The best rate of a peer in so many environments and steps, in transitions a second.
     pub(crate) fn best(&self, name: &str, environments: u64, horizon: u64) -> Option<f64> {
         let size = (environments, Some(horizon));
-        let own =
-            self.rates.iter().filter(|r| r.name == name && (r.environments, r.horizon) == size);
+        let own = self.rates.iter().filter(|r| r.name == name && (r.num_envs, r.horizon) == size);
         own.map(|rate| rate.transitions_per_second).max_by(f64::total_cmp)
     }
 }

@@ -18,7 +18,7 @@ pub(super) fn read(lab: &Lab<'_>) -> Result<Option<Peers<RolloutPeer>>, StudyErr
 fn id(row: &RolloutPeer) -> String {
     let peer = row.peer.to_lowercase().replace(' ', "-");
     let horizon = row.horizon.map(|horizon| format!("x{horizon}")).unwrap_or_default();
-    format!("rollout.{peer}-{}{horizon}", row.environments)
+    format!("rollout.{peer}-{}{horizon}", row.num_envs)
 }
 
 /// Judges the ratios of that file.
@@ -35,7 +35,7 @@ pub(super) fn measure(
         let text = format!(
             "{}, {} environments{}, {}: transitions a second over those of {} ({})",
             row.task,
-            row.environments,
+            row.num_envs,
             row.horizon.map(|horizon| format!(", {horizon} steps")).unwrap_or_default(),
             on_cores(row.threads as usize),
             row.peer,
@@ -46,7 +46,7 @@ pub(super) fn measure(
         aim(record, id(row), text, Some(row.wanted), ratio, reason);
         table.push([
             row.task.as_str().into(),
-            row.environments.into(),
+            row.num_envs.into(),
             row.horizon.map_or_else(|| Cell::absent("any"), Cell::from),
             row.threads.into(),
             row.peer.as_str().into(),
@@ -72,18 +72,18 @@ mod tests {
     fn the_ratios_of_a_file_become_findings_and_a_rate_of_numpy_is_the_best_of_its_ways() {
         let row = |peer: &str, horizon: Option<u64>, ratio: f64, wanted: f64| {
             json!({
-                "peer": peer, "task": "regulate", "environments": 256, "horizon": horizon,
+                "peer": peer, "task": "regulate", "num_envs": 256, "horizon": horizon,
                 "threads": 2, "ratio": ratio, "quartiles": [ratio, ratio], "wanted": wanted,
             })
         };
         let rate = |name: &str, way: &str, rate: f64| {
             json!({
-                "task": "regulate", "environments": 256, "horizon": 512, "name": name, "way": way,
+                "task": "regulate", "num_envs": 256, "horizon": 512, "name": name, "way": way,
                 "transitions_per_second": rate,
             })
         };
         let file = json!({
-            "schema": "libration.rollouts/1", "cpu": Machine::detect().cpu, "versions": "NumPy 2",
+            "schema": "libration.rollouts/2", "cpu": Machine::detect().cpu, "versions": "NumPy 2",
             "rounds": 5, "threads": 2, "absent": {},
             "rows": [row("numpy", Some(512), 50.0, 40.0), row("C loop", None, 1.0, 2.0)],
             "rates": [rate("numpy", "plain", 4e7), rate("numpy", "out=", 5e7), rate("numba", "split", 9e9)],

@@ -25,11 +25,11 @@ use crate::dataset_error::failed;
 /// Environments in four groups, each of three chunks, with all that can be wrong.
 const SETTINGS: &str = "\
 seed = 5
-environments = 200
+num_envs = 200
 steps = 130
-limit = 40
+max_episode_steps = 40
 [chunk]
-environments = 64
+num_envs = 64
 steps = 50
 [task.regulate]
 bound = 1.5
@@ -37,8 +37,8 @@ bound = 1.5
 q = [-1.0, 1.0]
 v = [-1.0, 1.0]
 [delays]
-observation = [0, 2]
-action = [1, 4]
+observation = [0.0, 0.02]
+action = [0.01, 0.04]
 [noise]
 jitter = 0.05
 skew = 0.01

@@ -35,12 +35,12 @@ pub(super) fn measure(
             "throughput.{}-over-{}.{}.1e{}",
             row.implementation,
             row.peer.replace([' ', '='], "-"),
-            row.float,
+            row.dtype,
             (row.count as f64).log10()
         );
         let text = format!(
             "symplectic Euler, {}, N = {}: steps a second, {} over {} ({})",
-            row.float,
+            row.dtype,
             number(row.count as f64, 3),
             row.implementation,
             row.peer,
@@ -61,7 +61,7 @@ pub(super) fn measure(
         table.push([
             row.implementation.as_str().into(),
             row.peer.as_str().into(),
-            row.float.as_str().into(),
+            row.dtype.as_str().into(),
             row.count.into(),
             row.ratio.into(),
             row.wanted.into(),
@@ -85,12 +85,12 @@ mod tests {
     fn a_ratio_that_the_arithmetic_of_the_machine_does_not_allow_is_said_to_be_beyond_it() {
         let row = |count: u64, ratio: f64, most: f64| {
             json!({
-                "implementation": "fused", "peer": "numpy in place", "float": "f32", "count": count,
+                "implementation": "fused", "peer": "numpy in place", "dtype": "f32", "count": count,
                 "ratio": ratio, "quartiles": [ratio, ratio], "wanted": 80.0, "most": most,
             })
         };
         let file = json!({
-            "schema": "libration.peers/1", "cpu": Machine::detect().cpu, "versions": "NumPy 2",
+            "schema": "libration.peers/2", "cpu": Machine::detect().cpu, "versions": "NumPy 2",
             "rounds": 5, "rows": [row(1_000, 54.0, 59.0), row(100_000, 54.0, 90.0)],
         });
         let folder = tempfile::tempdir().expect("a folder");

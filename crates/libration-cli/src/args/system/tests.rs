@@ -54,7 +54,7 @@ fn the_other_flags_are_read() {
     let step = probe.args.step.unwrap();
     assert_eq!((step.integrator, step.dt), (Stepping::Method(libration::Method::Rk4), 0.01));
     assert_eq!(
-        (probe.args.steps_of(1.0).ok(), probe.args.float),
+        (probe.args.steps_of(1.0).ok(), probe.args.dtype),
         (Some(1_000_000), FloatType::Bf16)
     );
 }

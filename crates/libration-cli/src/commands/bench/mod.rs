@@ -22,7 +22,7 @@ use crate::progress::Reporter;
 use crate::{interrupt, terminal};
 
 /// Version of the JSON format.
-const SCHEMA: &str = "libration.bench/1";
+const SCHEMA: &str = "libration.bench/2";
 
 /// Default numbers of trajectories.
 const COUNTS: [usize; 3] = [1_000, 100_000, 10_000_000];
@@ -72,7 +72,7 @@ pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), Failure> {
 /// Returns the measurements of --implementation.
 fn wanted(args: &BenchArgs) -> Result<Vec<Wanted>, Failure> {
     let counts = if args.count.is_empty() { &COUNTS[..] } else { &args.count };
-    let floats = if args.float.is_empty() { &BenchFloat::ALL[..] } else { &args.float };
+    let floats = if args.dtype.is_empty() { &BenchFloat::ALL[..] } else { &args.dtype };
     let mut wanted = Vec::new();
     for &implementation in &args.implementation {
         for &float in floats {
@@ -167,7 +167,7 @@ fn rates_json(rates: &[Rate]) -> String {
     let rate = |rate: &Rate| -> Value {
         json!({
             "implementation": rate.implementation.name(),
-            "float": rate.float.name(),
+            "dtype": rate.float.name(),
             "count": rate.count,
             "steps_per_second": rate.median,
             "spread": rate.spread,

@@ -29,7 +29,7 @@ pub(super) fn json(rates: &[RolloutRate]) -> String {
     let rate = |rate: &RolloutRate| -> Value {
         json!({
             "task": rate.case.task.name(),
-            "environments": rate.case.environments,
+            "num_envs": rate.case.environments,
             "horizon": rate.case.horizon,
             "bytes": rate.case.bytes(),
             "layout": layout(rate),
