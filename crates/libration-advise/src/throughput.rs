@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use libration::ensemble::BatchFloat;
+use libration::ensemble::{AnyEnsemble, BatchFloat};
 use libration::rl::Plan;
-use libration::{AnyMethod, Method};
+use libration::Method;
 use libration_settings::equations::EquationSystem;
 use libration_work::Work;
 
@@ -78,8 +78,7 @@ fn speed<T: BatchFloat>(
     let start = system.initial_state();
     let of = |_: usize, i: usize| T::from_f64(start.get(i).copied().unwrap_or_default());
     let (dynamics, twin) = (system.equations.dynamics(), system.twin.map(|twin| twin.system));
-    let any_method = AnyMethod::Explicit(method);
-    let mut all = T::ensemble_for(any_method, dynamics, twin, count, work.serial()?, &of)?;
+    let mut all = AnyEnsemble::new(dynamics, twin, count, work.serial()?, of)?;
     let mut steps = 16;
     loop {
         let begun = Instant::now();
