@@ -6,7 +6,6 @@ use libration::{AnySystem, catalog};
 
 use libration_analyze::{LatencyOption, Stepping, Timing};
 use libration_settings::equations::EquationSystem;
-use libration_settings::initial_value_problem::InitialValueProblem;
 
 use super::control::{Control, Law};
 use super::loops::{Loop, PlantModel};
@@ -71,8 +70,8 @@ fn random_loop(index: u64) -> Request {
         weights: None,
         deviation: 0.1,
     };
-    let problem = InitialValueProblem { system, actuation, q: vec![0.0], v: vec![0.0] };
-    let system = EquationSystem::of_catalogue(problem).unwrap();
+    let rest = Some(&[0.0][..]);
+    let system = EquationSystem::of_catalogue((system, actuation), rest, rest).unwrap();
     let tolerance = Tolerance { of: Measure::Trajectory, most: 1e-3 };
     Request { control: Some(control), rollout: [64, 64], ..Request::new(system, tolerance, 5.0) }
 }
@@ -115,10 +114,10 @@ fn read(command: &str) -> libration_analyze::Request {
             _ => panic!("{flag} of {command}"),
         }
     }
-    let (system, actuation) = catalog::build(name, &parameters).unwrap();
-    let problem = InitialValueProblem { system, actuation, q: vec![0.0], v: vec![0.0] };
+    let built = catalog::build(name, &parameters).unwrap();
+    let rest = Some(&[0.0][..]);
     libration_analyze::Request {
-        system: EquationSystem::of_catalogue(problem).unwrap(),
+        system: EquationSystem::of_catalogue(built, rest, rest).unwrap(),
         stepping: Stepping::Exact,
         dt,
         steps: 1,

@@ -8,7 +8,6 @@ use libration::control::controller::PidGains;
 use libration::control::{Feedback, Jitter, LqrWeights};
 use libration_logs::{StampOptions, read_time_stamps};
 use libration_settings::equations::EquationSystem;
-use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::{
     ConfigCommand, Coordinates, Count, Document, Fault, Number, SettingsError, suggestions,
 };
@@ -60,8 +59,7 @@ impl TryFrom<RequestFile> for Request {
             let (q, v) = (q.len(), v.len());
             return Err(Fault::new("start.v", format!("`q` has {q} numbers and `v` {v}")));
         }
-        let problem = InitialValueProblem { system, actuation, q, v };
-        let system = EquationSystem::of_catalogue(problem)
+        let system = EquationSystem::of_catalogue((system, actuation), Some(&q), Some(&v))
             .map_err(|error| Fault::new("system", error.to_string()))?;
         let request = Request {
             control,

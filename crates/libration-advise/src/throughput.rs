@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
+use libration::Method;
 use libration::ensemble::{AnyEnsemble, BatchFloat};
 use libration::rl::Plan;
-use libration::Method;
 use libration_settings::equations::EquationSystem;
 use libration_work::Work;
 

@@ -4,7 +4,6 @@ use libration::catalog;
 use libration::live::Setting;
 use libration_report::live::LiveSetting;
 use libration_settings::equations::EquationSystem;
-use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::live_settings;
 use libration_study::Config;
 
@@ -25,9 +24,8 @@ fn oscillator(config: &Config) -> Option<Setting> {
     let (spring, start) = (config.oscillator, config.start);
     let values = [("m", spring.m), ("k", spring.k)];
     let built = catalog::build("oscillator", &values).ok()?;
-    let (q, v) = (Some(vec![start.q]), Some(vec![start.v]));
-    let problem = InitialValueProblem::new(built, q, v).ok()?;
-    let mut setting = live_settings::of_system(&EquationSystem::of_catalogue(problem).ok()?);
+    let system = EquationSystem::of_catalogue(built, Some(&[start.q]), Some(&[start.v])).ok()?;
+    let mut setting = live_settings::of_system(&system);
     setting.system = "oscillator of this report".into();
     Some(setting)
 }

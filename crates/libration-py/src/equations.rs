@@ -9,7 +9,7 @@ use serde_json::json;
 
 use crate::error::{keywords, value_error};
 use crate::linear_plant::{Names, Rows as MatrixRows, names, rows as rows_of};
-use crate::request::{SystemRequest, problem};
+use crate::request::{SystemRequest, of_catalogue};
 
 /// The text of a file of equations, its name in messages, and other values of parameters.
 pub(crate) type EquationText = (String, String, Vec<(String, f64)>);
@@ -37,8 +37,7 @@ pub(crate) fn any_system((description, q, v): &AnySystem) -> PyResult<EquationSy
             system.begin_at(q, v, &[]).map_err(|error| value_error(keywords(&error)))?;
             Ok(system)
         }
-        Description::Name(name) => EquationSystem::of_catalogue(problem(name, q, v)?)
-            .map_err(|error| value_error(error.to_string())),
+        Description::Name(name) => of_catalogue(name, q, v),
     }
 }
 

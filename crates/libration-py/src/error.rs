@@ -12,7 +12,7 @@ use libration_data::DataError;
 use libration_env::dataset::DatasetError;
 use libration_lab::output::OutputError;
 use libration_lab::session::{Cause, SessionError};
-use libration_settings::initial_value_problem::InitialValueError;
+use libration_settings::equations::StartError;
 use libration_settings::{SettingsError, suggestions};
 use libration_study::StudyError;
 use pyo3::exceptions::{
@@ -61,7 +61,7 @@ impl Raised for ReplayError {
     }
 }
 
-impl Raised for InitialValueError {
+impl Raised for StartError {
     fn raised(self) -> PyErr {
         value_error(keywords(&self.to_string()))
     }

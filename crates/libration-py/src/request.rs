@@ -7,7 +7,7 @@ use libration::catalog::Actuation;
 use libration::control::{Feedback, Jitter, LqrWeights};
 use libration::{AnyMethod, AnySystem, Method, catalog};
 use libration_analyze::{LatencyOption, Stepping, Timing};
-use libration_settings::initial_value_problem::InitialValueProblem;
+use libration_settings::equations::EquationSystem;
 use libration_settings::limits::{MOST_GAIN, MOST_RMS};
 use libration_settings::suggestions;
 use pyo3::exceptions::PyUserWarning;
@@ -87,12 +87,12 @@ pub(crate) fn warn_of(py: Python<'_>, caveat: Option<String>) -> PyResult<()> {
     PyErr::warn(py, &category, &CString::new(caveat)?, 3)
 }
 
-/// A system of the catalogue and its start; the catalogue supplies missing coordinates.
-pub(crate) fn problem(
+/// A system of the catalogue at its start; the catalogue supplies missing coordinates.
+pub(crate) fn of_catalogue(
     request: &SystemRequest,
     q: Option<&[f64]>,
     v: Option<&[f64]>,
-) -> PyResult<InitialValueProblem> {
+) -> PyResult<EquationSystem> {
     let system = system(request)?;
     if let (Some(q), Some(v)) = (q, v)
         && q.len() != v.len()
@@ -102,8 +102,7 @@ pub(crate) fn problem(
             "q has {q} coordinates and v has {v}, but they must have equally many"
         )));
     }
-    let [q, v] = [q, v].map(|given| given.map(<[f64]>::to_vec));
-    InitialValueProblem::new(system, q, v).map_err(Raised::raised)
+    EquationSystem::of_catalogue(system, q, v).map_err(Raised::raised)
 }
 
 impl Loop {

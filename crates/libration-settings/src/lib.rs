@@ -11,7 +11,6 @@ pub mod equations;
 mod error;
 mod fault;
 mod file;
-pub mod initial_value_problem;
 mod instruction_set;
 pub mod latency_presets;
 pub mod limits;

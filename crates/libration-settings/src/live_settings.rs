@@ -5,7 +5,6 @@ use libration::live::Setting;
 
 use crate::EquationExample;
 use crate::equations::{EquationSystem, Twin};
-use crate::initial_value_problem::InitialValueProblem;
 
 /// Free motion of a system, from its start. A system of the catalogue in one dimension has an input `u`: a force on its mass `m`, or an
 /// acceleration.
@@ -26,8 +25,7 @@ pub fn examples() -> Vec<Setting> {
     let none: [(&str, f64); 0] = [];
     let catalogue = catalog::ENTRIES.into_iter().filter_map(|entry| {
         let built = catalog::build(entry.name, &none).ok()?;
-        let problem = InitialValueProblem::new(built, None, None).ok()?;
-        Some(of_system(&EquationSystem::of_catalogue(problem).ok()?))
+        Some(of_system(&EquationSystem::of_catalogue(built, None, None).ok()?))
     });
     let files = EquationExample::ALL.into_iter().filter_map(|example| {
         let system = EquationSystem::parse(example.text, example.name, &[]).ok()?;

@@ -12,13 +12,10 @@ use libration::system::Oscillator;
 use libration::{AnySystem, State};
 use libration_advise::{Control, Imperfection, Law, Measure, Request, Tolerance};
 use libration_settings::equations::EquationSystem;
-use libration_settings::initial_value_problem::InitialValueProblem;
 
 /// A system of the catalogue under accelerations, from its start.
 pub(crate) fn at_start(system: AnySystem, q: &[f64], v: &[f64]) -> EquationSystem {
-    let (q, v) = (q.to_vec(), v.to_vec());
-    let problem = InitialValueProblem { system, actuation: Actuation::Acceleration, q, v };
-    EquationSystem::of_catalogue(problem).unwrap()
+    EquationSystem::of_catalogue((system, Actuation::Acceleration), Some(q), Some(v)).unwrap()
 }
 
 /// A number from `low` to `high`.

@@ -7,14 +7,12 @@ use libration_analyze::comparison::{
     ComparedIntegrator, Comparison, ComparisonError, ComparisonRequest, compare,
 };
 use libration_settings::equations::EquationSystem;
-use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_work::{Silent, Work};
 
 fn request(name: &str, start: &[f64], horizon: f64, tolerance: f64) -> ComparisonRequest {
     let system = catalog::build(name, &[] as &[(&str, f64)]).unwrap();
     let (q, v) = start.split_at(start.len() / 2);
-    let problem = InitialValueProblem::new(system, Some(q.to_vec()), Some(v.to_vec())).unwrap();
-    let system = EquationSystem::of_catalogue(problem).unwrap();
+    let system = EquationSystem::of_catalogue(system, Some(q), Some(v)).unwrap();
     ComparisonRequest { system, horizon, tolerance }
 }
 

@@ -4,7 +4,6 @@ use libration::catalog;
 use libration::control::{Feedback, Jitter};
 use libration_analyze::{Criteria, LatencyOption, LoopGrowth, Request, Stepping, Timing, analyze};
 use libration_settings::equations::EquationSystem;
-use libration_settings::initial_value_problem::InitialValueProblem;
 use serde_json::Value;
 
 /// A case of `../reference/loops.json`, which `tools/loop_reference.py` made.
@@ -13,9 +12,8 @@ fn request(case: &Value) -> Request {
     let parameters = case["parameters"].as_object().unwrap().iter();
     let parameters: Vec<(&str, f64)> =
         parameters.map(|(name, value)| (name.as_str(), number(value))).collect();
-    let (system, actuation) =
-        catalog::build(case["system"].as_str().unwrap(), &parameters).unwrap();
-    let problem = InitialValueProblem { system, actuation, q: vec![0.0], v: vec![0.0] };
+    let built = catalog::build(case["system"].as_str().unwrap(), &parameters).unwrap();
+    let rest = Some(&[0.0][..]);
     let jitter = case["jitter"].as_array().map(|law| {
         let rms = number(&law[1]);
         match law[0].as_str().unwrap() {
@@ -32,7 +30,7 @@ fn request(case: &Value) -> Request {
         ..Timing::default()
     };
     Request {
-        system: EquationSystem::of_catalogue(problem).unwrap(),
+        system: EquationSystem::of_catalogue(built, rest, rest).unwrap(),
         stepping: Stepping::from_name(case["integrator"].as_str().unwrap()).unwrap(),
         dt: number(&case["dt"]),
         steps: 1,

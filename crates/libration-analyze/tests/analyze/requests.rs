@@ -4,7 +4,6 @@ use libration::catalog::Actuation;
 use libration::{AnySystem, Method};
 use libration_analyze::{Criteria, Request, Timing};
 use libration_settings::equations::EquationSystem;
-use libration_settings::initial_value_problem::InitialValueProblem;
 
 pub(crate) fn request(system: &str, method: Method, dt: f64, q: &[f64], v: &[f64]) -> Request {
     let system = at(AnySystem::build(system, &[] as &[(&str, f64)]).unwrap(), q, v);
@@ -15,6 +14,5 @@ pub(crate) fn request(system: &str, method: Method, dt: f64, q: &[f64], v: &[f64
 
 /// A system of the catalogue at a start.
 pub(crate) fn at(system: AnySystem, q: &[f64], v: &[f64]) -> EquationSystem {
-    let (actuation, q, v) = (Actuation::Acceleration, q.to_vec(), v.to_vec());
-    EquationSystem::of_catalogue(InitialValueProblem { system, actuation, q, v }).unwrap()
+    EquationSystem::of_catalogue((system, Actuation::Acceleration), Some(q), Some(v)).unwrap()
 }

@@ -12,13 +12,11 @@ use libration_analyze::temperature::{
     analyze_temperature,
 };
 use libration_settings::equations::EquationSystem;
-use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_work::{Silent, Work};
 
 fn known(name: &str, parameters: &[(&str, f64)], q: Option<&[f64]>) -> EquationSystem {
     let system = catalog::build(name, parameters).unwrap();
-    let problem = InitialValueProblem::new(system, q.map(<[f64]>::to_vec), None).unwrap();
-    EquationSystem::of_catalogue(problem).unwrap()
+    EquationSystem::of_catalogue(system, q, None).unwrap()
 }
 
 fn by_equations(text: &str) -> EquationSystem {

@@ -12,12 +12,10 @@ use libration_analyze::trajectory::{
 };
 use libration_analyze::{Stepping, Timing};
 use libration_settings::equations::EquationSystem;
-use libration_settings::initial_value_problem::InitialValueProblem;
 
 /// A system of the catalogue from positions and velocities.
 pub(crate) fn from(system: AnySystem, [q, v]: [Vec<f64>; 2]) -> EquationSystem {
-    let actuation = Actuation::Acceleration;
-    EquationSystem::of_catalogue(InitialValueProblem { system, actuation, q, v }).unwrap()
+    EquationSystem::of_catalogue((system, Actuation::Acceleration), Some(&q), Some(&v)).unwrap()
 }
 
 /// The same request from another position, at rest.

@@ -12,7 +12,6 @@ use libration::integrator::Exact;
 use libration::{AnyMethod, CatalogError, catalog};
 use libration_analyze::Stepping;
 use libration_settings::equations::EquationSystem;
-use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::{Number, suggestions};
 
 use super::number::{Coordinates, assignment, coordinates, time_step};
@@ -158,7 +157,7 @@ impl SystemArgs {
     ///
     /// # Errors
     /// If a parameter is unknown or not allowed, or the number of coordinates is wrong.
-    pub(crate) fn resolve(&self) -> Result<InitialValueProblem, Failure> {
+    pub(crate) fn resolve(&self) -> Result<EquationSystem, Failure> {
         if !self.force.is_empty() {
             return Err(Failure::usage(
                 "--force: this command takes systems of the catalogue; `simulate` and `analyze` take expressions",
@@ -186,16 +185,11 @@ impl SystemArgs {
         {
             return Err(unequal_counts(q, v));
         }
-        let given = |x: &Option<Coordinates>| x.as_ref().map(|x| x.0.clone());
-        let problem = InitialValueProblem::new((system, actuation), given(&self.q), given(&self.v))
-            .map_err(Failure::usage)?;
-        if self.start.is_empty() {
-            return Ok(problem);
-        }
-        let mut begun = EquationSystem::of_catalogue(problem.clone()).map_err(Failure::run)?;
+        let [q, v] = [&self.q, &self.v].map(|given| given.as_ref().map(Coordinates::values));
+        let mut begun =
+            EquationSystem::of_catalogue((system, actuation), q, v).map_err(Failure::usage)?;
         begun.begin_at(None, None, &self.start).map_err(Failure::usage)?;
-        let EquationSystem { q, v, .. } = begun;
-        Ok(InitialValueProblem { q, v, ..problem })
+        Ok(begun)
     }
 }
 

@@ -41,7 +41,7 @@ pub(super) fn system(options: &SystemArgs) -> Option<Result<EquationSystem, Fail
 pub(super) fn any_system(options: &SystemArgs) -> Result<EquationSystem, Failure> {
     match system(options) {
         Some(system) => system,
-        None => EquationSystem::of_catalogue(options.resolve()?).map_err(Failure::run),
+        None => options.resolve(),
     }
 }
 

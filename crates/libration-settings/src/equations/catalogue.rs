@@ -1,25 +1,65 @@
 //! Systems of the catalogue by their equations.
 
-use libration::Method;
+use libration::catalog::Actuation;
 use libration::equations::{Definitions, EquationError, Equations};
 use libration::integrator::Exact;
+use libration::{AnySystem, CatalogError, Method};
+use thiserror::Error;
 
 use super::{EquationSystem, Twin, named_states};
-use crate::initial_value_problem::InitialValueProblem;
 use crate::units;
 
+/// Error of the start of a system of the catalogue.
+#[derive(Debug, Error)]
+pub enum StartError {
+    /// The system does not exist in this dimension.
+    #[error(transparent)]
+    Dimension(#[from] CatalogError),
+    /// The rate of a time coordinate is not 1.
+    #[error(
+        "--v ends in {rate}, but the second coordinate of {system} is time, so its rate must be 1"
+    )]
+    Rate {
+        /// The velocity of that coordinate.
+        rate: f64,
+        /// The system.
+        system: &'static str,
+    },
+    /// None of the catalogue: its equations are right.
+    #[error(transparent)]
+    Equations(#[from] EquationError),
+}
+
 impl EquationSystem {
-    /// A system of the catalogue, from its start.
+    /// A system of the catalogue, from positions and velocities of equal number; the catalogue supplies missing ones, which repeat in
+    /// further dimensions.
     ///
     /// # Errors
-    /// None of the catalogue: its equations are right.
-    pub fn of_catalogue(problem: InitialValueProblem) -> Result<Self, EquationError> {
-        let InitialValueProblem { system, actuation, q, v } = problem;
+    /// [`StartError`].
+    pub fn of_catalogue(
+        (system, actuation): (AnySystem, Actuation),
+        q: Option<&[f64]>,
+        v: Option<&[f64]>,
+    ) -> Result<Self, StartError> {
+        let entry = system.entry();
+        let dimension = q.or(v).map_or(*entry.dimensions.start(), <[f64]>::len);
+        if !entry.dimensions.contains(&dimension) {
+            return Err(entry.wrong_dimension(dimension).into());
+        }
+        let start = |given: Option<&[f64]>, known: &[f64]| -> Vec<f64> {
+            let repeated = || known.iter().copied().cycle().take(dimension).collect();
+            given.map_or_else(repeated, <[f64]>::to_vec)
+        };
+        let (q, v) = (start(q, entry.q), start(v, entry.v));
+        if let (AnySystem::DrivenOscillator(_), &[_, rate]) = (system, v.as_slice())
+            && rate != 1.0
+        {
+            return Err(StartError::Rate { rate, system: entry.name });
+        }
         let definitions = Definitions::of_catalogue_in(system, actuation, q.len());
         let equations = Equations::new(&definitions)?;
         let own = units::of(system, actuation);
         let states = named_states(&equations, (&q, &v), &|_| own.position.to_owned(), own.time);
-        let entry = system.entry();
         let unit = |name: &str| {
             let known = entry.parameters.iter().find(|parameter| parameter.name == name);
             known.map_or("", |parameter| parameter.unit).to_owned()

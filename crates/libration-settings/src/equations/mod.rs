@@ -6,6 +6,7 @@ mod start;
 mod table;
 mod task;
 
+pub use catalogue::StartError;
 pub use expression_error::explanation;
 pub(crate) use expression_error::{help, inside};
 use libration::AnySystem;

@@ -9,7 +9,6 @@ use libration::{AnySystem, catalog};
 
 use super::operating_point::ADDED;
 use crate::equations::EquationSystem;
-use crate::initial_value_problem::InitialValueProblem;
 use crate::{Fault, suggestions, units};
 
 /// Whether a name is that of a file of equations.
@@ -56,11 +55,9 @@ impl Subject {
             return Err(depends_on_time(name));
         }
         let origin = vec![0.0; dimension.unwrap_or(*system.entry().dimensions.start())];
-        let at_origin =
-            InitialValueProblem::new((system, actuation), Some(origin.clone()), Some(origin))
-                .map_err(|error| Fault::new("system.linear.at", error.to_string()))?;
-        let of_equations = EquationSystem::of_catalogue(at_origin)
-            .map_err(|error| Fault::new("system.linear.of", error.to_string()))?;
+        let built = (system, actuation);
+        let of_equations = EquationSystem::of_catalogue(built, Some(&origin), Some(&origin))
+            .map_err(|error| Fault::new("system.linear.at", error.to_string()))?;
         let mut subject = Subject::of_equations(&of_equations)?;
         let states = subject.signals.len() - subject.dynamics.degrees();
         let commands = subject.signals[states..].iter_mut().enumerate();

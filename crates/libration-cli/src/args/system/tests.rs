@@ -14,12 +14,12 @@ struct Probe {
 }
 
 /// The outcome of a command line that starts with a system, an integrator and a time step.
-fn probe(system: &str, flags: &str) -> Result<(Probe, InitialValueProblem), String> {
+fn probe(system: &str, flags: &str) -> Result<(Probe, EquationSystem), String> {
     let steps = if flags.contains("--steps") { "" } else { "--steps 10" };
     parse(&format!("probe --system {system} --integrator rk4 --dt 0.01 {steps} {flags}"))
 }
 
-fn parse(line: &str) -> Result<(Probe, InitialValueProblem), String> {
+fn parse(line: &str) -> Result<(Probe, EquationSystem), String> {
     let probe = Probe::try_parse_from(line.split(' ').filter(|word| !word.is_empty()))
         .map_err(|error| error.to_string())?;
     let system = probe.args.system.as_ref().ok_or("there is no system")?;
@@ -50,7 +50,7 @@ fn a_start_is_read_or_comes_from_the_catalogue() {
 fn the_other_flags_are_read() {
     let (probe, setting) =
         probe("oscillator", "--set k=4 --set m=2 --steps 1e6 --dtype bf16").unwrap();
-    assert_eq!(setting.system.parameters(), [("omega2", 2.0)]);
+    assert_eq!(setting.twin.unwrap().system.parameters(), [("omega2", 2.0)]);
     let step = probe.args.step.unwrap();
     assert_eq!((step.integrator, step.dt), (Stepping::Method(libration::Method::Rk4), 0.01));
     assert_eq!(
