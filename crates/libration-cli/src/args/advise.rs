@@ -3,11 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use libration::catalog;
 use libration::control::{Feedback, Jitter, LqrWeights};
-use libration_advise::{Control, Law, Measure, Request, Tolerance};
+use libration_advise::{Measure, Request, Tolerance};
 use libration_analyze::LatencyOption;
-use libration_settings::equations::EquationSystem;
 
 use super::number::{self, period_of_rate, time};
 use super::timing::{feedback, finite, latency, law, weights};
@@ -81,7 +79,7 @@ pub(crate) struct AdviseArgs {
         requires = "feedback",
         allow_hyphen_values = true
     )]
-    cost_weights: Option<LqrWeights>,
+    pub(super) cost_weights: Option<LqrWeights>,
     /// Largest deviation from --q from which the loop must return, in m or rad
     #[arg(
         long,
@@ -91,7 +89,7 @@ pub(crate) struct AdviseArgs {
         default_value = "0.1",
         allow_hyphen_values = true
     )]
-    deviation: f64,
+    pub(super) deviation: f64,
     /// Largest error, of one of energy, phase, trajectory or cost, e.g. energy=1e-6
     #[arg(
         long,
@@ -172,54 +170,6 @@ integrator is accurate enough.";
 pub(super) struct ToleranceArg(pub(super) Tolerance);
 
 impl AdviseArgs {
-    /// Returns the options of the system and its start; the operating point of a loop is the origin by default.
-    ///
-    /// # Errors
-    /// If there are none, or if `--feedback` is given for a system with several degrees of freedom.
-    pub(crate) fn system_and_start(&self) -> Result<SystemArgs, Failure> {
-        let Some(mut options) = self.system.clone() else {
-            return Err(Failure::usage(
-                "no request is given; expected --config FILE, --system NAME or --plant FILE, and their options",
-            ));
-        };
-        one_degree_of_freedom(options.system.as_deref().unwrap_or_default(), self.feedback)?;
-        if self.feedback.is_some() && options.is_of_catalogue() {
-            options.q.get_or_insert_with(number::Coordinates::origin);
-            options.v.get_or_insert_with(number::Coordinates::origin);
-        }
-        Ok(options)
-    }
-
-    /// Returns the request about a system, which these options describe.
-    pub(crate) fn request(
-        &self,
-        system: EquationSystem,
-        options: &SystemArgs,
-    ) -> Result<Request, Failure> {
-        let is_of_catalogue = system.twin.is_some();
-        if !is_of_catalogue && (self.feedback.is_some() || self.period().is_some()) {
-            return Err(Failure::usage(
-                "--feedback and --period are given without a loop; a loop around a file of equations takes --lqr or --gain",
-            ));
-        }
-        let control = self.feedback.map(|gains| Control {
-            law: Law::Pd(gains),
-            period: self.period().unwrap_or(0.01),
-            latency: 0.0,
-            jitter: Jitter::Gaussian(0.0),
-            skew: 0.0,
-            loss: 0.0,
-            record: None,
-            weights: self.cost_weights,
-            deviation: self.deviation,
-        });
-        self.with_timing(Request {
-            control,
-            options: (!is_of_catalogue).then(|| options.words()),
-            ..Request::new(system, self.tolerance.0, self.horizon)
-        })
-    }
-
     /// Returns the stated period of the loop in s.
     pub(super) fn period(&self) -> Option<f64> {
         self.period.or(self.period_of_rate)
@@ -276,19 +226,6 @@ pub(super) fn seconds(latency: LatencyOption, period: f64) -> f64 {
     match latency {
         LatencyOption::Seconds(seconds) => seconds,
         LatencyOption::Steps(steps) => steps * period,
-    }
-}
-
-/// Fails if `feedback` is given for a system with several degrees of freedom.
-fn one_degree_of_freedom(system: &str, feedback: Option<Feedback>) -> Result<(), Failure> {
-    match catalog::find(system) {
-        Ok(entry) if feedback.is_some() && !entry.dimensions.contains(&1) => {
-            let fewest = entry.dimensions.start();
-            Err(Failure::usage(format!(
-                "--feedback closes a loop around one degree of freedom, but --system {system} has {fewest}"
-            )))
-        }
-        _ => Ok(()),
     }
 }
 

@@ -8,8 +8,8 @@ use libration_advise::linear::{LinearRequest, RequestFile};
 use libration_advise::{Measure, Tolerance};
 use libration_analyze::LatencyOption;
 use libration_settings::linear_loop::{
-    Channels, LinearControllerTable, LinearLoopTable, Rows, StateFeedbackTable, Weights,
-    WeightsTable, read_plant,
+    Channels, Coordinates, LinearControllerTable, LinearLoopTable, Rows, StateFeedbackTable,
+    Weights, WeightsTable, read_plant,
 };
 use libration_settings::{Fault, Number};
 
@@ -91,6 +91,7 @@ impl AdviseArgs {
         })?;
         if let Some(options) = self.system_options() {
             plant.parameters = options.equation_parameters()?;
+            plant.at = start_of_search(options)?.or(plant.at);
         }
         let controller = match (&self.linear.lqr, &self.linear.gain) {
             (Some(weights), _) => LinearControllerTable::Lqr(weights.clone()),
@@ -177,10 +178,26 @@ pub(super) fn named(fault: &Fault) -> String {
         "loop.loss" => "--loss: ",
         key if key.starts_with("controller.lqr") => "--lqr: ",
         key if key.starts_with("controller.state-feedback") => "--gain: ",
+        "system.linear.at" => "--q, --start: ",
         key if key.starts_with("system") => "--plant: ",
         _ => "",
     };
     format!("{option}{fault}")
+}
+
+/// Where the search for the equilibrium of a file of equations begins; none at the start of the file.
+fn start_of_search(options: &SystemArgs) -> Result<Option<Coordinates>, Failure> {
+    let named = options.start.iter().map(|(name, x)| (name.clone(), Number(*x)));
+    match (&options.q, options.start.is_empty()) {
+        (None, true) => Ok(None),
+        (None, false) => Ok(Some(Coordinates::Named(named.collect()))),
+        (Some(q), true) => {
+            Ok(Some(Coordinates::Each(q.values().iter().map(|&x| Number(x)).collect())))
+        }
+        (Some(_), false) => Err(Failure::usage(
+            "--q and --start are given; expected one of them: a loop is closed at an equilibrium near it",
+        )),
+    }
 }
 
 fn numbers(text: &str) -> Option<Vec<Number>> {

@@ -1,5 +1,6 @@
 //! The command line as types.
 
+mod advice_request;
 mod advise;
 mod analyze;
 mod audit;
@@ -7,7 +8,6 @@ mod bench;
 mod bodies;
 mod clock;
 mod compare;
-mod equation_advice;
 mod gains;
 mod identify;
 mod lab;

@@ -23,11 +23,11 @@ fn steps(advice: &Value) -> BTreeMap<String, [f64; 3]> {
     all.iter().map(known).collect()
 }
 
-/// An advice without what differs between two runs, or names the system in command lines.
+/// An advice without what differs between two runs, names the system in command lines, or warns of one of the catalogue.
 fn comparable(words: &[&str]) -> Value {
     let mut advice = json(&[&["advise", "-q"], words].concat());
     let object = advice.as_object_mut().unwrap();
-    object.retain(|key, _| !matches!(key.as_str(), "command" | "repeat_command"));
+    object.retain(|key, _| !matches!(key.as_str(), "command" | "repeat_command" | "warnings"));
     let speed = object["throughput"].as_object_mut().unwrap();
     speed.retain(|key, _| !key.ends_with("a_second"));
     for float in object["floats"].as_array_mut().unwrap() {
@@ -241,6 +241,26 @@ fn a_loop_around_a_file_of_equations_is_that_of_its_plant() {
 }
 
 #[test]
+fn a_loop_around_equations_is_closed_at_the_equilibrium_near_the_given_start() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = PENDULUM
+        .replace("sin(q)\"", "sin(q) + u\"")
+        .replace("[\"q\"]", "[\"q\"]\ninputs = [\"u\"]");
+    let file = written(&folder, "commanded.toml", &text);
+    let loop_near = |start: &[&str]| {
+        let words = ["advise", "-q", "--system", file.to_str().unwrap(), "--lqr", "1,1/1"];
+        let advice = json(&[&words, start].concat());
+        let point = advice["operating_point"]["states"][0]["value"].as_f64().unwrap();
+        (point, advice["gain"].clone())
+    };
+    let (hanging, below) = loop_near(&[]);
+    let (upright, above) = loop_near(&["--q", "3"]);
+    assert!(hanging.abs() < 1e-9 && (upright - std::f64::consts::PI).abs() < 1e-9);
+    assert_ne!(below, above);
+    assert_eq!(loop_near(&["--start", "q=3"]), (upright, above));
+}
+
+#[test]
 fn options_of_other_systems_are_refused_by_name() {
     let cart = example("cart_pole.toml");
     let refused = |words: &[&str], why: &str| {
@@ -252,7 +272,11 @@ fn options_of_other_systems_are_refused_by_name() {
     refused(&["--system", &cart, "--latency", "0.01"], "--latency is given, but there is no loop");
     refused(
         &["--system", &cart, "--lqr", "1/1", "--q", "1"],
-        "--q requires a system of the catalogue",
+        "--q, --start: `at` has 1 numbers; expected 2",
+    );
+    refused(
+        &["--system", &cart, "--lqr", "1/1", "--v", "1"],
+        "--v requires a system of the catalogue",
     );
     refused(&["--lqr", "1/1"], "--lqr is given without a plant");
     refused(&["--system", "pendulum", "--gain", "1"], "--gain is given without a plant");
