@@ -195,6 +195,7 @@ def test_repeated_actions_are_one_longer_step_and_leave_the_system_as_it_is():
     assert flow == pytest.approx(np.array([[0.0, 1.0], [-4.0, -0.2]]), abs=1e-7)
 
 
+@pytest.mark.any_gymnasium
 def test_late_and_sluggish_continuous_actions_are_found():
     report = audit("Slider", late_by(2))
     assert kinds(report) == ["late-command"] and report.hidden_latency[0]["late_steps"] == 2.0
@@ -224,6 +225,7 @@ def test_old_observations_are_found(name, wrapper, steps):
     assert report.results["memory"]["observation"]["mean"] == steps
 
 
+@pytest.mark.any_gymnasium
 @pytest.mark.parametrize("name", ["Slider", "Pendulum-v1", "CartPole-v1"])
 @pytest.mark.parametrize("flaky", [{"probability": 0.2}, {"every": 5}])
 def test_observations_that_are_old_now_and_then_are_found(name, flaky):
@@ -233,6 +235,7 @@ def test_observations_that_are_old_now_and_then_are_found(name, flaky):
     assert report.verdict["outcome"] == "fault" and not report.holds
 
 
+@pytest.mark.any_gymnasium
 @pytest.mark.parametrize("name", ["Slider", "Pendulum-v1", "CartPole-v1"])
 @pytest.mark.parametrize("of", ["action", "observation"])
 @pytest.mark.parametrize("probability", [0.001, 0.01])
@@ -297,6 +300,7 @@ def test_wrappers_of_rewards_records_and_time_limits_do_not_matter():
     ]
 
 
+@pytest.mark.any_gymnasium
 def test_a_memory_of_the_environment_itself_is_found():
     assert kinds(audit("Slider")) == []
     late = probe.gymnasium(Slider(late=True))
@@ -317,9 +321,10 @@ class Filtered(Slider):
         return super().step(np.atleast_1d(self.filtered))
 
 
-@pytest.mark.parametrize("as_array", [False, True])
+@pytest.mark.any_gymnasium
+# Each kind of memory with each part, at rest or at an action.
 @pytest.mark.parametrize("part", [0.02, 0.1, 0.5, 0.9])
-@pytest.mark.parametrize("action", [None, [0.3]])
+@pytest.mark.parametrize(("as_array", "action"), [(False, None), (True, [0.3])])
 def test_a_filter_of_the_environment_itself_is_found_though_it_forgets_slowly(part, as_array, action):
     # It takes 36/part calls until a filter has forgotten an action to all digits.
     report = probe.gymnasium(Filtered(part, as_array), action)
@@ -346,6 +351,7 @@ class Worn(Slider):
         return (self.state, *result[1:])
 
 
+@pytest.mark.any_gymnasium
 @pytest.mark.parametrize("what", ["damping", "spring", "use", "action"])
 def test_a_counter_of_the_environment_itself_is_never_no_fault(what):
     report = probe.gymnasium(Worn(what))
@@ -369,8 +375,8 @@ class Queued(Slider):
         return super().step(self.queue.pop(0))
 
 
-@pytest.mark.parametrize("steps", [1, 3])
-@pytest.mark.parametrize("is_reset", [False, True])
+@pytest.mark.any_gymnasium
+@pytest.mark.parametrize(("steps", "is_reset"), [(1, True), (3, False)])
 def test_a_queue_that_a_reset_fills_is_found_before_a_reset_too(steps, is_reset):
     env = Queued(steps)
     env.state = np.array([0.01, 0.0])
