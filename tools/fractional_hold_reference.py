@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes crates/libration-linear/tests/known_numbers/fractional_hold.txt, with NumPy 2.4.6 and SciPy 1.17.1.
+"""Writes crates/libration-linear/tests/linear/known_numbers/fractional_hold.txt, with NumPy 2.4.6 and SciPy 1.17.1.
 
 A command with a latency of f periods, 0 < f < 1, acts from f·h to the end of the period and to f·h of the next one:
 
@@ -18,7 +18,7 @@ from scipy.linalg import expm
 from scipy.signal import cont2discrete
 
 PERIOD = 0.4
-# A damped oscillator with an integrator, and an unstable plant. The same in known_numbers/main.rs.
+# A damped oscillator with an integrator, and an unstable plant. The same in known_numbers.
 PLANTS = [
     ([[0, 1, 0], [-9, -0.5, 0], [1, 0, 0]], [[0, 0], [2, 0.25], [0, 1]]),
     ([[1.5, -2, 0.5], [0.25, -3, 1], [0, 4, 0.75]], [[1, -1], [0.5, 0], [0, 2]]),

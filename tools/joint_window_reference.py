@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Prints stable latencies that all inputs of a loop have together, in periods: the numbers of
-crates/libration-linear/tests/joint_latency_windows.rs (known_windows).
+crates/libration-linear/tests/linear/joint_latency_windows.rs (known_windows).
 
 The state of a period is the plant and the past commands. A command that is late by w periods and a
 part p acts in [p, h) of its period, the one before it in [0, p). Latencies are scanned in steps of

@@ -10,27 +10,19 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use libration::State;
-use libration::ensemble::{All, Execution};
-use libration::integrator::SymplecticEuler;
+use libration::ensemble::Execution;
 use libration::replay::{Batch, Capacity, Draw, Lookahead};
 use libration::rl::policy::Random;
 use libration::rl::start::UniformStart;
-use libration::rl::task::Regulate;
-use libration::rl::{Environment, Environments, Plan, Rollout, World};
-use libration::system::Oscillator;
+use libration::rl::{Environments, Plan, Rollout, World};
 use libration_data::ReplayFile;
 use tempfile::TempDir;
+
+use super::spring::world;
 
 const FILE: &str = "LIBRATION_TEST_REPLAY";
 const COUNT: usize = 16;
 const STEPS: usize = 5;
-
-fn world() -> impl World<f32, 2, 1> {
-    let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 1.3 };
-    let start = UniformStart(State { q: [-1.0], v: [-2.0] }, State { q: [1.0], v: [2.0] });
-    let spring = All(Oscillator { omega2: 10.0_f32 });
-    Environment::new(spring, SymplecticEuler, 0.05, task, start).limit(11)
-}
 
 /// What is inserted, one after the other; every tenth time some environments are reset.
 struct Source<E: World<f32, 2, 1>> {
@@ -39,7 +31,9 @@ struct Source<E: World<f32, 2, 1>> {
 }
 
 fn source() -> Source<impl World<f32, 2, 1>> {
-    Source { all: Environments::new(world(), COUNT, 3, Execution::serial()).unwrap(), turn: 0 }
+    let start = UniformStart(State { q: [-1.0], v: [-2.0] }, State { q: [1.0], v: [2.0] });
+    let all = Environments::new(world(0.05, 1.3, start), COUNT, 3, Execution::serial()).unwrap();
+    Source { all, turn: 0 }
 }
 
 impl<E: World<f32, 2, 1>> Source<E> {

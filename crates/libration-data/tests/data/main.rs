@@ -7,4 +7,5 @@ mod formats;
 #[cfg(unix)]
 mod kills;
 mod replay_file;
+mod spring;
 mod state_file;

@@ -3,16 +3,15 @@
 use std::fs;
 
 use libration::State;
-use libration::ensemble::{All, Execution};
-use libration::integrator::SymplecticEuler;
+use libration::ensemble::Execution;
 use libration::replay::Capacity;
 use libration::rl::policy::Random;
-use libration::rl::start::FixedStart;
-use libration::rl::task::Regulate;
-use libration::rl::{Environment, Environments, Plan, Rollout};
-use libration::system::Oscillator;
+use libration::rl::start::UniformStart;
+use libration::rl::{Environments, Plan, Rollout};
 use libration_data::ReplayFile;
 use tempfile::TempDir;
+
+use super::spring::world;
 
 type Kept = ReplayFile<f32>;
 
@@ -21,11 +20,9 @@ const SIZES: [usize; 2] = [2, 1];
 
 /// Inserts so many rollouts of five steps.
 fn fill(replay: &mut Kept, rollouts: usize) {
-    let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 };
-    let start = FixedStart(State { q: [1.0], v: [0.0] });
-    let world =
-        Environment::new(All(Oscillator { omega2: 10.0_f32 }), SymplecticEuler, 0.01, task, start);
-    let mut all = Environments::new(world.limit(7), 8, 1, Execution::serial()).unwrap();
+    let start = State { q: [1.0], v: [0.0] };
+    let world = world(0.01, 10.0, UniformStart(start, start));
+    let mut all = Environments::new(world, 8, 1, Execution::serial()).unwrap();
     let mut rollout = Rollout::new(Plan::new(5, 8).truncated()).unwrap();
     let mut next = [0.0; 16];
     for _ in 0..rollouts {

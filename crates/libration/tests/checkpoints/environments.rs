@@ -15,7 +15,7 @@ use libration::rl::variation::RandomParameters;
 use libration::rl::{
     Autoreset, Delays, Distribution, Environment, Environments, ErrorScale, Plan, Rollout, World,
 };
-use libration::system::Oscillator;
+use libration::system::{BaselineOnly, Oscillator};
 
 use super::{executions, refused};
 
@@ -31,7 +31,8 @@ fn world(autoreset: Autoreset) -> impl World<f32, 2, 1> {
     let start = UniformStart(State { q: [-1.0], v: [-2.0] }, State { q: [1.0], v: [2.0] });
     let jittered = (Jittered(Gaussian(0.1)), Correlated { rms: 0.1, correlation: 0.9 });
     let uneven = (Skewed(Jitter::Uniform(0.01)), Drifting(Jitter::Gaussian(1e-4)));
-    Environment::new(All(Oscillator { omega2: 10.0_f32 }), VelocityVerlet, 0.02, task, start)
+    let system = All(BaselineOnly(Oscillator { omega2: 10.0_f32 }));
+    Environment::new(system, VelocityVerlet, 0.02, task, start)
         .substeps(3)
         .limit(60)
         .autoreset(autoreset)
@@ -41,8 +42,8 @@ fn world(autoreset: Autoreset) -> impl World<f32, 2, 1> {
         .error_scale(ErrorScale { clock: [0.0, 2.0], sensor: [0.5, 1.5] })
         .variation(RandomParameters {
             numbers: [Distribution::Uniform(8.0, 12.0)],
-            apply: |[omega2]: [f32; 1], _: Oscillator<f32>, task: Regulate| {
-                (Oscillator { omega2 }, task)
+            apply: |[omega2]: [f32; 1], _: BaselineOnly<Oscillator<f32>>, task: Regulate| {
+                (BaselineOnly(Oscillator { omega2 }), task)
             },
         })
 }

@@ -7,13 +7,13 @@ use libration::control::controller::StateFeedback;
 use libration::control::{Feedback, Jitter, Latency, Schedule};
 use libration::ensemble::{All, Ensemble, Execution, Loops, Setup};
 use libration::integrator::VelocityVerlet;
-use libration::system::{HenonHeiles, Oscillator};
+use libration::system::{BaselineOnly, HenonHeiles, Oscillator};
 
 use super::{executions, refused};
 
 #[test]
 fn an_ensemble_goes_on_bit_for_bit_wherever_it_is_taken_up() {
-    let system = All(HenonHeiles { lambda: 1.0 });
+    let system = All(BaselineOnly(HenonHeiles { lambda: 1.0 }));
     let start = |n: usize| State { q: [0.001 * n as f64, 0.1], v: [0.0, 0.05] };
     let make = |execution| Ensemble::<f64, 2>::from_fn(333, execution, start).unwrap();
     let mut whole = make(Execution::serial());
@@ -37,7 +37,7 @@ fn an_ensemble_goes_on_bit_for_bit_wherever_it_is_taken_up() {
 fn loops_go_on_bit_for_bit_with_all_that_they_remember() {
     let gains = Feedback { position: 10.0, velocity: 2.0 };
     let clock = (Jittered(Gaussian(0.1)), Correlated { rms: 0.1, correlation: 0.9 });
-    let setup = Setup::new(All(Oscillator { omega2: 10.0 }), VelocityVerlet)
+    let setup = Setup::new(All(BaselineOnly(Oscillator { omega2: 10.0 })), VelocityVerlet)
         .controller(StateFeedback::to_origin(gains))
         .clock((clock, Drifting(Jitter::Gaussian(1e-4))))
         .delay(Schedule::late(Latency::of_steps(2.5).unwrap()));

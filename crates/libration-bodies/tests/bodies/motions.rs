@@ -2,9 +2,7 @@
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
-mod common;
-
-use common::{energy_error, simulation};
+use super::common::{energy_error, simulation};
 use libration_batch::ensemble::Execution;
 use libration_bodies::{
     Bodies, BodiesError, Body, BodyIntegrator, BodySimulation, InitialConditions, KOZAI_TILT,

@@ -1,0 +1,4 @@
+//! Tests of ensembles against single trajectories.
+
+mod implicit_ensembles;
+mod single_trajectories;
