@@ -1,8 +1,7 @@
-//! Tests of budgets of loops against independent simulations.
+//! Tests of budgets of loops against plain simulations, and against the mean over random steps.
 
 use libration::State;
 use libration::analysis::{ObserverNoise, Plant};
-use libration::control::clock::Recorded;
 use libration::control::controller::{Luenberger, Pid, PidGains};
 use libration::control::{Controller, Feedback, LqrWeights};
 use libration::system::Oscillator;
@@ -148,8 +147,7 @@ fn a_clock_that_is_replayed_is_predicted_step_by_step() {
             None => assert!(!stands, "{block}"),
         }
         if loss == 0.0 {
-            let clock = Recorded::repeated(&steps);
-            let grown = case.growth_by(case.feedback(), clock, 0.0, case.period);
+            let grown = case.growth_by(case.feedback(), &steps, 0.0);
             assert_eq!(grown < 0.0, stands, "{block}: {grown} {}", combined.growth);
         }
     }

@@ -1,12 +1,11 @@
 //! Loops and independent simulations of them.
 
+use std::collections::VecDeque;
+
 use libration::analysis::{Imperfections, Plant};
 use libration::catalog::Actuation;
-use libration::control::clock::{Jittered, Rates};
 use libration::control::controller::StateFeedback;
-use libration::control::{Clock, Controller, Feedback, Jitter, Latency, LqrWeights, Schedule};
-use libration::ensemble::{All, Execution, Loops, Setup};
-use libration::integrator::Exact;
+use libration::control::{Controller, Feedback, Jitter, Latency, LqrWeights};
 use libration::random::{Address, Purpose};
 use libration::system::Oscillator;
 use libration::{AnySystem, State};
@@ -52,6 +51,20 @@ impl Case {
         }
     }
 
+    /// The state after `dt` seconds under a command, in closed form.
+    fn moved(
+        self,
+        State { q: [q], v: [v] }: State<f64, 1>,
+        command: f64,
+        dt: f64,
+    ) -> State<f64, 1> {
+        let rate = self.omega2.sqrt();
+        let (sine, cosine) = (rate * dt).sin_cos();
+        let rest = command / self.omega2;
+        let q0 = q - rest;
+        State { q: [rest + q0 * cosine + v / rate * sine], v: [v * cosine - q0 * rate * sine] }
+    }
+
     /// By how much `ln |y|` of a simulated loop changes in a period, between two long windows.
     pub(crate) fn growth(
         self,
@@ -59,36 +72,42 @@ impl Case {
         latency: f64,
         skew: f64,
     ) -> f64 {
-        let rates = [1.0 + skew];
-        self.growth_by(controller, Rates(&rates), latency, self.period * (1.0 + skew))
+        self.growth_by(controller, &[1.0 + skew], latency)
     }
 
-    /// The same with another clock, whose steps are about `step` long.
+    /// The same with periods of these lengths in turn.
+    ///
+    /// By a plain loop, which has nothing of the kernels of the engine.
     pub(crate) fn growth_by(
         self,
         controller: impl Controller<f64, 1>,
-        clock: impl Clock<f64>,
+        lengths: &[f64],
         latency: f64,
-        step: f64,
     ) -> f64 {
-        const PERIODS: u64 = 6_000;
-        let model = Oscillator { omega2: self.omega2 };
-        let latency = Latency::of_steps(latency / self.period).unwrap();
-        let exact = Exact::new::<1>(model, step).unwrap();
-        let setup = Setup::new(All(model), exact)
-            .controller(controller)
-            .clock(clock)
-            .delay(Schedule::late(latency));
-        let start = [State { q: [1.0], v: [0.3] }];
-        let mut one =
-            Loops::new(setup, self.period, 0, [0.0], &start, Execution::serial()).unwrap();
+        const PERIODS: usize = 6_000;
+        let (whole, part) =
+            ((latency / self.period).trunc() as usize, (latency / self.period).fract());
+        let mut waiting: VecDeque<f64> = std::iter::repeat_n(0.0, whole).collect();
+        let mut state = State { q: [1.0], v: [0.3] };
+        let (mut memory, mut held) = (controller.start(&state), 0.0);
+        let mut lengths = lengths.iter().cycle();
+        let mut step = || {
+            let dt = self.period * lengths.next().unwrap();
+            let [command] = controller.command(&mut memory, &state, self.period);
+            waiting.push_back(command);
+            state = self.moved(state, held, part * dt);
+            held = waiting.pop_front().unwrap();
+            state = self.moved(state, held, (1.0 - part) * dt);
+            let State { q: [q], v: [v] } = state;
+            (self.omega2.max(1.0) * q * q + v * v).ln() / 2.0
+        };
         let mut means = [0.0; 2];
-        one.advance(PERIODS / 4).unwrap();
+        for _ in 0..PERIODS / 4 {
+            step();
+        }
         for mean in &mut means {
             for _ in 0..PERIODS {
-                one.advance(1).unwrap();
-                let State { q: [q], v: [v] } = one.state(0).unwrap();
-                let size = (self.omega2.max(1.0) * q * q + v * v).ln() / 2.0;
+                let size = step();
                 // Beyond the floats it is plain what it does.
                 if !size.is_finite() || size.abs() > 300.0 {
                     return if size > 0.0 || size.is_nan() { 1.0 } else { -1.0 };
@@ -121,40 +140,36 @@ impl Case {
         StateFeedback::to_origin(self.gains)
     }
 
-    /// What a period makes of `E[q²]`, `E[qv]` and `E[v²]`, measured of loops that are simulated with a jittered clock.
-    pub(crate) fn simulated_operator(self, rms: f64) -> [[f64; 3]; 3] {
-        // At 0.98 and 1.02 of a limit the growth is off by a 25th of what jitter adds, which is as the square of its rms; what a
-        // draw adds is as its rms.
-        let count = ((90.0 / rms).powi(2) as usize).clamp(50_000, 400_000);
-        let model = Oscillator { omega2: self.omega2 };
-        let exact = Exact::new::<1>(model, self.period).unwrap();
-        let setup = Setup::new(All(model), exact)
-            .controller(self.feedback())
-            .clock(Jittered(Jitter::Uniform(rms)));
-        let starts: Vec<State<f64, 1>> = [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]
-            .into_iter()
-            .flat_map(|[q, v]| std::iter::repeat_n(State { q: [q], v: [v] }, count))
-            .collect();
-        let mut loops =
-            Loops::new(setup, self.period, 5, [0.0], &starts, Execution::serial()).unwrap();
-        loops.advance(1).unwrap();
-        let after = |start: usize| {
-            let mut sums = [0.0; 3];
-            for i in start * count..(start + 1) * count {
-                let State { q: [q], v: [v] } = loops.state(i).unwrap();
-                for (sum, x) in sums.iter_mut().zip([q * q, q * v, v * v]) {
-                    *sum += x / count as f64;
-                }
+    /// What a period of a jittered clock makes of `E[q²]`, `E[qv]` and `E[v²]`: the mean over the uniform law of its length.
+    fn mean_operator(self, rms: f64) -> [[f64; 3]; 3] {
+        // The error of the midpoint rule is 1e-6 of what jitter adds.
+        const POINTS: usize = 1000;
+        let Feedback { position, velocity } = self.gains;
+        let mut mean = [[0.0; 3]; 3];
+        for i in 0..POINTS {
+            let part = (2 * i + 1) as f64 / POINTS as f64 - 1.0;
+            // No step is negative.
+            let dt = self.period * (1.0 + 3.0_f64.sqrt() * rms * part).max(0.0);
+            let [(a, c), (b, d)] = [(1.0, 0.0), (0.0, 1.0)].map(|(q, v)| {
+                let command = -position * q - velocity * v;
+                let State { q: [q], v: [v] } = self.moved(State { q: [q], v: [v] }, command, dt);
+                (q, v)
+            });
+            let squares = [
+                [a * a, 2.0 * a * b, b * b],
+                [a * c, a * d + b * c, b * d],
+                [c * c, 2.0 * c * d, d * d],
+            ];
+            for (own, square) in mean.as_flattened_mut().iter_mut().zip(squares.as_flattened()) {
+                *own += square / POINTS as f64;
             }
-            sums
-        };
-        let [qq, vv, both] = [0, 1, 2].map(after);
-        [0, 1, 2].map(|i| [qq[i], both[i] - qq[i] - vv[i], vv[i]])
+        }
+        mean
     }
 
     /// The factor by which those grow in a period.
     pub(crate) fn mean_square(self, rms: f64) -> f64 {
-        let operator = self.simulated_operator(rms);
+        let operator = self.mean_operator(rms);
         let mut state = [1.0, 0.1, 1.0];
         let mut growth = 1.0;
         for _ in 0..20_000 {

@@ -155,7 +155,7 @@ fn verdicts_of_gains_and_their_exit_codes_are_those_of_closed_forms() {
 #[test]
 fn a_number_that_is_missing_is_not_printed() {
     let duffing =
-        "advise --system duffing --set alpha=1 --set beta=-1 --feedback 0.1,1 --period 0.01 --q 0";
+        "advise --system duffing --set alpha=1 --set beta=-1 --feedback 0.1,1 --period 0.05 --q 0";
     for (command, said) in [
         (format!("{duffing} --deviation 2"), "each tried step loses the motion"),
         (format!("{duffing} --deviation 3 --horizon 30"), "each tried step loses the motion"),
