@@ -236,11 +236,12 @@ def _largest_steps(axis: Axes, steps: Sequence[Mapping[str, Any]], dt: float | N
 def _errors(axis: Axes, motion: Mapping[str, Any]) -> None:
     """Draw the errors of an integrator on a motion."""
     errors = motion["errors"]
-    for row, error in enumerate(errors):
-        if error["error"] > 0 and math.isfinite(error["error"]):
-            axis.plot(error["error"], row, "o", color="C0")
+    known = [error["error"] or 0.0 for error in errors]
+    for row, error in enumerate(known):
+        if error > 0 and math.isfinite(error):
+            axis.plot(error, row, "o", color="C0")
         axis.axhline(row, color="0.85", linewidth=1, zorder=0)
-    sizes = [error["error"] for error in errors if error["error"] > 0 and math.isfinite(error["error"])] or [1.0]
+    sizes = [error for error in known if error > 0 and math.isfinite(error)] or [1.0]
     # Ticks are at powers of ten.
     axis.set_xscale("log")
     axis.set_xlim(10.0 ** (math.floor(math.log10(min(sizes))) - 0.2), 10.0 ** (math.ceil(math.log10(max(sizes))) + 0.2))

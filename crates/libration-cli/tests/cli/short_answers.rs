@@ -58,7 +58,7 @@ const FORMS: [(&str, &str); 23] = [
     ),
     (
         "analyze --system pendulum --q 2.5 --integrator gauss-legendre-4 --dt 0.1 --steps 100",
-        "note: the system is not linear",
+        "linearised at q = 3.141593 rad",
     ),
     (
         "analyze --config examples/loops/two_mass_drive.toml --dt 0.001",
