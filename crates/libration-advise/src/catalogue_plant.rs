@@ -12,55 +12,28 @@ use libration_work::Work;
 use super::advice::Advice;
 use super::budget::Budget;
 use super::control::Control;
-use super::loops::PlantModel;
 use super::request::Request;
 use super::{AdviseError, advisor};
 
-/// A function of a loop around any plant.
-trait OfLoop {
-    type Output;
-
-    fn around<M: PlantModel>(
-        &self,
-        work: &Work<'_>,
-        model: M,
-        control: &Control,
-        request: &Request,
-    ) -> Result<Self::Output, AdviseError>;
-}
-
-/// Advice on a loop.
-struct OfAdvice;
-
-/// The budgets of a loop.
-struct OfBudgets;
-
-impl OfLoop for OfAdvice {
-    type Output = Advice;
-
-    fn around<M: PlantModel>(
-        &self,
-        work: &Work<'_>,
-        model: M,
-        control: &Control,
-        request: &Request,
-    ) -> Result<Advice, AdviseError> {
-        advisor::advise_loop(work, model, control, request)
-    }
-}
-
-impl OfLoop for OfBudgets {
-    type Output = Vec<Budget>;
-
-    fn around<M: PlantModel>(
-        &self,
-        work: &Work<'_>,
-        model: M,
-        control: &Control,
-        request: &Request,
-    ) -> Result<Vec<Budget>, AdviseError> {
-        advisor::loop_budgets(work, model, control, request)
-    }
+/// Evaluates an expression with the compiled plant of a loop.
+macro_rules! with_plant {
+    ($request:expr, |$plant:ident| $use:expr) => {{
+        let twin = $request.system.twin.map(|twin| twin.system);
+        match (twin, $request.system.q.len()) {
+            // Without damping it has the bits of the oscillator, up to the sign of a zero.
+            (Some(AnySystem::Oscillator(Oscillator { omega2 })), 1) => {
+                let $plant = DampedOscillator { omega2, gamma: 0.0 };
+                $use
+            }
+            (Some(AnySystem::DampedOscillator($plant)), 1) => $use,
+            (Some(AnySystem::Pendulum($plant)), 1) => $use,
+            (Some(AnySystem::Duffing($plant)), 1) => $use,
+            (None, _) => {
+                Err(dimension_error($request, "a loop requires a system of the catalogue"))
+            }
+            _ => Err(dimension_error($request, "a loop requires one")),
+        }
+    }};
 }
 
 /// The advice on a loop.
@@ -69,7 +42,7 @@ pub(super) fn advise(
     control: &Control,
     request: &Request,
 ) -> Result<Advice, AdviseError> {
-    with_plant(work, control, request, &OfAdvice)
+    with_plant!(request, |plant| advisor::advise_loop(work, plant, control, request))
 }
 
 /// The budgets of a loop.
@@ -78,27 +51,7 @@ pub(super) fn budgets(
     control: &Control,
     request: &Request,
 ) -> Result<Vec<Budget>, AdviseError> {
-    with_plant(work, control, request, &OfBudgets)
-}
-
-fn with_plant<F: OfLoop>(
-    work: &Work<'_>,
-    control: &Control,
-    request: &Request,
-    of: &F,
-) -> Result<F::Output, AdviseError> {
-    let twin = request.system.twin.map(|twin| twin.system);
-    match (twin, request.system.q.len()) {
-        (None, _) => Err(dimension_error(request, "a loop requires a system of the catalogue")),
-        // Without damping it has the bits of the oscillator, up to the sign of a zero.
-        (Some(AnySystem::Oscillator(Oscillator { omega2 })), 1) => {
-            of.around(work, DampedOscillator { omega2, gamma: 0.0 }, control, request)
-        }
-        (Some(AnySystem::DampedOscillator(model)), 1) => of.around(work, model, control, request),
-        (Some(AnySystem::Pendulum(model)), 1) => of.around(work, model, control, request),
-        (Some(AnySystem::Duffing(model)), 1) => of.around(work, model, control, request),
-        _ => Err(dimension_error(request, "a loop requires one")),
-    }
+    with_plant!(request, |plant| advisor::loop_budgets(work, plant, control, request))
 }
 
 fn dimension_error(request: &Request, allowed: &'static str) -> AdviseError {

@@ -187,6 +187,18 @@ impl Method {
         }
     }
 
+    /// A warning about this method on a system whose forces depend on velocities, in a sentence; none if it keeps its properties there.
+    pub fn velocity_caveat(self, system: &str) -> Option<String> {
+        (self == Method::TextbookVerlet).then(|| {
+            format!(
+                "the force of `{system}` depends on the velocity, and `{}` takes it at the end of a step with the velocity at its \
+                 beginning: there it is not `{}` with other rounding, but another method with other errors and limits of stability",
+                self.name(),
+                Method::VelocityVerlet.name()
+            )
+        })
+    }
+
     /// The order of a table where forces depend on positions alone, or anywhere: a fact about its coefficients. None for other methods, and
     /// for tables that suppose other forces.
     pub const fn certified_order(self, is_positional: bool) -> Option<u32> {

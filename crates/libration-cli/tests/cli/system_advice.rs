@@ -23,11 +23,11 @@ fn steps(advice: &Value) -> BTreeMap<String, [f64; 3]> {
     all.iter().map(known).collect()
 }
 
-/// An advice without what differs between two runs, names the system in command lines, or warns of one of the catalogue.
+/// An advice without what differs between two runs, or names the system in command lines.
 fn comparable(words: &[&str]) -> Value {
     let mut advice = json(&[&["advise", "-q"], words].concat());
     let object = advice.as_object_mut().unwrap();
-    object.retain(|key, _| !matches!(key.as_str(), "command" | "repeat_command" | "warnings"));
+    object.retain(|key, _| !matches!(key.as_str(), "command" | "repeat_command"));
     let speed = object["throughput"].as_object_mut().unwrap();
     speed.retain(|key, _| !key.ends_with("a_second"));
     for float in object["floats"].as_array_mut().unwrap() {

@@ -188,15 +188,7 @@ impl AnySystem {
 
     /// A warning about `method` on this system, in a sentence; none if the method keeps its properties.
     pub fn caveat(self, method: Method) -> Option<String> {
-        (method == Method::TextbookVerlet && self.is_damped()).then(|| {
-            format!(
-                "the force of `{}` depends on the velocity, and `{}` takes it at the end of a step with the velocity at its \
-                 beginning: there it is not `{}` with other rounding, but another method with other errors and limits of stability",
-                self.name(),
-                method.name(),
-                Method::VelocityVerlet.name()
-            )
-        })
+        self.is_damped().then(|| method.velocity_caveat(self.name())).flatten()
     }
 
     /// Whether the acceleration is linear in `(q, v)`: [`Model::LINEAR`].

@@ -86,14 +86,17 @@ impl EquationSystem {
         if let Some(Twin { system, .. }) = self.twin {
             return system.caveat(method);
         }
-        let is_positional = self.equations.dynamics().is_positional();
-        (method.supposes_positional_forces() && !is_positional).then(|| {
+        if self.equations.dynamics().is_positional() {
+            return None;
+        }
+        let of_tables = method.supposes_positional_forces().then(|| {
             format!(
                 "a force of `{}` depends on a velocity, which `{}` does not suppose: its errors are those of order 1; `rk4` keeps its order",
                 self.name,
                 method.name()
             )
-        })
+        });
+        of_tables.or_else(|| method.velocity_caveat(&self.name))
     }
 
     /// Whether all accelerations are linear in positions and velocities.
