@@ -9,6 +9,9 @@ use crate::{Outcome, command, workspace};
 /// Folders of examples that run without arguments.
 const PLAIN: [&str; 2] = ["examples", "crates/libration/examples"];
 
+/// Those of them that measure speed, with an argument that makes them short enough: nobody reads it here.
+const MEASURING: [(&str, &str); 2] = [("block_machine", "1000"), ("linear_loops", "64")];
+
 /// Examples of other crates that write a page into the file named by their first argument.
 const DRAWING: [&str; 2] = ["gallery", "robot_joint"];
 
@@ -33,7 +36,9 @@ pub(crate) fn run_built() -> Outcome {
     for folder in PLAIN {
         for name in examples_in(&workspace::root().join(folder)) {
             println!("example {name}");
-            command::run(&mut command::program(built(&name)))?;
+            let argument = MEASURING.iter().find(|(measuring, _)| *measuring == name);
+            let mut example = command::program(built(&name));
+            command::run(example.args(argument.map(|(_, argument)| argument)))?;
         }
     }
     let scratch = Scratch::new("examples")?;

@@ -4,7 +4,7 @@
 //! cargo run --release -p libration --example block_machine
 //! ```
 //!
-//! Both take the same steps with 10⁵ trajectories on one core; that their bits are equal is checked on the way.
+//! Both take the same steps with 10⁵ trajectories, or as many as the argument says, on one core; that their bits are equal is checked on the way.
 
 use std::time::Instant;
 
@@ -14,11 +14,11 @@ use libration::integrator::{Rk4, SymplecticEuler, VelocityVerlet};
 use libration::system::{Oscillator, Pendulum};
 use libration::{Integrator, Method, Model, State};
 
-const TRAJECTORIES: usize = 100_000;
 const ROUNDS: usize = 7;
 
-/// Steps of each round, and the least ratio that is asked.
+/// Trajectories and steps of each round, and the least ratio that is asked.
 struct Bar {
+    trajectories: usize,
     steps: u64,
     least: f64,
 }
@@ -26,8 +26,10 @@ struct Bar {
 fn main() -> Result<(), EnsembleError> {
     println!("system      float  integrator         compiled/machine time   asked");
     let (oscillator, pendulum) = (Oscillator { omega2: 10.0 }, Pendulum { omega2: 10.0 });
-    both("oscillator", oscillator, &Bar { steps: 400, least: 0.3 })?;
-    both("pendulum", pendulum, &Bar { steps: 60, least: 0.6 })
+    let number = std::env::args().nth(1).map(|argument| argument.parse().expect("a number"));
+    let trajectories = number.unwrap_or(100_000);
+    both("oscillator", oscillator, &Bar { trajectories, steps: 400, least: 0.3 })?;
+    both("pendulum", pendulum, &Bar { trajectories, steps: 60, least: 0.6 })
 }
 
 fn both<M: Model<1>>(name: &str, model: M, bar: &Bar) -> Result<(), EnsembleError>
@@ -62,9 +64,9 @@ where
     let (dt, system) = (T::from_f64(0.01), model.on::<T>());
     let state = |n| State { q: [start(n, 0)], v: [start(n, 1)] };
     let dynamics = Dynamics::of(&model, None);
-    let mut compiled = Ensemble::from_fn(TRAJECTORIES, Execution::serial(), state)?;
-    let mut machine =
-        AnyEnsemble::<T>::new(&dynamics, None, TRAJECTORIES, Execution::serial(), start)?;
+    let count = bar.trajectories;
+    let mut compiled = Ensemble::from_fn(count, Execution::serial(), state)?;
+    let mut machine = AnyEnsemble::<T>::new(&dynamics, None, count, Execution::serial(), start)?;
     let mut ratios: Vec<f64> = Vec::new();
     for _ in 0..ROUNDS {
         let begun = Instant::now();

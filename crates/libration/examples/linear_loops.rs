@@ -1,6 +1,6 @@
 //! Nanoseconds per period of a loop around a linear plant: many loops together, and event by event.
 //!
-//! `cargo run --release --example linear_loops`
+//! `cargo run --release --example linear_loops`, of 4096 loops or as many as the argument says
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -41,8 +41,9 @@ fn seconds(mut run: impl FnMut()) -> f64 {
 }
 
 fn main() {
-    const LOOPS: usize = 4096;
     const PERIODS: u64 = 200;
+    let number = std::env::args().nth(1).map(|argument| argument.parse().expect("a number"));
+    let count = number.unwrap_or(4096);
     let nanoseconds = |seconds: f64, loops: usize| seconds * 1e9 / (loops as u64 * PERIODS) as f64;
     println!(
         "nanoseconds per loop and period; 4 states, 2 inputs, 4 outputs, three parts per period"
@@ -68,8 +69,8 @@ fn main() {
         for set in InstructionSet::available() {
             let execution = Execution::serial().instructions(set).expect("an instruction set");
             let mut all =
-                LinearLoops::new(&linear, &timing, None, LOOPS, execution).expect("loops");
-            let found = nanoseconds(seconds(|| all.advance(PERIODS)), LOOPS);
+                LinearLoops::new(&linear, &timing, None, count, execution).expect("loops");
+            let found = nanoseconds(seconds(|| all.advance(PERIODS)), count);
             println!("  {}: {found:.1}, {:.0} times as fast", set.name(), lone / found);
         }
     }
