@@ -16,19 +16,6 @@ from ._settings import CATALOGUE, count, ends, law, native, refuse_of_preset
 from ._tasks import native_equations
 from .equations import EquationSystem
 
-_TASKS: Mapping[str, Mapping[str, Any]] = {
-    "regulate": {
-        "observe": ["q", "q'"],
-        "reward": "-(position_cost*q^2 + velocity_cost*q'^2 + effort_cost*u^2)",
-        "terminated": ["q > bound", "q < -bound"],
-    },
-    "swing-up": {
-        "observe": ["-cos(q)", "-sin(q)", "q'"],
-        "reward": "-cos(before(q)) - 1 - velocity_cost*before(q')^2 - effort_cost*u^2",
-        "terminated": [],
-    },
-}
-
 _RANGES = ("jitter", "observation_noise")
 
 
@@ -66,7 +53,7 @@ def native_varied(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
         "q'": given["start_velocity"] if given["start_velocity"] is not None else preset.start_velocity,
     }
     starts = {state: ends(name, starts[state]) for state, name in (("q", "start_position"), ("q'", "start_velocity"))}
-    task = dict(_TASKS[preset.task])
+    task: dict[str, Any] = dict(zip(("observe", "reward", "terminated"), _native._task_expressions(preset.task)))
     costs = dict(preset.costs)
     num_envs = count("num_envs", given["num_envs"], 1, 2**40)
     _check_ends(preset, given, num_envs)

@@ -2,7 +2,7 @@
 
 use libration::ensemble::Execution;
 use libration::rl::EnvironmentError;
-use libration_env::environments::{AnyEnvironmentSettings, AnyEnvironments};
+use libration_env::environments::{AnyEnvironments, EnvironmentSettings};
 
 /// A batch of either float type.
 pub(crate) enum AnyBatch {
@@ -24,7 +24,7 @@ pub(crate) use with_batch;
 impl AnyBatch {
     /// Returns environments of these settings.
     pub(crate) fn new(
-        environments: &AnyEnvironmentSettings,
+        environments: &EnvironmentSettings,
         single: bool,
         len: usize,
         execution: &Execution,

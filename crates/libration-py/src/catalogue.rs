@@ -5,9 +5,11 @@ use libration::equations::Definitions;
 use libration::integrator::{RungeKuttaTable, SplittingTable};
 use libration::{ImplicitMethod, Method};
 use libration_analyze::Stepping;
+use libration_env::environments::task_expressions;
 use libration_lab::STUDIES;
 use pyo3::prelude::*;
 
+use crate::error::unknown;
 use crate::request::{self, SystemRequest};
 
 /// A parameter: its name, unit, meaning and default.
@@ -71,6 +73,17 @@ pub(crate) fn _commanded(system: SystemRequest) -> PyResult<Commanded> {
     let (system, actuation) = request::system(&system)?;
     let definitions = Definitions::of_catalogue(system, actuation).commanded(actuation);
     Ok((definitions.accelerations, definitions.inputs))
+}
+
+/// Observations, reward and comparisons that end an episode.
+type TaskTexts = (Vec<String>, String, Vec<String>);
+
+/// Returns the expressions of a task of the engine, whose numbers are parameters.
+#[pyfunction]
+pub(crate) fn _task_expressions(name: &str) -> PyResult<TaskTexts> {
+    let found = task_expressions(name);
+    let found = found.ok_or_else(|| unknown("task", name, ["regulate", "swing-up", "track"]))?;
+    Ok((found.observe, found.reward, found.terminated))
 }
 
 /// Returns all parameters of a system, with defaults.

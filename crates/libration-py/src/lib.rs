@@ -48,7 +48,7 @@ mod _native {
     #[pymodule_export]
     use crate::catalogue::{
         _commanded, _implicit_integrators, _integrators, _parameters, _runge_kutta_methods,
-        _splitting_methods, _studies, _systems,
+        _splitting_methods, _studies, _systems, _task_expressions,
     };
     #[pymodule_export]
     use crate::checked_mutex::_forked;

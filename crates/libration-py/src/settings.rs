@@ -7,7 +7,7 @@ use libration::rl::{
     AnswerTimes, Autoreset, Delays, Distribution, EpisodeNumber, ErrorScale, ProgramEnvironment,
 };
 use libration_env::environments::{
-    AnyEnvironmentSettings, EnvironmentSettings, EquationEnvironment, Noise, SingleDofSystem, Task,
+    CatalogueTask, EnvironmentSettings, EnvironmentSubject, EquationSubject, Task,
 };
 use pyo3::prelude::*;
 
@@ -42,15 +42,15 @@ pub(crate) struct Settings {
 #[derive(FromPyObject)]
 enum Subject {
     #[pyo3(transparent)]
-    Catalogue(CatalogueSubject),
+    Catalogue(CatalogueRequest),
     #[pyo3(transparent)]
-    Equations(EquationSubject),
+    Equations(EquationRequest),
 }
 
 /// A system of the catalogue with one of the engine's tasks.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-struct CatalogueSubject {
+struct CatalogueRequest {
     catalogued: SystemRequest,
     task: (String, Vec<f64>),
     start: [[f64; 2]; 2],
@@ -61,7 +61,7 @@ struct CatalogueSubject {
 /// A system by equations with a task by expressions: the text of a table `[task]`, or none for that of the system's file.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-struct EquationSubject {
+struct EquationRequest {
     equations: EquationText,
     task: Option<String>,
     /// Parameters that vary.
@@ -139,17 +139,25 @@ impl Settings {
         batch.map_err(Raised::raised)
     }
 
-    fn settings(&self) -> PyResult<AnyEnvironmentSettings> {
-        match &self.subject {
-            Subject::Catalogue(subject) => {
-                let settings = self.catalogued(subject)?;
-                Ok(AnyEnvironmentSettings::Catalogued(Box::new(settings)))
-            }
-            Subject::Equations(subject) => {
-                let settings = self.by_equations(subject)?;
-                Ok(AnyEnvironmentSettings::Equations(Box::new(settings)))
-            }
-        }
+    fn settings(&self) -> PyResult<EnvironmentSettings> {
+        let mut settings = match &self.subject {
+            Subject::Catalogue(request) => request.settings(self)?,
+            Subject::Equations(request) => request.settings(self)?,
+        };
+        let waits = settings.definition.answers.map_or(0, |answers| answers.waits);
+        settings.definition = ProgramEnvironment {
+            substeps: self.substeps.saturating_add(waits),
+            limit: self.limit,
+            autoreset: self.autoreset()?,
+            delays: Delays {
+                observation: self.observation_delay,
+                action: self.action_delay.map(|steps| steps + waits),
+            },
+            skew: self.skew()?,
+            jitter: law("jitter", &self.jitter.0, self.jitter.1)?,
+            ..settings.definition
+        };
+        Ok(settings)
     }
 
     /// The places of the numbers of a state among positions and velocities.
@@ -162,42 +170,36 @@ impl Settings {
             }
         }
     }
+}
 
-    fn delays(&self) -> Delays {
-        Delays { observation: self.observation_delay, action: self.action_delay }
-    }
-
-    fn catalogued(&self, subject: &CatalogueSubject) -> PyResult<EnvironmentSettings> {
-        let CatalogueSubject { catalogued, task, start, saturation, noise } = subject;
-        let (found, actuation) = system(catalogued)?;
-        let system = SingleDofSystem::new(found).ok_or_else(|| {
+impl CatalogueRequest {
+    fn settings(&self, common: &Settings) -> PyResult<EnvironmentSettings> {
+        let CatalogueRequest { catalogued, task, start, saturation, noise } = self;
+        let (system, actuation) = system(catalogued)?;
+        let task = catalogued_task(task)?;
+        let task = CatalogueTask::new(system, actuation, task).ok_or_else(|| {
             let name = &catalogued.0;
             value_error(format!("system is {name}, but it must have a single degree of freedom"))
         })?;
-        Ok(EnvironmentSettings {
-            system,
-            actuation,
-            method: method(&self.integrator)?,
-            dt: self.dt,
-            substeps: self.substeps,
-            task: catalogued_task(task)?,
-            start: *start,
-            limit: self.limit,
-            autoreset: self.autoreset()?,
-            delays: self.delays(),
-            saturation: *saturation,
-            noise: Noise {
-                jitter: law("jitter", &self.jitter.0, self.jitter.1)?,
-                skew: self.skew()?,
-                observation: law("observation_noise", &noise.0, noise.1)?,
-            },
-        })
+        let mut settings =
+            EnvironmentSettings::of_catalogue(task, method(&common.integrator)?, common.dt);
+        let noise = law("observation_noise", &noise.0, noise.1)?;
+        settings.definition = ProgramEnvironment {
+            start: start.to_vec(),
+            saturation: vec![(*saturation).into()],
+            noise: vec![noise; settings.definition.observations()],
+            ..settings.definition
+        };
+        Ok(settings)
     }
-    fn by_equations(&self, subject: &EquationSubject) -> PyResult<EquationEnvironment> {
-        let EquationSubject { equations: source, task, varied, saturation, noise, .. } = subject;
+}
+
+impl EquationRequest {
+    fn settings(&self, common: &Settings) -> PyResult<EnvironmentSettings> {
+        let EquationRequest { equations: source, task, varied, saturation, noise, .. } = self;
         let names: Vec<String> = varied.iter().map(|(name, _)| name.clone()).collect();
         let system = equations::varied(source, &names)?;
-        let [clock, sensor] = subject.error_scale;
+        let [clock, sensor] = self.error_scale;
         let task = match task {
             Some(text) => equations::task(text, &system)?,
             None => system.task.clone().ok_or_else(|| {
@@ -207,39 +209,32 @@ impl Settings {
         };
         let noise = noise.iter().map(|(kind, rms)| law("observation_noise", kind, *rms));
         let dynamics = system.equations.dynamics().clone();
-        let answers = subject.answers.as_ref().map(answer_times).transpose()?;
-        let waits = answers.map_or(0, |answers| answers.waits);
         let definition = ProgramEnvironment {
-            substeps: self.substeps.saturating_add(waits),
-            lengths: subject.lengths.clone(),
+            lengths: self.lengths.clone(),
             start: task.start.clone(),
-            limit: self.limit,
-            autoreset: self.autoreset()?,
-            delays: Delays {
-                action: self.action_delay.map(|steps| steps + waits),
-                ..self.delays()
-            },
-            answers,
+            answers: self.answers.as_ref().map(answer_times).transpose()?,
             saturation: saturation.iter().map(episode_number).collect::<PyResult<_>>()?,
             levels: task.levels.clone(),
-            inner_steps: task.inner_steps(self.dt).map_err(value_error)?,
+            inner_steps: task.inner_steps(common.dt).map_err(value_error)?,
             parameters: varied
                 .iter()
                 .map(|(_, number)| episode_number(number))
                 .collect::<PyResult<_>>()?,
             error_scale: ErrorScale { clock, sensor },
-            skew: self.skew()?,
-            jitter: law("jitter", &self.jitter.0, self.jitter.1)?,
             noise: noise.collect::<PyResult<_>>()?,
             ..ProgramEnvironment::new(
                 dynamics,
                 task.programs.clone(),
-                method(&self.integrator)?,
-                self.dt,
+                method(&common.integrator)?,
+                common.dt,
             )
         };
         let (text, _, parameters) = source.clone();
-        Ok(EquationEnvironment { system, text, parameters, task, definition })
+        let subject = EquationSubject { system, text, parameters, task };
+        Ok(EnvironmentSettings {
+            subject: EnvironmentSubject::Equations(Box::new(subject)),
+            definition,
+        })
     }
 }
 

@@ -150,7 +150,8 @@ impl<T: BatchFloat> AnyEnsemble<T> {
     fn advance_by_kernels(&mut self, method: AnyMethod, dt: T, steps: &Range<u64>) -> bool {
         match (self.oscillator, method) {
             (Some(oscillator), AnyMethod::Explicit(method)) => {
-                let (planes, execution) = (&mut self.planes, &self.execution);
+                let planes = (&mut self.planes, self.dynamics.degrees());
+                let execution = &self.execution;
                 compiled_oscillator::advance(planes, oscillator, method, dt, steps, execution)
             }
             _ => false,

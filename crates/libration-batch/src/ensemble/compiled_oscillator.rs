@@ -6,14 +6,14 @@ use bytemuck::Pod;
 use libration_core::system::Oscillator;
 use libration_core::{Integrator, Method, with_method};
 
-use super::planes::{Planes, Share};
+use super::planes::Planes;
 use super::{All, Execution, advance_share};
 use crate::machine::MachineFloat;
 
-/// Takes steps of `dt` seconds with every coordinate of an isotropic oscillator, as independent oscillators in one dimension. Returns
-/// whether there are kernels for the method; if not, nothing has been done.
+/// Takes steps of `dt` seconds with every coordinate of an isotropic oscillator, as independent oscillators in one dimension; beside the
+/// planes is its number of dimensions. Returns whether there are kernels for the method; if not, nothing has been done.
 pub(super) fn advance<T: MachineFloat + Pod>(
-    planes: &mut Planes<T>,
+    planes: (&mut Planes<T>, usize),
     oscillator: Oscillator<T>,
     method: Method,
     dt: T,
@@ -25,7 +25,7 @@ pub(super) fn advance<T: MachineFloat + Pod>(
 }
 
 fn by_kernels<T: MachineFloat + Pod, M: Integrator>(
-    planes: &mut Planes<T>,
+    (planes, dimension): (&mut Planes<T>, usize),
     oscillator: Oscillator<T>,
     method: M,
     dt: T,
@@ -36,10 +36,8 @@ fn by_kernels<T: MachineFloat + Pod, M: Integrator>(
     if const { M::BASELINE_ONLY } {
         return false;
     }
-    let mut positions: Vec<&mut [T]> = planes.planes_mut().collect();
-    let velocities = positions.split_off(positions.len() / 2);
-    for (q, v) in positions.into_iter().zip(velocities) {
-        let share = Share::<T, 1> { first: 0, q: [q], v: [v] };
+    for i in 0..dimension {
+        let share = planes.coordinate(i, dimension);
         advance_share(share, execution, method, All(oscillator), All(dt), steps);
     }
     true

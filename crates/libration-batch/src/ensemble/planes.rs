@@ -74,6 +74,14 @@ impl<T: Pod> Planes<T> {
         let q = from_fn(|_| next());
         Share { first: 0, q, v: from_fn(|_| next()) }
     }
+
+    /// Position and velocity `i` of so many degrees of freedom. Nothing is allocated, which would take longer than a step of few
+    /// trajectories.
+    pub(super) fn coordinate(&mut self, i: usize, degrees: usize) -> Share<'_, T, 1> {
+        let (stride, len) = (self.stride, self.len);
+        let (positions, velocities) = self.memory.split_at_mut((degrees + i) * stride);
+        Share { first: 0, q: [&mut positions[i * stride..][..len]], v: [&mut velocities[..len]] }
+    }
 }
 
 /// Blocks of `W` neighbouring trajectories: their positions and their velocities.

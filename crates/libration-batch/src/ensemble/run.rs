@@ -34,9 +34,6 @@ const FEW: usize = 4;
 /// Steps of a pass up to which the memory is the limit.
 const SHORT: u64 = 2;
 
-/// Registers of a step up to which that is so.
-const LIGHT: usize = 8;
-
 /// The width of the blocks in which a kernel runs fastest, as measured.
 ///
 /// Wide enough that the latency of one lane's arithmetic is hidden behind the others. With 32
@@ -118,8 +115,8 @@ where
     /// Block after block, each from the first step to the last.
     fn blocks<I: Target, const W: usize, const NARROW: usize>(mut self, target: I) {
         let steps = self.steps.end - self.steps.start;
-        // No such kernel is made where somebody watches, nor where a step takes longer than the memory.
-        if const { !O::WATCHES && M::REGISTERS <= LIGHT } && steps <= SHORT {
+        // Where somebody watches, no such kernel is made.
+        if const { !O::WATCHES } && steps <= SHORT {
             let share = self.share.split_off(self.share.len() / NARROW * NARROW);
             let (method, systems, dt) = (self.method, self.systems, self.dt);
             target.run(Pass::<T, M, A, C, Sys, D, NARROW> {

@@ -76,6 +76,6 @@ fn what_does_not_fit_under_a_limit_says_how_much_is_needed_and_what_lowers_it() 
     assert!(table.contains("(--num-trajectories, --save-every, --dtype)"), "{table}");
     let chunks = said("rollout --config set.toml --out data");
     assert!(chunks.contains("GB of memory are needed, of which 0."), "{chunks}");
-    assert!(chunks.contains("(chunk.steps is 1024, chunk.environments 4096)"), "{chunks}");
+    assert!(chunks.contains("(chunk.steps is 1024, chunk.num_envs 4096)"), "{chunks}");
     assert!(!dir.path().join("data").exists() && !dir.path().join("x.parquet").exists());
 }

@@ -36,12 +36,14 @@ pub(super) fn delay_steps(
 fn whole_steps(key: &'static str, seconds: f64, dt: f64) -> Result<u32, Fault> {
     let exact = seconds / dt;
     let whole = exact.round();
+    // Six decimals are enough to see how much is missing.
+    let shown = (exact * 1e6).round() / 1e6;
     let wrong = if !(seconds >= 0.0 && seconds.is_finite()) {
         "but it must be finite and at least 0".to_owned()
     } else if whole > MOST {
-        format!("{exact:.6} steps of {dt} s, but it must be at most {MOST} of them")
+        format!("{shown} steps of {dt} s, but it must be at most {MOST} of them")
     } else if (exact - whole).abs() > NEAR * exact.max(1.0) {
-        format!("{exact:.6} steps of {dt} s, but it must be whole steps")
+        format!("{shown} steps of {dt} s, but it must be whole steps")
     } else {
         return Ok(whole as u32);
     };

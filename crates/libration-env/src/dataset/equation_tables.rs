@@ -10,7 +10,7 @@ use libration_settings::{Fault, Number, SettingsError};
 use super::system_tables::{EquationsTable, Numbers};
 use super::table_conversion::each;
 use super::tables::TaskTable;
-use crate::environments::EquationEnvironment;
+use crate::environments::{EnvironmentSettings, EnvironmentSubject, EquationSubject};
 
 /// The columns that each data set has.
 const COLUMNS: [&str; 8] =
@@ -21,7 +21,7 @@ pub(super) fn equation_environment(
     table: &EquationsTable,
     task: Option<TaskTable>,
     (method, dt): (Method, f64),
-) -> Result<EquationEnvironment, Fault> {
+) -> Result<EnvironmentSettings, Fault> {
     let fault = |why: String| Fault::new("system.equations", why);
     let (text, file) = match (&table.of, &table.text) {
         (Some(path), None) => {
@@ -87,5 +87,9 @@ pub(super) fn equation_environment(
         inner_steps: task.inner_steps(dt).map_err(|message| Fault::new("task", message))?,
         ..ideal
     };
-    Ok(EquationEnvironment { system, text, parameters, task, definition })
+    let subject = EquationSubject { system, text, parameters, task };
+    Ok(EnvironmentSettings {
+        subject: EnvironmentSubject::Equations(Box::new(subject)),
+        definition,
+    })
 }

@@ -17,7 +17,7 @@ pub enum DatasetError {
     #[error(transparent)]
     Environment(#[from] EnvironmentError),
     /// There is not enough memory for the chunks in flight.
-    #[error("{shortage} (chunk.steps is {steps}, chunk.environments {environments})")]
+    #[error("{shortage} (chunk.steps is {steps}, chunk.num_envs {environments})")]
     OutOfMemory {
         /// The needed and the available memory.
         shortage: InsufficientMemory,

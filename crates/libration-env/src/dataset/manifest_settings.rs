@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 use super::DataFormat;
 use super::settings::Dataset;
 use crate::environments::{
-    AnyEnvironmentSettings, EnvironmentSettings, EquationEnvironment, Noise, PolicySettings, Task,
+    CatalogueTask, EnvironmentSubject, EquationSubject, Noise, PolicySettings, Task,
 };
 
 /// Version of the manifest format.
@@ -57,27 +57,19 @@ impl Dataset {
             }
             PolicySettings::Constant(action) => json!({ "action": one_or_each(action) }),
         };
-        let (common, own) = match &self.environment {
-            AnyEnvironmentSettings::Catalogued(settings) => {
-                let EnvironmentSettings { dt, substeps, limit, delays, noise, .. } = **settings;
-                ((dt, substeps, limit, delays, noise), catalogued(settings))
-            }
-            AnyEnvironmentSettings::Equations(settings) => {
-                let ProgramEnvironment { dt, substeps, limit, delays, skew, jitter, .. } =
-                    settings.definition;
-                let observation = settings.definition.noise.first().copied();
-                let observation = observation.unwrap_or(Noise::NONE.observation);
-                let noise = Noise { jitter, skew, observation };
-                ((dt, substeps, limit, delays, noise), by_equations(settings))
-            }
+        let definition = &self.environment.definition;
+        let ProgramEnvironment { method, dt, substeps, limit, delays, .. } = *definition;
+        let Noise { jitter, skew, observation } = Noise::of(definition);
+        let own = match &self.environment.subject {
+            EnvironmentSubject::Catalogue(task) => catalogued(task, &definition.start),
+            EnvironmentSubject::Equations(subject) => by_equations(subject, definition),
         };
-        let (dt, substeps, limit, delays, Noise { jitter, skew, observation }) = common;
         let mut data = json!({
             "seed": self.seed,
             "dtype": self.float.name(),
             "num_envs": self.environments,
             "steps": self.steps,
-            "integrator": self.environment.method().name(),
+            "integrator": method.name(),
             "dt": dt,
             "substeps": substeps,
             "max_episode_steps": limit.unwrap_or(0),
@@ -113,9 +105,9 @@ fn one_or_each(numbers: &[f64]) -> Value {
 }
 
 /// System, task and start of the catalogue.
-fn catalogued(settings: &EnvironmentSettings) -> Vec<(&'static str, Value)> {
-    let EnvironmentSettings { system, actuation, task, start, .. } = settings;
-    let system = system.any();
+fn catalogued(subject: &CatalogueTask, start: &[[f64; 2]]) -> Vec<(&'static str, Value)> {
+    let CatalogueTask { actuation, task, .. } = subject;
+    let system = subject.system();
     let parameters = actuation.parameters(system).into_iter();
     let parameters: Map<String, Value> =
         parameters.map(|(name, value)| (name.to_owned(), number(value))).collect();
@@ -150,8 +142,11 @@ fn catalogued(settings: &EnvironmentSettings) -> Vec<(&'static str, Value)> {
 }
 
 /// System and task by equations: all of it, so that a manifest needs no other file.
-fn by_equations(settings: &EquationEnvironment) -> Vec<(&'static str, Value)> {
-    let EquationEnvironment { system, text, parameters, task, definition } = settings;
+fn by_equations(
+    subject: &EquationSubject,
+    definition: &ProgramEnvironment,
+) -> Vec<(&'static str, Value)> {
+    let EquationSubject { system, text, parameters, task } = subject;
     let parameters: Map<String, Value> =
         parameters.iter().map(|(name, value)| (name.clone(), number(*value))).collect();
     let start: Map<String, Value> = system

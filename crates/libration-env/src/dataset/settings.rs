@@ -5,7 +5,7 @@ use libration_settings::{ConfigCommand, Document, SettingsError};
 
 use super::system_tables::EquationSource;
 use super::tables::File;
-use crate::environments::{AnyEnvironmentSettings, PolicySettings};
+use crate::environments::{EnvironmentSettings, EnvironmentSubject, PolicySettings};
 
 /// The default settings with comments, ready to edit: the case of the source report.
 pub const DEFAULT: &str = include_str!("default.toml");
@@ -18,7 +18,7 @@ pub struct Dataset {
     pub(super) environments: usize,
     pub(super) steps: u64,
     pub(super) chunk: Chunk,
-    pub(super) environment: AnyEnvironmentSettings,
+    pub(super) environment: EnvironmentSettings,
     pub(super) policy: PolicySettings,
 }
 
@@ -77,10 +77,8 @@ impl Dataset {
     /// The caveats about the integrator on the system, and about environments that are all the same.
     pub fn caveats(&self) -> Vec<String> {
         let is_fixed = !matches!(self.policy, PolicySettings::Random { .. });
-        let repeats = matches!(
-            &self.environment,
-            AnyEnvironmentSettings::Catalogued(settings) if is_fixed && settings.draws_nothing()
-        );
+        let is_named = matches!(self.environment.subject, EnvironmentSubject::Catalogue(_));
+        let repeats = is_named && is_fixed && self.environment.draws_nothing();
         let same = (repeats && self.environments > 1).then(|| {
             format!(
                 "all {} environments are the same, as nothing is drawn: give `start` an interval such as q = [-1.0, 1.0], or use noise or a random policy",

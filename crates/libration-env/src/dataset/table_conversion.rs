@@ -1,9 +1,8 @@
 //! Conversion of the tables of a settings file into settings.
 
-use libration::catalog::Actuation;
 use libration::control::Jitter;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
-use libration::rl::{Autoreset, Delays, ProgramEnvironment};
+use libration::rl::{Delays, ProgramEnvironment};
 use libration::{ImplicitMethod, Method};
 use libration_analyze::trajectory::FloatType;
 use libration_settings::limits::{TIME_STEP, within};
@@ -17,7 +16,7 @@ use super::settings::{Chunk, Dataset, STEPS};
 use super::system_tables::{EquationsTable, Numbers};
 use super::tables::{ConstantTable, File, PolicyTable, TaskTable};
 use crate::environments::{
-    AnyEnvironmentSettings, EnvironmentSettings, Noise, PolicySettings, SingleDofSystem, Task,
+    CatalogueTask, EnvironmentSettings, EnvironmentSubject, Noise, PolicySettings, Task,
 };
 
 /// Checks that `count` is in a range.
@@ -106,24 +105,14 @@ impl TryFrom<File> for Dataset {
         let substeps = count("substeps", file.substeps, 1..=1_000_000)? as u32;
         let limit = Some(limit).filter(|&limit| limit > 0);
         check_delays(&delays, limit, substeps, dt)?;
-        let environment = match &file.system.equations {
+        let mut environment = match &file.system.equations {
             None => {
-                let (system, actuation) = system(&file.system)?;
                 let StartTable { q, v } = file.start.unwrap_or_default();
-                AnyEnvironmentSettings::Catalogued(Box::new(EnvironmentSettings {
-                    system,
-                    actuation,
-                    method,
-                    dt,
-                    substeps,
-                    task: task(file.task.unwrap_or_default())?,
-                    start: [ends("start.q", q, 1.0)?, ends("start.v", v, 0.0)?],
-                    limit,
-                    autoreset: Autoreset::SameStep,
-                    delays,
-                    saturation: f64::INFINITY,
-                    noise,
-                }))
+                let task = catalogue_task(&file.system, file.task.unwrap_or_default())?;
+                let mut environment = EnvironmentSettings::of_catalogue(task, method, dt);
+                environment.definition.start =
+                    vec![ends("start.q", q, 1.0)?, ends("start.v", v, 0.0)?];
+                environment
             }
             Some(equations) => {
                 if file.start.is_some() {
@@ -131,24 +120,23 @@ impl TryFrom<File> for Dataset {
                     return Err(Fault::new("start", message));
                 }
                 file.system.check_single()?;
-                let mut environment = equation_environment(equations, file.task, (method, dt))?;
-                environment.definition = ProgramEnvironment {
-                    substeps,
-                    limit,
-                    delays,
-                    skew: noise.skew,
-                    jitter: noise.jitter,
-                    noise: vec![noise.observation; environment.definition.observations()],
-                    ..environment.definition
-                };
-                AnyEnvironmentSettings::Equations(Box::new(environment))
+                equation_environment(equations, file.task, (method, dt))?
             }
+        };
+        environment.definition = ProgramEnvironment {
+            substeps,
+            limit,
+            delays,
+            skew: noise.skew,
+            jitter: noise.jitter,
+            noise: vec![noise.observation; environment.definition.observations()],
+            ..environment.definition
         };
         let sizes = [environment.observed().len(), environment.actions().len()];
         // The default of the catalogue is for an oscillator.
-        let default = match &environment {
-            AnyEnvironmentSettings::Catalogued(_) => PolicyTable::default(),
-            AnyEnvironmentSettings::Equations(_) => PolicyTable::Constant(ConstantTable::default()),
+        let default = match &environment.subject {
+            EnvironmentSubject::Catalogue(_) => PolicyTable::default(),
+            EnvironmentSubject::Equations(_) => PolicyTable::Constant(ConstantTable::default()),
         };
         let acting = policy(file.policy.unwrap_or(default), sizes)?;
         Ok(Dataset {
@@ -194,15 +182,17 @@ pub(super) fn each(
     }
 }
 
-fn system(tables: &SystemTables<EquationsTable>) -> Result<(SingleDofSystem, Actuation), Fault> {
+fn catalogue_task(
+    tables: &SystemTables<EquationsTable>,
+    table: TaskTable,
+) -> Result<CatalogueTask, Fault> {
     let (system, actuation) = tables.build(OTHER_SYSTEMS)?;
-    let lone = SingleDofSystem::new(system).ok_or_else(|| {
+    CatalogueTask::new(system, actuation, task(table)?).ok_or_else(|| {
         let name = system.name();
         let message =
             format!("`{name}` does not have a single degree of freedom, as a data set requires");
         Fault::new("system", message)
-    })?;
-    Ok((lone, actuation))
+    })
 }
 
 fn task(table: TaskTable) -> Result<Task, Fault> {

@@ -4,21 +4,16 @@
 
 mod any_environments;
 mod any_rollout;
-mod any_settings;
-mod catalogue_program;
+mod catalogue_task;
 mod construction;
-mod equation_environment;
 mod policy;
 mod settings;
-mod system;
 mod task;
 
 pub use any_environments::AnyEnvironments;
 pub use any_rollout::AnyRollout;
-pub use any_settings::AnyEnvironmentSettings;
+pub use catalogue_task::{CatalogueTask, task_expressions};
 pub use construction::{EnvironmentFloat, Selection};
-pub use equation_environment::EquationEnvironment;
 pub use policy::PolicySettings;
-pub use settings::{EnvironmentSettings, Noise};
-pub use system::SingleDofSystem;
+pub use settings::{EnvironmentSettings, EnvironmentSubject, EquationSubject, Noise};
 pub use task::Task;

@@ -6,7 +6,7 @@ use libration::equations::{Definitions, Equations, TaskDefinitions, TaskPrograms
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{Autoreset, Delays, ProgramEnvironment};
 use libration::{AnySystem, Method};
-use libration_env::environments::{EnvironmentSettings, Noise, SingleDofSystem, Task};
+use libration_env::environments::{CatalogueTask, EnvironmentSettings, Task};
 
 /// A task on a system, compiled and by its equations.
 pub(super) struct Case {
@@ -122,21 +122,22 @@ pub(super) const SETTINGS: [Setting; 4] = [
 impl Case {
     pub(super) fn settings(&self, setting: &Setting) -> EnvironmentSettings {
         let law = |scale: f64| Jitter::Gaussian(scale * setting.noise);
-        EnvironmentSettings {
-            system: SingleDofSystem::new(AnySystem::build(self.system.0, self.system.1).unwrap())
-                .unwrap(),
-            actuation: self.actuation,
-            method: setting.method,
-            dt: 0.02,
+        let system = AnySystem::build(self.system.0, self.system.1).unwrap();
+        let task = CatalogueTask::new(system, self.actuation, self.task).unwrap();
+        let mut settings = EnvironmentSettings::of_catalogue(task, setting.method, 0.02);
+        settings.definition = ProgramEnvironment {
             substeps: setting.substeps,
-            task: self.task,
-            start: [[-1.0, 1.0], [-0.5, 0.5]],
+            start: vec![[-1.0, 1.0], [-0.5, 0.5]],
             limit: setting.limit,
             autoreset: setting.autoreset,
             delays: setting.delays,
-            saturation: setting.saturation,
-            noise: Noise { jitter: law(2.0), skew: law(0.5), observation: law(1.0) },
-        }
+            saturation: vec![setting.saturation.into()],
+            jitter: law(2.0),
+            skew: law(0.5),
+            noise: vec![law(1.0); self.observe.len()],
+            ..settings.definition
+        };
+        settings
     }
 
     pub(super) fn by_program(&self, setting: &Setting) -> ProgramEnvironment {
@@ -156,24 +157,7 @@ impl Case {
             ..TaskDefinitions::default()
         };
         let task = TaskPrograms::new(&task, &definitions, &equations).unwrap();
-        let compiled = self.settings(setting);
-        let noise = compiled.noise;
-        ProgramEnvironment {
-            start: compiled.start.to_vec(),
-            limit: compiled.limit,
-            autoreset: compiled.autoreset,
-            delays: compiled.delays,
-            substeps: compiled.substeps,
-            saturation: vec![compiled.saturation.into()],
-            jitter: noise.jitter,
-            skew: noise.skew,
-            noise: vec![noise.observation; self.observe.len()],
-            ..ProgramEnvironment::new(
-                equations.dynamics().clone(),
-                task,
-                compiled.method,
-                compiled.dt,
-            )
-        }
+        let dynamics = equations.dynamics().clone();
+        ProgramEnvironment { dynamics, task, ..self.settings(setting).definition }
     }
 }

@@ -43,7 +43,7 @@ fn compare<T: EnvironmentFloat>(case: &Case, setting: &Setting, execution: &Exec
     let definition = case.by_program(setting);
     let (serial, settings) = (Execution::serial(), case.settings(setting));
     let by_equations = || T::by_program(definition.clone(), which(execution)).unwrap();
-    let catalogued = || T::catalogued(&settings, which(execution)).unwrap();
+    let catalogued = || settings.build::<T>(which(execution)).unwrap();
     for (begin, how) in [(&by_equations as &Begin<T>, "equations"), (&catalogued, "settings")] {
         let what = format!("{what} by {how}");
         let mut reference = compiled::<T>(&settings, which(&serial));
