@@ -61,10 +61,10 @@ impl Throughput {
     }
 }
 
-/// The numbers that an environment shows, and its commands: one for each coordinate of a system of the catalogue.
+/// The numbers that an environment shows, and its commands: a system without inputs has one for each coordinate.
 fn sizes(system: &EquationSystem) -> [usize; 2] {
     let inputs = system.equations.inputs().len();
-    [system.states.len(), system.twin.map_or(inputs, |_| system.states.len() / 2)]
+    [system.states.len(), if inputs == 0 { system.states.len() / 2 } else { inputs }]
 }
 
 fn speed<T: BatchFloat>(
