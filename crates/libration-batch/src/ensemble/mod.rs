@@ -30,6 +30,7 @@ mod observer;
 mod planes;
 mod run;
 pub(crate) mod stream;
+mod threaded;
 
 use core::marker::PhantomData;
 
@@ -52,6 +53,7 @@ pub use stream::{stream, stream_repeatedly};
 use libration_core::{Float, Integrator, State, System};
 use planes::{Planes, Share};
 use run::Run;
+use threaded::{advance_share, threads_for};
 
 /// The most trajectories, and the fewest but for the last ones, that an observer sees from the first step to the
 /// last before the next ones.
@@ -245,43 +247,6 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         }
         Ok(())
     }
-}
-
-/// Takes the steps of a range with all trajectories of a share, divided among threads.
-fn advance_share<
-    T: Float,
-    M: Integrator,
-    Sys: System<T, D> + Copy + Send + Sync,
-    const D: usize,
->(
-    share: Share<'_, T, D>,
-    execution: &Execution,
-    method: M,
-    systems: impl Assign<Sys>,
-    dt: impl Assign<T>,
-    range: &core::ops::Range<u64>,
-) {
-    let count = threads_for::<T, M, Sys, D>(execution, share.len(), range.end - range.start);
-    execution.each(shares(share, count, GRAIN), |share| {
-        let steps = range.clone();
-        let system = PhantomData::<(T, Sys)>;
-        let watch = None::<(u64, &mut NoObserver)>;
-        let run = Run { share, method, systems, dt, steps, watch, system };
-        execution.instruction_set().run(run);
-    });
-}
-
-/// The number of threads for so many steps of `M` on `Sys` with `len` trajectories.
-fn threads_for<T: Float, M: Integrator, Sys: System<T, D>, const D: usize>(
-    execution: &Execution,
-    len: usize,
-    steps: u64,
-) -> usize {
-    // What holds more values does more with them: symplectic Euler on an oscillator counts as one,
-    // RK4 on a pendulum as 32 (it takes 60 times as long).
-    let weight = const { (M::REGISTERS.div_ceil(4) * Sys::REGISTERS.div_ceil(2)) as u64 };
-    let each = steps.saturating_mul(weight.max(1)).saturating_add(MOVED * D as u64);
-    execution.threads_for((len as u64).saturating_mul(each))
 }
 
 /// Trajectories of an observer: the same for every instruction set and number of threads, so that what
