@@ -57,7 +57,7 @@ mod tests {
     use libration_core::control::clock::Jittered;
     use libration_core::control::controller::StateFeedback;
     use libration_core::integrator::VelocityVerlet;
-    use libration_core::system::Oscillator;
+    use libration_core::system::{BaselineOnly, Oscillator};
 
     use super::super::sample::{ORIGIN, textbook};
     use super::*;
@@ -115,7 +115,7 @@ mod tests {
         let start = State { q: [1.0], v: [0.5] };
         for share in [0.7, 1.5] {
             let law = Jitter::Uniform(share * margin);
-            let setup = Setup::new(All(MODEL), VelocityVerlet)
+            let setup = Setup::new(All(BaselineOnly(MODEL)), VelocityVerlet)
                 .controller(StateFeedback::to_origin(feedback))
                 .clock(Jittered(law));
             let starts = vec![start; COUNT];

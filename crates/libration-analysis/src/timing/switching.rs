@@ -175,7 +175,7 @@ mod tests {
     use libration_core::control::clock::Recorded;
     use libration_core::control::controller::StateFeedback;
     use libration_core::integrator::Rk4;
-    use libration_core::system::{DampedOscillator, Oscillator};
+    use libration_core::system::{BaselineOnly, DampedOscillator, Oscillator};
     use proptest::prelude::*;
 
     use super::super::sample::{ORIGIN, all};
@@ -195,7 +195,7 @@ mod tests {
         assert_eq!(word, [0, 1, 1]);
         assert!(1.29 < lower && lower < upper && upper < 1.294, "{lower} {upper}");
         let steps: Vec<f64> = word.iter().map(|&i| ratios[i]).collect();
-        let setup = Setup::new(All(MODEL), Rk4)
+        let setup = Setup::new(All(BaselineOnly(MODEL)), Rk4)
             .controller(StateFeedback::to_origin(feedback))
             .clock(Recorded::repeated(&steps));
         let start = State { q: [1.0], v: [0.0] };

@@ -52,7 +52,7 @@ impl<T: Float, const D: usize> Observer<T, D> for MeanCost<D> {
 mod tests {
     use libration_core::State;
     use libration_core::integrator::VelocityVerlet;
-    use libration_core::system::Oscillator;
+    use libration_core::system::{BaselineOnly, Oscillator};
 
     use super::*;
     use crate::ensemble::{All, Execution, Loops, Setup};
@@ -62,7 +62,7 @@ mod tests {
         let weights = LqrWeights { position: 3.0, velocity: 0.5, command: 0.0 };
         let starts: Vec<State<f64, 1>> =
             (0..300).map(|n| State { q: [f64::from(n)], v: [1.0] }).collect();
-        let setup = Setup::new(All(Oscillator { omega2: 4.0 }), VelocityVerlet);
+        let setup = Setup::new(All(BaselineOnly(Oscillator { omega2: 4.0 })), VelocityVerlet);
         let mut alone = vec![0.0; starts.len()];
         let new = |execution| Loops::new(setup, 0.1, 0, [0.0], &starts, execution).unwrap();
         let mut one = new(Execution::serial());
