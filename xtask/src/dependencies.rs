@@ -1,4 +1,4 @@
-//! `cargo xtask dependencies`: the crates that the engine may depend on, those of the wheel that the tests compile anyway, and licenses.
+//! `cargo xtask dependencies`: the crates that the engine may depend on, the features that all builds share, and licenses.
 
 use crate::{Outcome, command, licenses};
 
@@ -33,30 +33,43 @@ const ALLOWED: [&str; 24] = [
 /// Never in its tree, not even through others.
 const FORBIDDEN: [&str; 2] = ["serde", "serde_core"];
 
-/// Fails if the engine depends on a crate that is not listed, or the tests of the wheel would compile a crate once more.
+/// Fails if the engine depends on a crate that is not listed, or one of the builds would compile a crate of another once more.
 pub(crate) fn run() -> Outcome {
     engine()?;
-    wheel()?;
+    builds()?;
     licenses::check()
 }
 
-/// The wheel is made of what the tests of the workspace have compiled, if all its dependencies have the same features.
-fn wheel() -> Outcome {
+/// The program, the wheel and the tests of the workspace are made of one set of libraries, if their dependencies have the same features.
+fn builds() -> Outcome {
     let tree = |options: &str| {
         let mut command = command::cargo(&format!("tree --prefix none {options}"));
         command::output(command.args(["--format", "{p} {f}"]))
     };
     let tests = tree("--workspace -e normal,build,dev")?;
-    let wheel = tree("--package libration-py --features as-tested -e normal,build")?;
-    match only_in(&wheel, &tests).as_slice() {
+    let wheel = tree("--package libration-py -e normal,build")?;
+    let program = tree("--package libration-cli -e normal,build")?;
+    let mut apart = only_in(&wheel, &tests);
+    apart.extend(only_in(&program, &tests));
+    apart.extend(differing(&wheel, &program));
+    apart.sort_unstable();
+    apart.dedup();
+    match apart.as_slice() {
         [] => Ok(()),
         apart => Err(format!(
-            "the tests of the Python package would compile dependencies anew, with other features than the tests of the \
-             workspace: {}. Give the feature `as-tested` of crates/libration-py what is missing, or take from it what no \
-             test needs any more",
+            "the program, the Python package and the tests of the workspace would each compile dependencies anew, which have other \
+             features in one than in another: {}. Give crates/libration-cli or crates/libration-py the features that it lacks, or \
+             take from it what no other needs any more",
             apart.join(", "),
         )),
     }
+}
+
+/// The crates of one tree that another has in the same version with other features.
+fn differing<'a>(tree: &'a str, other: &str) -> Vec<&'a str> {
+    let version = |line: &'_ str| line.split(' ').take(2).collect::<Vec<_>>().join(" ");
+    let known: Vec<String> = other.lines().map(version).collect();
+    only_in(tree, other).into_iter().filter(|line| known.contains(&version(line))).collect()
 }
 
 /// The crates of one tree that another does not have with the same features, but for the package itself.
@@ -64,7 +77,7 @@ fn only_in<'a>(tree: &'a str, other: &str) -> Vec<&'a str> {
     let bare = |line: &'_ str| line.trim_end_matches(" (*)").trim_end().to_owned();
     let known: Vec<String> = other.lines().map(bare).collect();
     let apart = |line: &&str| !line.starts_with("libration-py ") && !known.contains(&bare(line));
-    tree.lines().filter(apart).collect()
+    tree.lines().filter(apart).map(|line| line.trim_end_matches(" (*)")).collect()
 }
 
 /// Fails if the engine depends on a crate that is not listed.
@@ -101,7 +114,7 @@ fn names(tree: &str) -> impl Iterator<Item = &str> {
 
 #[cfg(test)]
 mod tests {
-    use super::{ALLOWED, names, only_in};
+    use super::{ALLOWED, differing, names, only_in};
 
     #[test]
     fn a_tree_names_its_crates_and_neither_formats_nor_settings_are_allowed() {
@@ -114,8 +127,8 @@ mod tests {
     #[test]
     fn a_dependency_with_other_features_is_told_but_the_wheel_itself_is_not() {
         let tests = "libration-py v0.1.0 (…) \nhashbrown v0.17.1 \nlibc v0.2.191 std (*)\n";
-        let wheel =
-            "libration-py v0.1.0 (…) as-tested\nhashbrown v0.17.1 default\nlibc v0.2.191 std\n";
-        assert_eq!(only_in(wheel, tests), ["hashbrown v0.17.1 default"]);
+        let wheel = "libration-py v0.1.0 (…)\nhashbrown v0.17.1 default\nlibc v0.2.191 std\nnumpy v0.30.0\n";
+        assert_eq!(only_in(wheel, tests), ["hashbrown v0.17.1 default", "numpy v0.30.0"]);
+        assert_eq!(differing(wheel, tests), ["hashbrown v0.17.1 default"]);
     }
 }
