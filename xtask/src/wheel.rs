@@ -16,17 +16,17 @@ const PROCESSES: usize = 4;
 /// Files of tests that take longest, which are divided first.
 const LONG: [&str; 12] = [
     "test_documentation.py",
+    "test_probe_gymnasium_wrappers.py",
     "test_cluster.py",
     "test_stubs.py",
-    "test_hosts_fmu.py",
     "test_probe_fmu.py",
-    "test_linear.py",
-    "test_leaks.py",
+    "test_hosts_fmu.py",
     "test_probe_mujoco.py",
+    "test_linear.py",
+    "test_gains_mujoco.py",
+    "test_probe.py",
     "test_examples.py",
     "test_properties.py",
-    "test_probe.py",
-    "test_laboratory.py",
 ];
 
 /// Builds and installs the wheel, then runs the tests of the package; with `arguments`, pytest with them, also with the older Gymnasium.
