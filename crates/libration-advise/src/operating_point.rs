@@ -36,8 +36,8 @@ impl<Sys: System<S, D>, S: Scalar, const D: usize> System<S, D>
     #[inline(always)]
     fn acceleration(&self, state: &State<S, D>) -> [S; D] {
         let mut acceleration = self.system.acceleration(&self.place(state));
-        for (own, held) in acceleration.iter_mut().zip(self.held) {
-            *own = *own - held;
+        for (own, held) in acceleration.iter_mut().zip(&self.held) {
+            *own = *own - *held;
         }
         acceleration
     }

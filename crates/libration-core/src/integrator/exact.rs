@@ -116,8 +116,8 @@ impl Integrator for Exact {
             let mut sum = first;
             for k in (2..=TERMS).rev() {
                 let mut rate = system.rate(sum);
-                for i in 0..D {
-                    rate.v[i] = rate.v[i] - constant[i];
+                for (rate, constant) in rate.v.iter_mut().zip(&constant) {
+                    *rate = *rate - *constant;
                 }
                 sum = first.plus(part.ratio(1, k), rate);
             }
