@@ -167,7 +167,7 @@ fn a_motion_that_is_not_resolved_or_not_known_has_exit_code_1() {
         // Chaos: beyond 21 s two references of different tolerance differ.
         (
             "analyze --system ../../examples/systems/lorenz.toml --integrator dormand-prince-8 --dt 0.002 --steps 15000",
-            "on Lorenz (beta = 2.666666667, rho = 28, sigma = 10) resolves the motion is not known",
+            "Whether dormand-prince-8 in steps of 0.002 s on Lorenz (beta = 2.666666667, rho = 28, sigma = 10) resolves the motion is not known",
             1,
         ),
         (
