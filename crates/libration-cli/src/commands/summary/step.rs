@@ -48,15 +48,13 @@ pub(crate) fn of_analysis(analysis: &Analysis, request: &Request, order: Option<
     if let Some(order) = order {
         summary.row("order", order);
     }
-    if let Some(matrix) = &analysis.matrix {
-        // That of a nonlinear system belongs to its start alone.
-        if request.system.is_linear() {
-            let phase = match matrix.phase_error_per_step {
-                Some(error) => format!("{} rad per step", significant(error, 4)),
-                None => no_phase_error(matrix).to_owned(),
-            };
-            summary.row("phase error", &phase);
-        }
+    // Those of a nonlinear system belong to its start alone.
+    if let (Some(matrix), true) = (&analysis.matrix, request.system.is_linear()) {
+        let phase = match matrix.phase_error_per_step {
+            Some(error) => format!("{} rad per step", significant(error, 4)),
+            None => no_phase_error(matrix).to_owned(),
+        };
+        summary.row("phase error", &phase);
         let evaluations = matrix.force_evaluations_per_step;
         summary.row("force evaluations", &format!("{evaluations} per step"));
     }
@@ -98,7 +96,12 @@ fn verdicts_in_words(analysis: &Analysis) -> String {
     let Analysis { motion, verdicts, .. } = analysis;
     let step = format!("{} in steps of {} s", analysis.integrator, significant(analysis.dt, 6));
     let scope = format!(" on {}", named(&analysis.system));
-    let of_step = verdicts.step.as_ref().map(|verdict| in_words(&step, &step, &scope, verdict));
+    // A stable step says little of a motion that stays away from the equilibrium.
+    let is_said = |_: &&Verdict| {
+        verdicts.is_unstable() || verdicts.motion.is_none() || analysis.stability_windows.is_some()
+    };
+    let of_step = verdicts.step.as_ref().filter(is_said);
+    let of_step = of_step.map(|verdict| in_words(&step, &step, &scope, verdict));
     let (Some(own), Some(motion)) = (&verdicts.motion, motion) else {
         let nothing = || format!("{step}{scope}: there is no verdict.");
         return of_step.unwrap_or_else(nothing);
