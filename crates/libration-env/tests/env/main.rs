@@ -5,3 +5,4 @@
 mod dataset;
 mod programs;
 mod resume;
+mod settings;
