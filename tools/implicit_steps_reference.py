@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints the states after 20 implicit steps of 0.1 s of a nonlinear system, for crates/libration-equations/tests/equations/implicit_steps.rs.
+"""Prints the states after 20 implicit steps of 0.1 s of a nonlinear system, for crates/libration-equations/tests/programs/implicit_steps.rs.
 
 Written from the textbooks, with NumPy 2 and SciPy 1; nothing comes from Libration. The system is
     x'' = -2 sin x - 0.3 x' cos y',   y'' = 3 (x - y) - 0.2 y'^3 + 0.1 x'
