@@ -3,6 +3,7 @@
 //! [`analyze`] derives stability, errors and costs of one step and of a control loop, and [`linear_analysis`] those of linear plants; [`bodies`] simulates gravity; [`comparison`] finds the cheapest integrator of a motion; [`trajectory`] and [`linear_trajectory`] simulate.
 
 pub mod adaptive;
+mod analysis;
 pub mod bodies;
 pub mod comparison;
 mod digits;
@@ -22,13 +23,16 @@ pub mod system_summary;
 pub mod temperature;
 pub mod trajectory;
 
+pub use analysis::{
+    AboutEquilibrium, Analysis, MotionSteps, StateError, StepVerdicts, SteppedMotion, analyze,
+    analyze_until,
+};
 pub use digits::{beside_one, change_per_step};
 pub use motion::DEFAULT_STEPS;
 pub use stable_steps::{is_at_limit, is_within};
 pub use step::{
-    AboutEquilibrium, Analysis, AnalyzeError, Criteria, Drift, LargestDt, LatencyOption,
-    LoopAnalysis, LoopCost, LoopGrowth, ModifiedHamiltonian, MotionSteps, OrderOfWord, Request,
-    StableLatencies, StateError, StepMatrix, StepVerdicts, SteppedMotion, Stepping, Timing,
-    analyze, analyze_until, loop_growth, spectral_radius, step_order,
+    AnalyzeError, Criteria, Drift, LargestDt, LatencyOption, LoopAnalysis, LoopCost, LoopGrowth,
+    ModifiedHamiltonian, OrderOfWord, Request, StableLatencies, StepMatrix, Stepping, Timing,
+    loop_growth, spectral_radius, step_order,
 };
 pub use system_summary::SystemSummary;

@@ -9,7 +9,7 @@ use super::{AnalyzeError, Request, Stepping};
 use crate::oscillator::CommonOscillator;
 
 /// Fails if the time step or a number of the start is none that a simulation has.
-pub(super) fn check_start(request: &Request) -> Result<(), SimulationError> {
+pub(crate) fn check_start(request: &Request) -> Result<(), SimulationError> {
     let (dt, float) = (request.dt, f64::NAME);
     if !(dt.is_finite() && dt > 0.0) {
         return Err(SimulationError::TimeStep { dt, float });
@@ -22,7 +22,7 @@ pub(super) fn check_start(request: &Request) -> Result<(), SimulationError> {
 }
 
 /// Fails if the motion turns by more than [`MOST_TURN`] in an exact step.
-pub(super) fn check_turn(
+pub(crate) fn check_turn(
     request: &Request,
     oscillator: Option<CommonOscillator>,
 ) -> Result<(), AnalyzeError> {
@@ -35,7 +35,7 @@ pub(super) fn check_turn(
 }
 
 /// Fails if a parameter or the time step of a loop is too large or too small for the products of floats.
-pub(super) fn check_sizes(request: &Request) -> Result<(), AnalyzeError> {
+pub(crate) fn check_sizes(request: &Request) -> Result<(), AnalyzeError> {
     if request.timing.feedback.is_none() && !request.timing.draws() {
         return Ok(());
     }
@@ -48,7 +48,7 @@ pub(super) fn check_sizes(request: &Request) -> Result<(), AnalyzeError> {
 }
 
 /// Fails if the request asks exact steps for a criterion, or for a nonlinear system.
-pub(super) fn check_exact(request: &Request) -> Result<(), AnalyzeError> {
+pub(crate) fn check_exact(request: &Request) -> Result<(), AnalyzeError> {
     match request.criteria.first() {
         Some(flag) => Err(AnalyzeError::NoLargest { flag }),
         None if !request.system.is_linear() => {
@@ -59,7 +59,7 @@ pub(super) fn check_exact(request: &Request) -> Result<(), AnalyzeError> {
 }
 
 /// Fails if the request asks implicit steps for a criterion, for a loop, or for more degrees of freedom than they have.
-pub(super) fn check_implicit(request: &Request) -> Result<(), AnalyzeError> {
+pub(crate) fn check_implicit(request: &Request) -> Result<(), AnalyzeError> {
     let Stepping::Implicit(method) = request.stepping else { return Ok(()) };
     let degrees = request.system.equations.degrees().len();
     let most = StepProgram::most_degrees(method);

@@ -13,7 +13,7 @@ pub struct Criteria {
 
 impl Criteria {
     /// The flag of the first criterion.
-    pub(super) fn first(&self) -> Option<&'static str> {
+    pub(crate) fn first(&self) -> Option<&'static str> {
         [
             (self.max_drift, "max-drift"),
             (self.max_amplitude, "max-amplitude"),

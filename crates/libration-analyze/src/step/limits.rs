@@ -63,7 +63,7 @@ const LETTERS: usize = 6;
 
 impl OrderOfWord {
     /// The order of `method`; none if it is not a product of kicks and drifts.
-    pub(super) fn of(method: Method) -> Option<Self> {
+    pub(crate) fn of(method: Method) -> Option<Self> {
         let shown = |letter: &Letter| match letter {
             Letter::Kick(w) => format!("kick {}", w.to_f64()),
             Letter::Drift(w) => format!("drift {}", w.to_f64()),
@@ -85,7 +85,7 @@ impl OrderOfWord {
 }
 
 /// The largest steps of an oscillator from its polynomials.
-pub(super) fn largest_dt(
+pub(crate) fn largest_dt(
     step: Option<&SymbolicStep>,
     oscillator: CommonOscillator,
     request: &Request,

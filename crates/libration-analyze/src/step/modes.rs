@@ -12,23 +12,23 @@ use libration::{Elementary, Scalar};
 const ROUNDING: f64 = 1e-50;
 
 /// The eigenvalues of one step, and numbers derived from them.
-pub(super) struct Modes {
+pub(crate) struct Modes {
     values: Vec<Complex>,
-    pub(super) determinant: Wide,
-    pub(super) determinant_minus_one: Wide,
-    pub(super) radius: Wide,
-    pub(super) radius_minus_one: Wide,
+    pub(crate) determinant: Wide,
+    pub(crate) determinant_minus_one: Wide,
+    pub(crate) radius: Wide,
+    pub(crate) radius_minus_one: Wide,
     /// Whether powers of the matrix stay bounded; unknown for coupled, marginal modes.
-    pub(super) bounded: Option<bool>,
+    pub(crate) bounded: Option<bool>,
     /// The largest phase error of a mode, in rad; none if no mode oscillates.
-    pub(super) phase_error: Option<Wide>,
+    pub(crate) phase_error: Option<Wide>,
     /// The Frobenius norm of `MᵀJM − J`.
-    pub(super) symplecticity_defect: Wide,
+    pub(crate) symplecticity_defect: Wide,
 }
 
 impl Modes {
     /// The modes of a step; `exact` is the spectrum of each, if it is known without cancellation.
-    pub(super) fn new(linear: &Linearisation, exact: Option<Spectrum>) -> Self {
+    pub(crate) fn new(linear: &Linearisation, exact: Option<Spectrum>) -> Self {
         let spectrum = |block: UpdateMatrix<Wide>| exact.unwrap_or_else(|| Spectrum::new(&block));
         match linear.step.decoupled() {
             Some(blocks) => {
@@ -103,23 +103,23 @@ impl Modes {
     }
 
     /// The phase error in rad, of steps that follow the oscillation.
-    pub(super) fn followed_phase_error(&self) -> Option<f64> {
+    pub(crate) fn followed_phase_error(&self) -> Option<f64> {
         self.phase_error.map(Wide::to_f64).filter(|_| !self.loses_oscillation())
     }
 
     /// Whether the phase error is more than half a turn, or no number: beyond the digits of a step, nothing is left of an angle.
-    pub(super) fn loses_oscillation(&self) -> bool {
+    pub(crate) fn loses_oscillation(&self) -> bool {
         self.phase_error.map(Wide::to_f64).is_some_and(|error| error.is_nan() || error.abs() > PI)
     }
 
     /// The eigenvalues as pairs of real and imaginary part.
-    pub(super) fn eigenvalues(&self) -> Vec<[f64; 2]> {
+    pub(crate) fn eigenvalues(&self) -> Vec<[f64; 2]> {
         self.values.iter().map(|z| [z.re.to_f64(), z.im.to_f64()]).collect()
     }
 }
 
 /// The spectral radius of an exact step minus one, `exp(max Re λ·Δt) − 1` of the generator's eigenvalues `λ`.
-pub(super) fn flow_radius_minus_one(linear: &Linearisation) -> f64 {
+pub(crate) fn flow_radius_minus_one(linear: &Linearisation) -> f64 {
     let rates = largest(eigenvalues(&linear.generator).iter().map(|z| z.re));
     unless_rounding(rates * linear.dt).to_f64().exp_m1()
 }
@@ -147,7 +147,7 @@ fn difference_of(a: Wide, b: Wide) -> Wide {
 }
 
 /// A difference from one, or zero if it is rounding.
-pub(super) fn unless_rounding(x: Wide) -> Wide {
+pub(crate) fn unless_rounding(x: Wide) -> Wide {
     if x.abs().to_f64() < ROUNDING { Wide::ZERO } else { x }
 }
 

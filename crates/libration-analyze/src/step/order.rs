@@ -29,7 +29,7 @@ pub fn step_order(step: &StepProgram, start: &[f64], places: &[usize], dt: f64) 
 
 /// The order of a table whose certificate is for other forces: that of the errors that are seen beside the rounding of its coefficients
 /// to `f64`, or none of them if it has not lost its order.
-pub(super) fn lost_order(
+pub(crate) fn lost_order(
     step: &StepProgram,
     start: &[f64],
     places: &[usize],

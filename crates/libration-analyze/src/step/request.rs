@@ -25,12 +25,12 @@ pub struct Request {
 
 impl Request {
     /// The compiled system with the same bits; none of equations in a file.
-    pub(super) fn compiled(&self) -> Option<AnySystem> {
+    pub(crate) fn compiled(&self) -> Option<AnySystem> {
         self.system.twin.map(|twin| twin.system)
     }
 
     /// The quantity of its commands.
-    pub(super) fn actuation(&self) -> Actuation {
+    pub(crate) fn actuation(&self) -> Actuation {
         self.system.twin.map_or(Actuation::Acceleration, |twin| twin.actuation)
     }
 }

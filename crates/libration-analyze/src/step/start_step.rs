@@ -3,19 +3,19 @@
 use libration::analysis::{DriftForecast, Linearisation, QuadraticForm};
 use libration::equations::{Degree, StepProgram};
 use libration::number::Wide;
-use libration::{Scalar, State};
+use libration::{AnySystem, Scalar, State};
 
 use super::step_matrix::is_undefined;
-use super::{AnalyzeError, Drift, Request, regular_starts};
+use super::{AnalyzeError, Drift, Request};
 
 /// Most degrees of freedom of a matrix: the time of its eigenvalues grows with the fourth power.
 const MOST_DEGREES: usize = 8;
 
 /// A step from the start, linearised there with 1024 bits.
-pub(super) struct StartStep {
-    pub(super) linear: Linearisation,
+pub(crate) struct StartStep {
+    pub(crate) linear: Linearisation,
     /// Force evaluations of a step.
-    pub(super) evaluations: u64,
+    pub(crate) evaluations: u64,
 }
 
 impl StartStep {
@@ -24,7 +24,7 @@ impl StartStep {
     ///
     /// # Errors
     /// [`AnalyzeError::Singular`] where the force of a system by name has no value.
-    pub(super) fn new(request: &Request) -> Result<Option<Self>, AnalyzeError> {
+    pub(crate) fn new(request: &Request) -> Result<Option<Self>, AnalyzeError> {
         let system = &request.system;
         let degrees = system.equations.degrees();
         if degrees.iter().any(|degree| matches!(degree, Degree::State(_)))
@@ -54,7 +54,7 @@ impl StartStep {
 
     /// The drift of the energy of a common oscillator; none if it begins at zero, or if the energy is not that of a spring in each degree
     /// of freedom.
-    pub(super) fn drift(&self, request: &Request) -> Option<Drift> {
+    pub(crate) fn drift(&self, request: &Request) -> Option<Drift> {
         let system = &request.system;
         let (dynamics, start) = (system.equations.dynamics(), system.start());
         let degrees = dynamics.degrees();
@@ -95,3 +95,16 @@ impl StartStep {
 
 /// Roundings of a sum of a few products.
 const SAME: f64 = 1e-12;
+
+/// The starts at which the force of a system has a derivative, in words.
+fn regular_starts(system: Option<AnySystem>) -> &'static str {
+    match system {
+        Some(AnySystem::Kepler(_)) => {
+            "--q must not be the origin, where the attraction has no bound"
+        }
+        Some(AnySystem::Pendulum(_) | AnySystem::DrivenOscillator(_)) => {
+            "coordinates must stay so small that angles are below 10¹⁵⁴ rad"
+        }
+        _ => "coordinates must stay within the range of floats",
+    }
+}

@@ -40,7 +40,7 @@ pub struct StepMatrix {
 
 impl StepMatrix {
     /// Defects that are not exact carry the rounding of 1024 bits.
-    pub(super) fn new(
+    pub(crate) fn new(
         linear: &Linearisation,
         modes: &Modes,
         reversibility: Wide,
@@ -70,7 +70,7 @@ impl StepMatrix {
 }
 
 /// Whether an entry is not a number, as where a force has no derivative.
-pub(super) fn is_undefined(map: &LinearMap) -> bool {
+pub(crate) fn is_undefined(map: &LinearMap) -> bool {
     map.rows().iter().flatten().any(|x| x.is_nan())
 }
 

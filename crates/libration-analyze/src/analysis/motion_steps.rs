@@ -11,7 +11,7 @@ use libration::{AnyMethod, Method};
 use libration_settings::equations::EquationSystem;
 use serde::Serialize;
 
-use crate::AnalyzeError;
+use crate::step::AnalyzeError;
 
 /// The largest stable steps of linearisations along the motion from the start of a system.
 ///

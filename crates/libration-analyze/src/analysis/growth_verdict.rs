@@ -5,11 +5,11 @@ use libration::equations::StepProgram;
 use libration::linear::{Complex64, GROWTH_ROUNDING, eigenvalues};
 use libration_report::verdict::{FOLLOWED, Outcome, Verdict};
 
-use super::order::spectral_radius;
-use super::{Analysis, Request, StepMatrix, SteppedMotion};
+use super::{Analysis, SteppedMotion};
 use crate::digits::change_per_step;
 use crate::linear_analysis::LinearAnalysis;
 use crate::oscillator::CommonOscillator;
+use crate::step::{Request, StepMatrix, spectral_radius};
 use crate::step_verdict::{StepGrowth, has_multiple};
 
 /// The verdict on a step: of oscillators that are alike by the numbers of its matrix, of other systems at the equilibrium near the motion,

@@ -7,11 +7,10 @@ use libration::{AnyMethod, Float};
 use libration_settings::equations::{EquationSystem, NamedState};
 use serde::Serialize;
 
-use super::order::{lost_order, spectral_radius, step_order};
-use crate::AnalyzeError;
 use crate::motion::{
     EnergyChange, MotionExamination, MotionState, MotionSubject, StepRun, examine, most_steps,
 };
+use crate::step::{AnalyzeError, lost_order, spectral_radius, step_order};
 
 /// The motion from the start of a system.
 #[derive(Clone, Debug, PartialEq, Serialize)]

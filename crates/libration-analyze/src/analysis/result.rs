@@ -1,18 +1,12 @@
-//! Results of an analysis.
+//! The result of an analysis.
 
-use libration::Scalar;
-use libration::analysis::{DriftForecast, LinearMap, QuadraticForm};
-use libration::number::Wide;
 use libration_settings::linear_loop::OperatingPoint;
 use serde::Serialize;
-use serde_json::value::RawValue;
 
-use super::{
-    AboutEquilibrium, LargestDt, LoopAnalysis, MotionSteps, OrderOfWord, StepMatrix, StepVerdicts,
-    SteppedMotion,
-};
+use super::{AboutEquilibrium, MotionSteps, StepVerdicts, SteppedMotion};
 use crate::linear_analysis::LinearAnalysis;
 use crate::newton_residual::NewtonResidual;
+use crate::step::{Drift, LargestDt, LoopAnalysis, ModifiedHamiltonian, OrderOfWord, StepMatrix};
 use crate::system_summary::SystemSummary;
 
 /// Version of the JSON format.
@@ -88,68 +82,4 @@ impl Analysis {
     pub fn linear(&self) -> Option<&LinearAnalysis> {
         self.equilibrium.as_ref()?.linear.as_ref()
     }
-}
-
-/// The quadratic form `qq·q² + 2·qv·q·v + vv·v²` per unit mass that a symplectic step conserves in place of the
-/// energy, for each degree of freedom. It is scaled to `vv = ½`.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct ModifiedHamiltonian {
-    /// Coefficient of `q²`, in s⁻².
-    pub qq: f64,
-    /// Half the coefficient of `q·v`, in s⁻¹.
-    pub qv: f64,
-    /// Coefficient of `v²`.
-    pub vv: f64,
-}
-
-impl ModifiedHamiltonian {
-    /// The form of a linear step; none if the step does not conserve areas in each degree of
-    /// freedom, or if `q` does not depend on `v`.
-    pub(super) fn of(step: &LinearMap, conserves: bool) -> Option<Self> {
-        let blocks = step.decoupled()?;
-        let form = QuadraticForm::carried_by(&blocks[0]);
-        let scaled = |x: Wide| (x / form.vv).ratio(1, 2).to_f64();
-        // A cross term that symmetry forbids comes out as rounding of the 1024 bits.
-        let (cross, square) = (form.qv * form.qv, form.qq * form.vv);
-        let rounding = match (cross.exponent(), square.exponent()) {
-            (Some(cross), Some(square)) => cross < square - 1800,
-            _ => false,
-        };
-        let qv = if rounding { 0.0 } else { scaled(form.qv) };
-        (conserves && !form.vv.is_zero()).then(|| ModifiedHamiltonian {
-            qq: scaled(form.qq),
-            qv,
-            vv: scaled(form.vv),
-        })
-    }
-}
-
-/// The largest relative energy drift over a number of steps, which follows from the step without simulation.
-#[derive(Debug, Serialize)]
-pub struct Drift {
-    /// `max |E_n − E₀| / |E₀|`, as a decimal that may exceed the range of an `f64`.
-    pub max_energy_drift: Box<RawValue>,
-    /// Its decimal logarithm; none if there is no drift at all.
-    pub log10_max_energy_drift: Option<f64>,
-    /// The step with this drift.
-    pub max_energy_drift_step: u64,
-}
-
-impl From<DriftForecast> for Drift {
-    fn from(forecast: DriftForecast) -> Self {
-        let value = forecast.drift.to_f64();
-        let decimal =
-            if value.is_infinite() { forecast.drift.to_decimal(17) } else { format!("{value:?}") };
-        Drift {
-            max_energy_drift: raw(decimal),
-            log10_max_energy_drift: (!forecast.drift.is_zero())
-                .then(|| forecast.drift.log10().to_f64()),
-            max_energy_drift_step: forecast.at_step,
-        }
-    }
-}
-
-/// A JSON number from its digits.
-fn raw(decimal: String) -> Box<RawValue> {
-    RawValue::from_string(decimal).unwrap_or_else(|_| RawValue::NULL.to_owned())
 }

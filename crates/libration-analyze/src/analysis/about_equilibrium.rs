@@ -5,8 +5,8 @@ use std::sync::atomic::AtomicBool;
 use libration_settings::linear_loop::{OperatingPoint, linearised_equations};
 use serde::Serialize;
 
-use super::{AnalyzeError, Request};
 use crate::linear_analysis::{self, LinearAnalysis, LinearAnalysisError, LinearRequest};
+use crate::step::{AnalyzeError, Request};
 
 /// The equilibrium near the start of a system, and the system about it.
 #[derive(Clone, Debug, Serialize)]
