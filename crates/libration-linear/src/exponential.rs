@@ -61,7 +61,7 @@ pub(crate) fn twice(grown: &Matrix) -> Matrix {
 
 /// How often a matrix of this norm is halved until its norm is below ½.
 pub(crate) fn halvings(norm: f64) -> i32 {
-    if norm > 0.5 { (norm.log2().ceil() as i32 + 1).clamp(0, 1000) } else { 0 }
+    if norm > 0.5 { (norm.log2().ceil() as i32).saturating_add(1).clamp(0, 1000) } else { 0 }
 }
 
 #[cfg(test)]

@@ -141,6 +141,9 @@ fn of_oscillator(
             Outcome::Stable,
             "motions grow in proportion to time, as those of exact steps do",
         ),
+        Some(false) if excess == 0.0 && oscillator.gamma > 0.0 => {
+            Verdict::unknown("a step is too short for the digits of its decay")
+        }
         Some(false) if excess == 0.0 => {
             Verdict::new(Outcome::Unstable, "motions grow without bound, but not exponentially")
         }

@@ -25,8 +25,8 @@ use crate::newton_residual;
 use crate::oscillator::CommonOscillator;
 use crate::step::{
     AnalyzeError, Modes, ModifiedHamiltonian, OrderOfWord, Request, StartStep, StepMatrix,
-    Stepping, check_exact, check_implicit, check_sizes, check_start, check_turn, largest_dt,
-    loop_answer,
+    Stepping, check_criteria, check_exact, check_implicit, check_sizes, check_start, check_turn,
+    largest_dt, loop_answer,
 };
 use crate::system_summary::SystemSummary;
 
@@ -44,10 +44,7 @@ pub fn analyze(request: &Request) -> Result<Analysis, AnalyzeError> {
 /// As [`analyze`], and [`AnalyzeError::Interrupted`].
 pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, AnalyzeError> {
     let oscillator = CommonOscillator::of(&request.system);
-    let frequency = oscillator.and_then(CommonOscillator::frequency);
-    if let (Some(flag), None) = (request.criteria.first(), frequency) {
-        return Err(AnalyzeError::Criterion { flag, system: request.system.name.clone() });
-    }
+    check_criteria(request, oscillator)?;
     if request.stepping == Stepping::Exact {
         check_exact(request)?;
     }
@@ -119,7 +116,7 @@ fn of_start(
         order_of_word: method
             .filter(|_| system.equations.dynamics().is_positional())
             .and_then(OrderOfWord::of),
-        drift: of_oscillator.and_then(|((step, _), _)| step.drift(request)),
+        drift: of_oscillator.and_then(|((step, _), own)| step.drift(request, own)),
         motion: None,
         newton_residual: None,
         equilibrium: None,

@@ -52,8 +52,9 @@ impl EnergyChange {
     /// Adds the energy after a step.
     pub(super) fn add(&mut self, step: u64, energy: f64) {
         self.last = energy - self.start;
-        // What is no number is the largest.
-        if self.last.is_nan() || self.last.abs() > self.largest {
+        // What is no number is the largest, from the first on.
+        let is_first = self.largest.is_finite() && !self.last.is_finite();
+        if is_first || self.last.abs() > self.largest {
             (self.largest, self.largest_at_step) = (self.last.abs(), step);
         }
     }

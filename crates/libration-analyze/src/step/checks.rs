@@ -47,6 +47,20 @@ pub(crate) fn check_sizes(request: &Request) -> Result<(), AnalyzeError> {
     }
 }
 
+/// Fails if the request has a criterion and its system is no oscillator about the origin with its own energy: a largest time step for
+/// another has no closed form.
+pub(crate) fn check_criteria(
+    request: &Request,
+    oscillator: Option<CommonOscillator>,
+) -> Result<(), AnalyzeError> {
+    let Some(flag) = request.criteria.first() else { return Ok(()) };
+    let own = oscillator.filter(|own| own.frequency().is_some());
+    match own.and_then(|own| own.energy_of(&request.system)) {
+        Some(_) => Ok(()),
+        None => Err(AnalyzeError::Criterion { flag, system: request.system.name.clone() }),
+    }
+}
+
 /// Fails if the request asks exact steps for a criterion, or for a nonlinear system.
 pub(crate) fn check_exact(request: &Request) -> Result<(), AnalyzeError> {
     match request.criteria.first() {

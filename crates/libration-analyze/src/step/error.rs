@@ -13,7 +13,7 @@ pub enum AnalyzeError {
     Simulation(#[from] SimulationError),
     /// A criterion for a system without a closed form of the largest time step.
     #[error(
-        "--{flag} requires the system `oscillator` with k or omega2 above 0 (--system, --set), not `{system}`"
+        "--{flag} requires oscillators, as the system `oscillator` with k or omega2 above 0: accelerations −ω²q, and an energy v²/2 + ω²q²/2 in each coordinate; `{system}` has others"
     )]
     Criterion {
         /// The flag.

@@ -16,7 +16,9 @@ mod start_step;
 mod step_matrix;
 mod timing;
 
-pub(crate) use checks::{check_exact, check_implicit, check_sizes, check_start, check_turn};
+pub(crate) use checks::{
+    check_criteria, check_exact, check_implicit, check_sizes, check_start, check_turn,
+};
 pub use cost::LoopCost;
 pub use criteria::Criteria;
 pub use drift::Drift;

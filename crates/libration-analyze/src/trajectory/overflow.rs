@@ -58,13 +58,12 @@ fn oscillator_of(
     system: &EquationSystem,
     rounded: impl Fn(f64) -> f64,
 ) -> Option<CommonOscillator> {
-    let is_decaying = |own: &CommonOscillator| own.omega2 >= 0.0 && own.gamma >= 0.0;
     let own = match system.twin {
         // A drive adds a bounded force.
         Some(Twin { system: AnySystem::DrivenOscillator(driven), .. }) => {
             CommonOscillator { omega2: driven.omega2, gamma: driven.gamma }
         }
-        _ => CommonOscillator::of(system).filter(is_decaying)?,
+        _ => CommonOscillator::of(system)?,
     };
     Some(CommonOscillator { omega2: rounded(own.omega2), gamma: rounded(own.gamma) })
 }

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod narrow_forces;
+mod oscillators;
 mod step_matrices;
 mod verdicts;
 

@@ -44,17 +44,17 @@ pub(crate) struct AnalyzeArgs {
     pub(crate) timing: TimingArgs,
     #[command(flatten)]
     pub(crate) cost: CostArgs,
-    /// Number of steps of the motion and its energy drift (linear systems: up to 1e15), or measured steps of each thermostat [default:
-    /// 1000000; of a nonlinear motion and of equations 1000]
+    /// Number of steps of the motion and its energy drift (linear systems: up to 1e15) [default: 1000], or measured steps of each thermostat
+    /// [default: 1000000]
     #[arg(long, value_name = "N", value_parser = forecast_steps, allow_hyphen_values = true)]
     pub(crate) steps: Option<u64>,
-    /// Print the largest dt with a relative energy drift below DRIFT over --steps (oscillator; worst phase of the orbit)
+    /// Print the largest dt with a relative energy drift below DRIFT over --steps (oscillators; from the start, and from the worst one)
     #[arg(long, value_name = "DRIFT", value_parser = criterion, allow_hyphen_values = true)]
     pub(crate) max_drift: Option<f64>,
-    /// Print the largest dt with |q| below LENGTH over --steps (oscillator; worst phase of the orbit)
+    /// Print the largest dt with |q| below LENGTH over --steps (oscillators; from the start)
     #[arg(long, value_name = "LENGTH", value_parser = criterion, allow_hyphen_values = true)]
     pub(crate) max_amplitude: Option<f64>,
-    /// Print the largest dt with an error below ERROR times the amplitude over --steps (oscillator; any start)
+    /// Print the largest dt with an error below ERROR times the amplitude over --steps (oscillators; from any start)
     #[arg(long, value_name = "ERROR", value_parser = criterion, allow_hyphen_values = true)]
     pub(crate) max_error: Option<f64>,
     /// Compare all explicit integrators on the motion from the start: the cheapest for --tolerance over --horizon

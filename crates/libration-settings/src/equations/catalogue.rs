@@ -83,10 +83,11 @@ impl EquationSystem {
 
     /// Why steps of an integrator lose their order on this system; none if they do not.
     pub fn caveat(&self, method: Method) -> Option<String> {
-        if let Some(Twin { system, .. }) = self.twin {
-            return system.caveat(method);
-        }
-        if self.equations.dynamics().is_positional() {
+        let depends_on_velocity = match self.twin {
+            Some(Twin { system, .. }) => system.is_damped(),
+            None => !self.equations.dynamics().is_positional(),
+        };
+        if !depends_on_velocity {
             return None;
         }
         let of_tables = method.supposes_positional_forces().then(|| {
