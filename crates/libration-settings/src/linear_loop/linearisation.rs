@@ -218,7 +218,7 @@ mod tests {
         assert!(point.residual < 4e-15, "{point:?}");
         assert!((plant.a[(1, 0)] - 14.0).abs() < 1e-14 && plant.a[(0, 1)] == 1.0);
         assert_eq!([plant.b[(0, 0)], plant.b[(1, 0)]], [0.0, 1.0]);
-        assert_eq!(plant.states[0], Signal::new("q0", "rad"));
+        assert_eq!(plant.states[0], Signal::new("q", "rad"));
     }
 
     #[test]
