@@ -21,6 +21,7 @@ pub fn beside_one(difference: f64) -> String {
 pub fn change_per_step(change: f64) -> String {
     let percent = significant(100.0 * change.abs(), 4);
     match (change > 0.0, change < 0.0) {
+        (true, _) if change.is_infinite() => "grow beyond the range of floats in a step".to_owned(),
         (true, _) => format!("grow by {percent} % per step"),
         (_, true) => format!("decay by {percent} % per step"),
         _ => "neither grow nor decay".to_owned(),

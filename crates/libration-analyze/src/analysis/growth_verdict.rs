@@ -123,7 +123,7 @@ fn of_oscillator(
     // Damping has more coefficients than those of the integrator.
     let is_undamped = oscillator.gamma == 0.0;
     let turn = if is_undamped { oscillator.omega2 * analysis.dt * analysis.dt } else { 0.0 };
-    if excess > 0.0 && excess <= COEFFICIENTS * turn {
+    if excess > 0.0 && excess.is_finite() && excess <= COEFFICIENTS * turn {
         return Verdict::unknown(
             "motions grow by less than the rounding of the coefficients of the integrator",
         );

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use libration_advise::linear::{AnalysisFile, LinearRequest, RequestFile};
-use libration_analyze::{LatencyOption, Timing, linear_analysis};
+use libration_analyze::{LatencyOption, linear_analysis};
 use libration_settings::linear_loop::WeightsTable;
 
 use super::AnalyzeArgs;
@@ -78,10 +78,13 @@ impl AnalyzeArgs {
         Some(request.and_then(|request| self.analysis(&request, &contents.borrow())))
     }
 
-    /// The first option of a loop, in words.
+    /// The first option of a loop and its clock.
     pub(crate) fn loop_option(&self) -> Option<&'static str> {
         let given = [
-            ("a control loop", self.timing.timing() != Timing::default()),
+            ("--feedback", self.timing.feedback.is_some()),
+            ("--latency", self.timing.latency.is_some()),
+            ("--jitter", self.timing.jitter.is_some()),
+            ("--skew", self.timing.skew.is_some()),
             ("--loss", self.cost.loss.is_some()),
             ("--cost-weights", self.cost.cost_weights.is_some()),
         ];
