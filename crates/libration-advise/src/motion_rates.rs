@@ -43,7 +43,7 @@ impl FreeMotion<'_> {
         if !self.system.depends_on_time() && self.is_at_rest() {
             return Err(self.tolerance_error("nothing moves from this start; choose another start"));
         }
-        // Of one oscillation the rates are known.
+        // The rates of one oscillation are known.
         if let (Some(damped), 1) = (self.system.exact_rate(), degrees) {
             let mean = match by_positions > 0.0 {
                 true => by_positions,

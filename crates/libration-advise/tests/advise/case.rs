@@ -140,7 +140,7 @@ impl Case {
         StateFeedback::to_origin(self.gains)
     }
 
-    /// What a period of a jittered clock makes of `E[q²]`, `E[qv]` and `E[v²]`: the mean over the uniform law of its length.
+    /// The moments `E[q²]`, `E[qv]` and `E[v²]` after a period of a jittered clock: the mean over the uniform law of its length.
     fn mean_operator(self, rms: f64) -> [[f64; 3]; 3] {
         // The error of the midpoint rule is 1e-6 of what jitter adds.
         const POINTS: usize = 1000;

@@ -3,9 +3,9 @@
 use libration::analysis::jacobian;
 use libration::equations::StepProgram;
 use libration::linear::{Complex64, GROWTH_ROUNDING, eigenvalues};
-use libration_report::verdict::{FOLLOWED, Outcome, Verdict};
+use libration_report::verdict::{Outcome, Verdict};
 
-use super::{Analysis, SteppedMotion};
+use super::{Analysis, MotionSteps, SteppedMotion};
 use crate::digits::change_per_step;
 use crate::linear_analysis::LinearAnalysis;
 use crate::oscillator::CommonOscillator;
@@ -26,7 +26,7 @@ pub(super) fn of_step(
     let about = analysis.equilibrium.as_ref()?;
     if let Some(motion) = &analysis.motion {
         let places = system.states.iter().map(|state| state.place);
-        let allows = |along: &super::MotionSteps| along.allows(motion.dt);
+        let allows = |along: &MotionSteps| along.allows(motion.dt);
         let is_allowed = analysis.steps_along_motion.as_ref().is_some_and(allows);
         let point = about.operating_point.as_ref().map(|point| point.state_of(system));
         let is_near = |at: &Vec<f64>| motion.examination.is_near(at, places.clone());
@@ -102,6 +102,7 @@ pub(super) fn growing_moments(analysis: &Analysis) -> Option<Verdict> {
     })
 }
 
+/// The exact motions of these oscillators do not grow exponentially, so that growth is that of the steps.
 fn of_oscillator(
     analysis: &Analysis,
     matrix: &StepMatrix,
@@ -109,7 +110,7 @@ fn of_oscillator(
 ) -> Verdict {
     let excess = matrix.spectral_radius_minus_one;
     let exact = matrix.flow_spectral_radius_minus_one;
-    // What rounded parameters change in the growth of exact steps.
+    // Rounded parameters change the growth of exact steps by so much.
     let rounding = 0.5 * f64::EPSILON * exact.abs();
     let motions = format!("motions {}", change_per_step(excess));
     if let Some(unstable) = growing_moments(analysis) {
@@ -128,12 +129,6 @@ fn of_oscillator(
             "motions grow by less than the rounding of the coefficients of the integrator",
         );
     }
-    if exact > GROWTH_ROUNDING && FOLLOWED * excess.ln_1p() < exact.ln_1p() {
-        return Verdict::new(
-            Outcome::NotResolved,
-            format!("{motions}, and those of exact steps {}", change_per_step(exact)),
-        );
-    }
     match analysis.bounded {
         Some(true) if excess < 0.0 => Verdict::new(Outcome::Stable, motions),
         Some(true) => Verdict::new(Outcome::Stable, "every motion stays bounded"),
@@ -147,20 +142,10 @@ fn of_oscillator(
         Some(false) if excess == 0.0 => {
             Verdict::new(Outcome::Unstable, "motions grow without bound, but not exponentially")
         }
-        Some(false) if exact > 0.0 => {
-            let outcome =
-                if excess <= FASTER * exact { Outcome::Stable } else { Outcome::Unstable };
-            let evidence =
-                format!("{motions}, and those of exact steps {}", change_per_step(exact));
-            Verdict::new(outcome, evidence)
-        }
         Some(false) => Verdict::new(Outcome::Unstable, motions),
-        None => Verdict::unknown("its coupled modes neither grow nor decay"),
+        None => Verdict::unknown("it is not known whether its motions stay bounded"),
     }
 }
 
 /// Growth per step, for each squared radian of it, that roundings of a dozen coefficients of an integrator may cause.
 const COEFFICIENTS: f64 = 8.0 * f64::EPSILON;
-
-/// A motion that grows in exact steps may grow by this part faster: the step is inaccurate then, not unstable.
-const FASTER: f64 = 1.5;

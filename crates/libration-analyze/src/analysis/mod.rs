@@ -44,6 +44,20 @@ pub fn analyze(request: &Request) -> Result<Analysis, AnalyzeError> {
 /// As [`analyze`], and [`AnalyzeError::Interrupted`].
 pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, AnalyzeError> {
     let oscillator = CommonOscillator::of(&request.system);
+    let mut analysis = without_motion(request, oscillator)?;
+    if request.timing.feedback.is_none() {
+        follow_motion(&mut analysis, request, stop)?;
+    }
+    let own = verdicts_of(&analysis, oscillator, request);
+    analysis.verdicts = of_clocks(own, oscillator, request, stop)?;
+    Ok(analysis)
+}
+
+/// The step and the loop of a request.
+fn without_motion(
+    request: &Request,
+    oscillator: Option<CommonOscillator>,
+) -> Result<Analysis, AnalyzeError> {
     check_criteria(request, oscillator)?;
     if request.stepping == Stepping::Exact {
         check_exact(request)?;
@@ -56,11 +70,6 @@ pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, A
     let step = StartStep::new(request)?;
     let mut analysis = of_start(step.as_ref(), oscillator, request);
     analysis.timing = timing;
-    if request.timing.feedback.is_none() {
-        follow_motion(&mut analysis, request, stop)?;
-    }
-    let own = verdicts_of(&analysis, oscillator, request);
-    analysis.verdicts = of_clocks(own, request, stop)?;
     Ok(analysis)
 }
 

@@ -56,7 +56,7 @@ pub struct Analysis {
     /// The motion from the start without a loop; none of exact steps.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<SteppedMotion>,
-    /// What the Newton steps of an implicit integrator leave in the motion; none without an iteration.
+    /// The residual that Newton steps of an implicit integrator leave in the motion; none without an iteration.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub newton_residual: Option<NewtonResidual>,
     /// The equilibrium near the start, and the system about it, without a loop.

@@ -25,7 +25,7 @@ impl StepVerdicts {
         self.step.as_ref().is_some_and(|verdict| verdict.outcome == Outcome::Unstable)
     }
 
-    /// All that there are.
+    /// The verdicts on the loop, the step and the motion, as far as there are any.
     pub fn all(&self) -> impl Iterator<Item = &Verdict> {
         self.closed_loop.iter().chain(&self.step).chain(&self.motion)
     }

@@ -6,7 +6,7 @@ use libration::control::Jitter;
 use libration_report::verdict::{Outcome, Verdict};
 
 use super::growth_verdict::{growing_moments, of_step};
-use super::{Analysis, StepVerdicts, analyze_until};
+use super::{Analysis, StepVerdicts, analyze_until, without_motion};
 use crate::digits::{change_per_step, significant};
 use crate::oscillator::CommonOscillator;
 use crate::step::{AnalyzeError, LoopAnalysis, Request};
@@ -48,6 +48,7 @@ pub(super) fn verdicts_of(
 /// As [`analyze_until`](super::analyze_until).
 pub(super) fn of_clocks(
     own: StepVerdicts,
+    oscillator: Option<CommonOscillator>,
     request: &Request,
     stop: &AtomicBool,
 ) -> Result<StepVerdicts, AnalyzeError> {
@@ -60,7 +61,11 @@ pub(super) fn of_clocks(
         let mut own = request.clone();
         own.dt *= 1.0 + error;
         own.timing.skew = None;
-        let found = analyze_until(&own, stop)?.verdicts;
+        let found = match oscillator {
+            // The step of an oscillator is judged by its matrix.
+            Some(_) => verdicts_of(&without_motion(&own, oscillator)?, oscillator, &own),
+            None => analyze_until(&own, stop)?.verdicts,
+        };
         for (all, one) in [(&mut closed_loop, found.closed_loop), (&mut step, found.step)] {
             let is_worse = |one: &Verdict| !one.is_good();
             if let (Some(all), Some(one)) = (all, one.filter(is_worse)) {
@@ -133,7 +138,7 @@ fn at_start(own: Verdict, request: &Request) -> Verdict {
     }
 }
 
-/// None without feedback.
+/// The verdict on a loop; none without feedback.
 fn of_loop(analysis: &LoopAnalysis) -> Option<Verdict> {
     let excess = analysis.closed_loop_spectral_radius_minus_one?;
     let moments = analysis.growth.and_then(|growth| growth.mean_square_growth);

@@ -52,7 +52,7 @@ impl EnergyChange {
     /// Adds the energy after a step.
     pub(super) fn add(&mut self, step: u64, energy: f64) {
         self.last = energy - self.start;
-        // What is no number is the largest, from the first on.
+        // The first energy that is no finite number has the largest change.
         let is_first = self.largest.is_finite() && !self.last.is_finite();
         if is_first || self.last.abs() > self.largest {
             (self.largest, self.largest_at_step) = (self.last.abs(), step);

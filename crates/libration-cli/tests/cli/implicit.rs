@@ -41,7 +41,7 @@ fn implicit_integrators_are_listed_simulated_and_analysed() {
         }
     }
     let z = "analyze --system oscillator --integrator backward-euler --dt 0.1 --verbose";
-    // Of order one it does not resolve the motion.
+    // This integrator of order one does not resolve the motion.
     libration(z).stdout(contains("1/(1 + z²)").and(contains("0 to ∞")));
 }
 

@@ -15,7 +15,7 @@ fn answer(command: &str) -> (String, i32) {
 /// The outcome of a verdict in JSON, by its key. Some numbers there are beyond those of a parser.
 fn outcome(command: &str, verdict: &str) -> String {
     let (text, _) = answer(&format!("{command} --json"));
-    // Those at the equilibrium stand before.
+    // The verdicts at the equilibrium stand before those of the request.
     let (_, own) =
         text.rsplit_once(&format!("\"{verdict}\": {{")).unwrap_or_else(|| panic!("{text}"));
     own.split('"').nth(3).unwrap().to_owned()

@@ -25,7 +25,7 @@ pub enum StartError {
         /// The system.
         system: &'static str,
     },
-    /// None of the catalogue: its equations are right.
+    /// The equations are wrong, which those of the catalogue are not.
     #[error(transparent)]
     Equations(#[from] EquationError),
 }

@@ -1,4 +1,4 @@
-//! What to do after an analysis of a step.
+//! The command that is recommended after an analysis of a step.
 
 use libration_analyze::linear_analysis::StepAnalysis;
 use libration_analyze::{Analysis, Request};

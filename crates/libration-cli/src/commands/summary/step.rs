@@ -48,7 +48,7 @@ pub(crate) fn of_analysis(analysis: &Analysis, request: &Request, order: Option<
     if let Some(order) = order {
         summary.row("order", order);
     }
-    // Those of a nonlinear system belong to its start alone.
+    // The linearised step of a nonlinear system belongs to its start alone.
     if let (Some(matrix), true) = (&analysis.matrix, request.system.is_linear()) {
         let phase = match matrix.phase_error_per_step {
             Some(error) => format!("{} rad per step", significant(error, 4)),
